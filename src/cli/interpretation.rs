@@ -142,6 +142,7 @@ pub(super) fn horizon(action: HorizonAction) -> Result<Request, Usage> {
             Request::Change { project, command: Command::RenameHorizon(RenameHorizon { from, to }) }
         }
         HorizonAction::Fill(typed) => assembly::fill(typed),
+        HorizonAction::Smooth(typed) => assembly::smooth(typed),
         HorizonAction::Replay(typed) => assembly::replay(typed),
         HorizonAction::Unpick { project, id } => {
             Request::Change { project, command: Command::RemovePick(RemovePick { id }) }

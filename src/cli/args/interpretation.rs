@@ -1,7 +1,7 @@
 //! Arguments for volumes, horizons and faults.
 
 use super::SegyArgs;
-use super::assembly::{FaultPickArgs, FaultProposeArgs, FillArgs, ReplayArgs};
+use super::assembly::{FaultPickArgs, FaultProposeArgs, FillArgs, ReplayArgs, SmoothArgs};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -76,6 +76,9 @@ pub(in crate::cli) enum HorizonAction {
     /// Fill the holes of a horizon, never across a fault
     #[command(after_help = "Example:\n  petroglyph horizon fill north.petro \"Top Chalk\" --max-traces 200")]
     Fill(FillArgs),
+    /// Smooth a horizon, never across a fault; one that was assembled stays smoothed when its picks change
+    #[command(after_help = "Example:\n  petroglyph horizon smooth north.petro \"Top Chalk\" --radius 4 --passes 2")]
+    Smooth(SmoothArgs),
     /// Make the picks of horizons again, after another extraction
     #[command(after_help = "Example:\n  petroglyph horizon replay north.petro")]
     Replay(ReplayArgs),

@@ -242,6 +242,7 @@ impl Window {
             | Command::RemovePick(_)
             | Command::ReplayPicks(_)
             | Command::FillHorizon(_)
+            | Command::SmoothHorizon(_)
             | Command::SetHorizonColour(_)
             | Command::PickFault(_)
             | Command::AcceptFault(_) => Place::Interpret,

@@ -9,11 +9,11 @@ mod contact;
 mod extract;
 mod fault;
 mod fault_pick;
-mod fill;
 mod horizon;
 mod import;
 mod layer;
 pub(crate) mod pick;
+mod refine;
 mod scalar;
 mod scene;
 mod survey_frame;
@@ -26,7 +26,6 @@ pub use contact::SetContact;
 pub use extract::{Extract, ProposeFaults};
 pub use fault::{AddFault, FaultAdded, RemoveFault, SetFaultExtent, SetTruncation};
 pub use fault_pick::{AcceptFault, PickFault};
-pub use fill::{FillHorizon, HorizonFilled};
 pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
 pub use import::{ImportVolume, RemoveVolume, VolumeImported};
 pub use layer::{ResetLayer, SetLayer};
@@ -34,6 +33,7 @@ pub use pick::{
     Climb, Move, MovePick, PickNode, PickNodes, Picked, RemovePick, ReplayPicks, Replayed, ReplayedPick,
     SetHorizonColour, Unfit,
 };
+pub use refine::{FillHorizon, HorizonRefined, SmoothHorizon};
 pub use scalar::{RemoveScalar, SetRaw, SetScalar};
 pub use scene::{AddScene, RemoveScene};
 pub use survey_frame::SetVelocity;
@@ -96,6 +96,8 @@ pub enum Command {
     ReplayPicks(ReplayPicks),
     /// Fill the holes of a horizon.
     FillHorizon(FillHorizon),
+    /// Smooth a horizon.
+    SmoothHorizon(SmoothHorizon),
     /// Draw a fault by sticks.
     PickFault(PickFault),
     /// Accept a proposed fault.
@@ -161,7 +163,7 @@ pub enum Effect {
     /// Picks were repeated.
     Replayed(Box<Replayed>),
     /// Holes of a horizon were filled.
-    HorizonFilled(Box<HorizonFilled>),
+    HorizonRefined(Box<HorizonRefined>),
     /// A fault was added or changed.
     FaultAdded(Box<FaultAdded>),
     /// A well was added.
@@ -210,6 +212,7 @@ impl Command {
             Self::SetHorizonColour(change) => change.execute(draft),
             Self::ReplayPicks(change) => change.execute(draft, progress),
             Self::FillHorizon(change) => change.execute(draft, progress),
+            Self::SmoothHorizon(change) => change.execute(draft, progress),
             Self::PickFault(change) => change.execute(draft, progress),
             Self::AcceptFault(change) => change.execute(draft, progress),
             Self::AddFault(change) => change.execute(draft, progress),
@@ -255,7 +258,7 @@ impl Effect {
             | Self::FaultsProposed(_)
             | Self::Picked(_)
             | Self::Replayed(_)
-            | Self::HorizonFilled(_)
+            | Self::HorizonRefined(_)
             | Self::Changed { .. } => Vec::new(),
         }
     }
@@ -282,7 +285,10 @@ impl Effect {
             Self::HorizonAdded(done) => format!("horizon {}", done.report.name),
             Self::Picked(done) => format!("pick {} of {}", done.pick, done.horizon),
             Self::Replayed(done) => format!("{} picks repeated", done.picks.len()),
-            Self::HorizonFilled(done) => format!("holes of {} filled", done.horizon),
+            Self::HorizonRefined(done) if done.result.smoothed.is_some() => {
+                format!("horizon {} smoothed", done.horizon)
+            }
+            Self::HorizonRefined(done) => format!("holes of {} filled", done.horizon),
             Self::FaultAdded(done) => format!("fault {}", done.report.name),
             Self::WellAdded(done) => format!("well {}", done.name),
             Self::Changed { summary } => summary.clone(),
@@ -319,7 +325,7 @@ impl std::fmt::Display for Effect {
             Self::HorizonAdded(done) => write!(f, "{}", done.report),
             Self::Picked(done) => write!(f, "{done}"),
             Self::Replayed(done) => write!(f, "{done}"),
-            Self::HorizonFilled(done) => write!(f, "{done}"),
+            Self::HorizonRefined(done) => write!(f, "{done}"),
             Self::FaultAdded(done) => write!(f, "{}", done.report),
             Self::WellAdded(done) => write!(f, "{done}"),
             Self::Created | Self::Changed { .. } => f.write_str(&self.summary()),
