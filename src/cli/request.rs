@@ -12,7 +12,7 @@ use super::well;
 use super::{assembly, extraction, interpretation};
 use crate::bench;
 use chains::illustrate::IllustrateSettings;
-use formats::{ExportOptions, Format, ImportOptions};
+use formats::{ExportOptions, Format, ImportOptions, SurfaceKind};
 use interp::ExtractSettings;
 use interp::faults::ProposeSettings;
 use param::KDefinition;
@@ -66,7 +66,7 @@ pub(super) enum Request {
     /// Write the points of all candidates to a file.
     ExportCandidates { project: PathBuf, out: PathBuf },
     /// Write a horizon to a file.
-    Export { project: PathBuf, out: PathBuf, horizon: String, format: Format, options: ExportOptions },
+    Export { project: PathBuf, out: PathBuf, surface: (SurfaceKind, String), format: Format, options: ExportOptions },
     /// Write a volume as SEG-Y, by default in the type it is stored in.
     ExportVolume { project: PathBuf, out: PathBuf, volume: String, format: Option<WriteFormat> },
     /// Compute i, j, k.

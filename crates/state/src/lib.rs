@@ -25,12 +25,12 @@ pub mod volume_rendering;
 mod tests;
 
 pub use action::{Action, Task};
-pub use dialogue::{Choice, Dialogue, ExportForm, FileContent, Shown, Target};
+pub use dialogue::{Choice, Dialogue, ExportForm, FileContent, Shown, SurfaceForm, Target};
 pub use notice::{Notice, Place};
 pub use picking::{How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, Tool};
 pub use remembered::{Appearance, Remembered};
 pub use session::{Session, Snapshot};
-pub use view::{Compare, Layout, Panel, SectionKind, StandardView, ViewState};
+pub use view::{Compare, Hidden, Layout, Panel, SectionKind, StandardView, ViewState};
 
 /// Everything that the window shows.
 ///

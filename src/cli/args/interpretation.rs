@@ -274,12 +274,15 @@ pub(in crate::cli) struct ExportArgs {
     /// File to write
     pub(in crate::cli) out: PathBuf,
     /// Horizon to write
-    #[arg(long, value_name = "NAME", required_unless_present_any = ["candidates", "volume"], conflicts_with = "volume")]
+    #[arg(long, value_name = "NAME", required_unless_present_any = ["candidates", "fault", "volume"], conflicts_with_all = ["fault", "volume"])]
     pub(in crate::cli) horizon: Option<String>,
+    /// Fault to write, as opendtect (sticks) or tsurf (triangles)
+    #[arg(long, value_name = "NAME", conflicts_with = "volume")]
+    pub(in crate::cli) fault: Option<String>,
     /// Write all horizon candidates instead, as CSV with inline, crossline, z, leaf and surface of each point
-    #[arg(long, conflicts_with_all = ["horizon", "format", "volume"])]
+    #[arg(long, conflicts_with_all = ["horizon", "fault", "format", "volume"])]
     pub(in crate::cli) candidates: bool,
-    /// Format of the horizon's file: csv, irap, opendtect, tsurf, zmap or cps3 [default: by its extension]
+    /// Format of the file: csv, irap, opendtect, tsurf, zmap or cps3 [default: by its extension]
     #[arg(long, conflicts_with = "volume")]
     pub(in crate::cli) format: Option<String>,
     /// Volume to write as SEG-Y

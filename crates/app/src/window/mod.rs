@@ -11,15 +11,16 @@ use super::views::{
     block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, fence::FenceView, functions::Functions,
     import::Import, interpretation::Interpretation, layers::Layers, map::MapView, overlay::Overlay, patterns::Patterns,
     picking::PickingPanel, pointed::Pointed, print::Page, sections::Sections, shortcuts, start::StartPage, status,
-    tiles::Tiles, well::WellDialogue,
+    surface, tiles::Tiles, well::WellDialogue,
 };
 use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
 use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};
 use follow::Needs;
 use frames::FrameTimes;
 use project::command::Command;
+use project::{Project, surface_export};
 use state::picking::Pick;
-use state::{Action, Appearance, Dialogue, ExportForm, Notice, Place, Remembered, State, Task};
+use state::{Action, Appearance, Dialogue, ExportForm, Notice, Place, Remembered, State, SurfaceForm, Task};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -196,8 +197,30 @@ impl Window {
             if let Task::Export(form) = &task {
                 self.export(form.as_ref().clone());
             }
+            if let Task::ExportSurface(form) = &task {
+                self.export_surface(form.as_ref().clone());
+            }
             self.work.run(task, place);
         }
+    }
+
+    /// Writes a horizon or fault for other programs.
+    fn export_surface(&self, form: SurfaceForm) {
+        let Some(root) = self.state.session.as_ref().map(|session| session.root.clone()) else { return };
+        self.work.background("Writing the file", Place::Dialogue, move |progress, outbox| {
+            let SurfaceForm { kind, name, path, format } = form;
+            let path = PathBuf::from(path.trim());
+            let write = |project: Project| {
+                let options = formats::ExportOptions::default();
+                surface_export::write(&project, &path, (kind, &name), (format, &options), progress)
+            };
+            let written = Project::open(&root).and_then(write);
+            let written = written.map_err(|error| Notice::failure(Place::Dialogue, &error))?;
+            outbox.send(Event::Exported(path));
+            let notes = written.notes.into_iter().map(|note| Event::Told(Notice::note(Place::Data, note)));
+            notes.for_each(|note| outbox.send(note));
+            Ok(())
+        });
     }
 
     /// Draws the page to a file.
@@ -357,6 +380,7 @@ impl Window {
                     export::show(ctx, &self.state, session, form, is_drawing, sparse, actions);
                 }
             }
+            Some(Dialogue::Surface(form)) => surface::dialogue(ctx, &self.state, form, actions),
             None => {}
         }
     }

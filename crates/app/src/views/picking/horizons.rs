@@ -237,7 +237,7 @@ impl HorizonList {
 }
 
 /// The colour of a horizon; it can be changed if the horizon was assembled from picks.
-fn swatch(ui: &mut Ui, entry: &HorizonEntry, index: usize, actions: &mut Vec<Action>) {
+pub fn swatch(ui: &mut Ui, entry: &HorizonEntry, index: usize, actions: &mut Vec<Action>) {
     match &entry.assembly {
         Some(log) => {
             if let Some(colour) = palette(ui, log.colour, &format!("Colour of {}", entry.name)) {

@@ -4,6 +4,8 @@ mod faults;
 mod horizons;
 mod palette;
 
+pub(super) use horizons::swatch;
+
 use super::candidates::CandidatesPanel;
 use super::{notices, overlay::Overlay};
 use crate::state::picking::voxel_of;
