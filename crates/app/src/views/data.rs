@@ -13,6 +13,7 @@ use project::styles;
 use survey::VerticalUnit;
 use ttf::ColourMap;
 use widgets::keyboard::{Renamed, Renaming};
+use widgets::obstacle::{needs, unless};
 
 /// The panel, with the text being typed in it.
 #[derive(Default)]
@@ -222,8 +223,11 @@ fn export(ui: &mut Ui, session: &Session, kind: SurfaceKind, name: &str, actions
     }
 }
 
+/// Why nothing can be placed yet.
+pub(super) const NO_SURVEY: &str = "Add a volume first: it says where everything is";
+
 fn add(ui: &mut Ui, name: &str, choice: Choice, can: bool, actions: &mut Vec<Action>) {
-    if ui.add_enabled(can, Button::new(name)).clicked() {
+    if unless(ui, needs(can, NO_SURVEY), Button::new(name)).clicked() {
         actions.push(Action::Ask(Box::new(Dialogue::Choose(choice))));
     }
 }

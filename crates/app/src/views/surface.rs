@@ -5,6 +5,7 @@ use crate::state::{Action, Dialogue, Place, State, SurfaceForm};
 use eframe::egui::{Button, ComboBox, Context, Grid, Id, Modal, TextEdit};
 use formats::{Format, SurfaceKind};
 use widgets::keyboard::is_entered;
+use widgets::obstacle::{needs, unless};
 use widgets::theme;
 
 /// Shows the dialogue.
@@ -38,8 +39,8 @@ pub fn dialogue(ctx: &Context, state: &State, form: &SurfaceForm, actions: &mut 
         });
         ui.horizontal(|ui| {
             let can = !next.path.trim().is_empty();
-            let button = ui.add_enabled(can, Button::new("Export")).on_hover_text("Enter");
-            if button.on_disabled_hover_text("Name the file").clicked() || can && is_entered(ui) {
+            let button = unless(ui, needs(can, "Name the file"), Button::new("Export")).on_hover_text("Enter");
+            if button.clicked() || can && is_entered(ui) {
                 actions.push(Action::ExportSurface(Box::new(next.clone())));
             }
             if ui.button("Cancel").clicked() {

@@ -216,6 +216,8 @@ fn a_lasso_on_a_slice_erases_part_of_a_horizon_in_one_step() {
     act(&mut harness, PickingStep::Erase(state::Lasso { on, corners }));
     wait(&mut harness, "part of it is gone", |harness| nodes(harness).is_some_and(|now| now < before.0));
     assert_eq!(document(&harness).step, before.1 + 1);
+    let told = harness.query_all_by_label_contains("farther than the lasso").count();
+    assert_eq!(told, 1, "leaves across its edge stay, and that is said: {:?}", state(&harness).notices);
 }
 
 #[test]

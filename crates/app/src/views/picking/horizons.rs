@@ -16,6 +16,7 @@ use project::document::HorizonEntry;
 use refine::SmoothSettings;
 use survey::SurveyGeometry;
 use widgets::keyboard::{Renamed, Renaming};
+use widgets::obstacle::{needs, unless};
 
 /// Largest number of holes that are listed.
 const HOLES: usize = 5;
@@ -220,10 +221,12 @@ impl HorizonList {
                 order(self.smoothing);
             }
             let SmoothSettings { radius, passes } = SmoothSettings::MOST;
-            let drag = DragValue::new(&mut self.smoothing.radius).range(1..=radius).suffix(" traces around");
+            let drag = DragValue::new(&mut self.smoothing.radius).range(1..=radius);
             ui.name_inputs("Radius of smoothing", |ui| ui.add(drag)).on_hover_text("More takes out longer waves");
-            let drag = DragValue::new(&mut self.smoothing.passes).range(1..=passes).suffix(" passes");
+            ui.weak("traces,");
+            let drag = DragValue::new(&mut self.smoothing.passes).range(1..=passes);
             ui.name_inputs("Passes of smoothing", |ui| ui.add(drag));
+            ui.weak("passes");
         });
         if let Some(SmoothSettings { radius, passes }) = entry.assembly.as_ref().and_then(|log| log.smooth) {
             ui.horizontal(|ui| {
@@ -273,7 +276,12 @@ fn picks(ui: &mut Ui, entry: &HorizonEntry, geometry: &SurveyGeometry, actions: 
         ui.horizontal_wrapped(|ui| {
             ui.add_space(8.0);
             let mut button = |ui: &mut Ui, name: &str, hint: &str, can: bool, command: Command| {
-                let button = ui.add_enabled(can, Button::new(name).small());
+                let why = if name == "Down" {
+                    "It is a leaf already"
+                } else {
+                    "The horizon has no other pick: remove it instead"
+                };
+                let button = unless(ui, needs(can, why), Button::new(name).small());
                 if button.on_hover_text(format!("{hint} pick {}", pick.id)).clicked() {
                     actions.push(apply(command));
                 }
