@@ -318,7 +318,9 @@ impl Window {
         let running = self.work.running.lines();
         self.dropped.receive(&ctx, &self.state, !running.is_empty(), &mut actions);
         Panel::bottom("status").exact_size(32.0).show(ui, |ui| {
-            status::show(ui, &self.state, self.pointed.as_ref(), &running, self.block.device(), &mut actions);
+            let drawable = self.state.session.as_ref().is_some_and(state::Session::is_drawable);
+            let device = (drawable && !self.block.is_settled(), self.block.device());
+            status::show(ui, &self.state, self.pointed.as_ref(), &running, device, &mut actions);
         });
         if self.state.session.is_some() {
             self.work_page(ui, &running, &mut actions);

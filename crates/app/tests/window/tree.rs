@@ -62,3 +62,15 @@ fn a_horizon_is_hidden_and_shown_again() {
     wait(&mut harness, "it is gone", |harness| document(harness).horizons.len() == 1);
     assert!(!is_hidden(&harness));
 }
+
+/// While a picture is drawn the foot says so, until it is sharp.
+#[test]
+fn a_picture_that_is_being_drawn_is_said_to_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    assert!(harness.query_by_label("Drawing…").is_none());
+    click(&mut harness, "From above");
+    harness.get_by_label("Drawing…");
+    wait(&mut harness, "it is sharp", |harness| harness.state().as_ref().unwrap().is_settled());
+    assert!(harness.query_by_label("Drawing…").is_none());
+}

@@ -32,11 +32,7 @@ pub(super) fn intervals(ui: &mut Ui, function: &mut ScalarTtf, swatches: &Swatch
                 if axis == 1 {
                     ui.label("×");
                 }
-                let drag = DragValue::new(&mut interval.factor[axis])
-                    .speed(0.02)
-                    .range(0.05..=50.0)
-                    .max_decimals(2)
-                    .suffix(" times");
+                let drag = DragValue::new(&mut interval.factor[axis]).speed(0.02).range(0.05..=50.0).max_decimals(2);
                 ui.name_inputs(format!("{name} of {} {ordinal}", function.volume), |ui| ui.add(drag))
                     .on_hover_text(format!("{name}, times the layer's own"));
             }
