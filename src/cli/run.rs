@@ -15,7 +15,7 @@ use project::folder::refuse_inside_project;
 use project::interpretation::extraction;
 use project::picture::load::Stage;
 use project::picture::{self, load, scene};
-use project::{content, derived, segy_export, styles, surface_export};
+use project::{derived, segy_export, styles, surface_export};
 use render::Scene;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
