@@ -1,6 +1,8 @@
 //! Turns arguments for picks and faults into commands, and evaluates extractions.
 
-use super::args::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs, TimeArgs};
+use super::args::{
+    ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs, SmoothArgs, TimeArgs,
+};
 use super::report::Report;
 use super::request::{Request, Usage};
 use ::time::TimeSettings;
@@ -15,9 +17,10 @@ use model::FaultNetwork;
 use project::Project;
 use project::command::{
     AcceptFault, Climb, Command, ComputeTime, FillHorizon, Move, MovePick, PickByTime, PickFault, PickNode,
-    ReplayPicks, TimeLevel, Unfit,
+    ReplayPicks, SmoothHorizon, TimeLevel, Unfit,
 };
 use project::interpretation::candidates::Candidates;
+use refine::SmoothSettings;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use survey::Progress;
@@ -63,8 +66,14 @@ pub(super) fn descend(typed: DescendArgs) -> Request {
 }
 
 pub(super) fn fill(typed: FillArgs) -> Request {
-    let settings = FillSettings { max_traces: typed.max_traces };
+    let settings = FillSettings { max_traces: typed.max_traces, along_reflection: typed.along_reflection };
     let command = Command::FillHorizon(FillHorizon { name: typed.name, settings });
+    Request::Change { project: typed.project, command }
+}
+
+pub(super) fn smooth(typed: SmoothArgs) -> Request {
+    let settings = SmoothSettings { radius: typed.radius, passes: typed.passes };
+    let command = Command::SmoothHorizon(SmoothHorizon { name: typed.name, settings });
     Request::Change { project: typed.project, command }
 }
 

@@ -8,7 +8,8 @@ use super::request::{Listing, Request, Usage};
 use super::segy::segy_options;
 use attribute::{DipSettings, SemblanceSettings};
 use formats::{
-    Column, ExportOptions, Format, HorizonShape, ImportOptions, PlaceBy, ValueOrder, WhenRotated, ZPositive, ZUnit,
+    Column, ExportOptions, Format, HorizonShape, ImportOptions, PlaceBy, SurfaceKind, ValueOrder, WhenRotated,
+    ZPositive, ZUnit,
 };
 use project::command::{
     AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, RemoveFault, RemoveHorizon,
@@ -142,6 +143,7 @@ pub(super) fn horizon(action: HorizonAction) -> Result<Request, Usage> {
             Request::Change { project, command: Command::RenameHorizon(RenameHorizon { from, to }) }
         }
         HorizonAction::Fill(typed) => assembly::fill(typed),
+        HorizonAction::Smooth(typed) => assembly::smooth(typed),
         HorizonAction::Replay(typed) => assembly::replay(typed),
         HorizonAction::Unpick { project, id } => {
             Request::Change { project, command: Command::RemovePick(RemovePick { id }) }
@@ -219,14 +221,17 @@ pub(super) fn export(typed: ExportArgs) -> Result<Request, Usage> {
         let format = format.transpose()?;
         return Ok(Request::ExportVolume { project: typed.project, out: typed.out, volume, format });
     }
-    let Some(horizon) = typed.horizon else {
-        return Ok(Request::ExportCandidates { project: typed.project, out: typed.out });
+    let surface = match (typed.horizon, typed.fault) {
+        (Some(name), _) => (SurfaceKind::Horizon, name),
+        (None, Some(name)) => (SurfaceKind::Fault, name),
+        (None, None) => return Ok(Request::ExportCandidates { project: typed.project, out: typed.out }),
     };
     let format = match typed.format.as_deref() {
         Some(name) => format(name)?,
         None => {
             let extension = typed.out.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-            let found = Format::all().find(|format| format.extension().eq_ignore_ascii_case(extension));
+            let mut writable = Format::all().filter(|format| format.writes(surface.0));
+            let found = writable.find(|format| format.extension().eq_ignore_ascii_case(extension));
             found.ok_or_else(|| {
                 format!("{}: the extension names no format; give --format, one of {}", typed.out.display(), formats())
             })?
@@ -235,5 +240,5 @@ pub(super) fn export(typed: ExportArgs) -> Result<Request, Usage> {
     let rotated = [("resample", WhenRotated::Resample), ("refuse", WhenRotated::Refuse)];
     let when_rotated = typed.when_rotated.as_deref().map(|t| word("--when-rotated", t, &rotated)).transpose()?;
     let options = ExportOptions { when_rotated: when_rotated.unwrap_or_default() };
-    Ok(Request::Export { project: typed.project, out: typed.out, horizon, format, options })
+    Ok(Request::Export { project: typed.project, out: typed.out, surface, format, options })
 }

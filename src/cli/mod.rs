@@ -13,6 +13,7 @@ mod distortion;
 mod draw;
 mod extraction;
 mod failure;
+mod frame;
 mod hint;
 mod info;
 mod info_interpretation;

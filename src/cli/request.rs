@@ -2,17 +2,17 @@
 
 use super::animate::AnimateRequest;
 use super::args::{
-    Action, CreateArgs, DrawingArgs, IllustrateArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction,
-    SceneAction, SynthArgs, VolumeAction,
+    Action, DrawingArgs, IllustrateArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction, SceneAction,
+    SynthArgs, VolumeAction,
 };
+use super::frame::frame;
 use super::page::PageRequest;
 use super::view::ViewChanges;
 use super::well;
 use super::{assembly, extraction, interpretation};
 use crate::bench;
 use chains::illustrate::IllustrateSettings;
-use formats::{ExportOptions, Format, ImportOptions};
-use glam::DVec2;
+use formats::{ExportOptions, Format, ImportOptions, SurfaceKind};
 use interp::ExtractSettings;
 use interp::faults::ProposeSettings;
 use param::KDefinition;
@@ -28,7 +28,7 @@ use render::{IsosurfaceSource, Scope};
 use segy::{SegyOptions, WriteFormat};
 use std::path::PathBuf;
 use std::time::Duration;
-use survey::{SurveyGeometry, VerticalUnit};
+use survey::SurveyGeometry;
 use synth::SynthSettings;
 use ttf::{Colour, ColourMap, DepthInterval, Frequency, ScalarInterval, ScalarTtf};
 
@@ -66,7 +66,7 @@ pub(super) enum Request {
     /// Write the points of all candidates to a file.
     ExportCandidates { project: PathBuf, out: PathBuf },
     /// Write a horizon to a file.
-    Export { project: PathBuf, out: PathBuf, horizon: String, format: Format, options: ExportOptions },
+    Export { project: PathBuf, out: PathBuf, surface: (SurfaceKind, String), format: Format, options: ExportOptions },
     /// Write a volume as SEG-Y, by default in the type it is stored in.
     ExportVolume { project: PathBuf, out: PathBuf, volume: String, format: Option<WriteFormat> },
     /// Compute i, j, k.
@@ -472,36 +472,6 @@ fn raw(typed: RawArgs) -> Result<Request, Usage> {
     let range = range.map(|range| range.map(|value| value as f32));
     Ok(Request::SetRaw { project: typed.project, volume: typed.volume, map, range })
 }
-/// The lattice that `--bounds`, `--size` and `--z-unit` describe: its first and last samples lie on the bounds.
-fn frame(typed: &CreateArgs) -> Result<Option<SurveyGeometry>, Usage> {
-    let Some(bounds) = &typed.bounds else { return Ok(None) };
-    let [x0, x1, y0, y1, z0, z1] = numbers::<6>("--bounds", bounds, ',')?;
-    let size = match &typed.size {
-        Some(size) => counts::<3>("--size", size)?,
-        None => [128; 3],
-    };
-    let unit = match typed.z_unit.as_deref() {
-        None | Some("m") => VerticalUnit::Metres,
-        Some("ms") => VerticalUnit::Milliseconds,
-        Some(other) => return Err(format!("--z-unit {other}: expected m or ms")),
-    };
-    for (axis, low, high) in [("X", x0, x1), ("Y", y0, y1), ("Z", z0, z1)] {
-        if low >= high {
-            return Err(format!("--bounds {bounds}: {axis}0 = {low} must be less than {axis}1 = {high}"));
-        }
-    }
-    if let Some(count) = size.iter().find(|&&count| count < 2) {
-        return Err(format!("--size: each axis needs at least 2 samples, found {count}"));
-    }
-    let step = |low: f64, high: f64, count: usize| (high - low) / (count as f64 - 1.0);
-    let mut geometry = SurveyGeometry::regular(size, 1.0, step(z0, z1, size[2]), unit);
-    geometry.vertical.first = z0;
-    geometry.origin = DVec2::new(x0, y0);
-    geometry.inline_vector = DVec2::new(step(x0, x1, size[0]), 0.0);
-    geometry.crossline_vector = DVec2::new(0.0, step(y0, y1, size[1]));
-    geometry.validate().map_err(|error| format!("--bounds {bounds}: {error}"))?;
-    Ok(Some(geometry))
-}
 
 /// A time that is waited for.
 pub(super) fn seconds(option: &str, value: f64) -> Result<Duration, Usage> {
@@ -524,36 +494,4 @@ pub(super) fn counts<const N: usize>(option: &str, text: &str) -> Result<[usize;
     parsed
         .and_then(|values| values.try_into().ok())
         .ok_or_else(|| format!("{option} {text}: expected {N} counts such as {}", ["64"; N].join("x")))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn typed(bounds: &str, size: &str) -> CreateArgs {
-        CreateArgs { project: "a.petro".into(), bounds: Some(bounds.into()), size: Some(size.into()), z_unit: None }
-    }
-
-    #[test]
-    fn bounds_are_the_first_and_last_samples() {
-        let geometry = frame(&typed("1000,5000,-200,200,-100,900", "5x3x11")).unwrap().unwrap();
-        geometry.validate().unwrap();
-        let last = geometry.world_from_voxel(glam::DVec3::new(4.0, 2.0, 10.0));
-        assert_eq!(last, glam::DVec3::new(5000.0, 200.0, 900.0));
-        assert_eq!(geometry.world_from_voxel(glam::DVec3::ZERO), glam::DVec3::new(1000.0, -200.0, -100.0));
-    }
-
-    #[test]
-    fn wrong_bounds_and_sizes_are_usage_errors() {
-        for (bounds, size) in [
-            ("0,1,0,1,0", "4x4x4"),
-            ("0,1,0,1,1,0", "4x4x4"),
-            ("0,1,0,nan,0,1", "4x4x4"),
-            ("0,1,0,1,0,1", "4x4"),
-            ("0,1,0,1,0,1", "4x4x1"),
-            ("0,1,0,1,0,1", "4x4x-4"),
-        ] {
-            assert!(frame(&typed(bounds, size)).is_err(), "{bounds} {size}");
-        }
-    }
 }

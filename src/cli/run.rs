@@ -8,16 +8,15 @@ use crate::bench;
 use anyhow::Context;
 use chains::demo::{self, survey_files};
 use chains::illustrate;
-use formats::{ExportOptions, Format};
+use formats::{ExportOptions, Format, SurfaceKind};
 use project::Project;
 use project::ProjectError;
 use project::command::{AddScene, Command, Effect, Extract, ImportVolume, ProposeFaults, SetParameterization, SetRaw};
-use project::error::Noun;
 use project::folder::refuse_inside_project;
 use project::interpretation::extraction;
 use project::picture::load::Stage;
 use project::picture::{self, load, scene};
-use project::{content, derived, segy_export, styles};
+use project::{derived, segy_export, styles, surface_export};
 use render::Scene;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -77,8 +76,8 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
             info::describe(&path, distortion, &segy, &reading, &progress)?
         }
         Request::Import { project, command } => import(&project, wait, command, &progress)?,
-        Request::Export { project, out, horizon, format, options } => {
-            export(&project, &out, &horizon, format, &options, &progress)?
+        Request::Export { project, out, surface: (kind, name), format, options } => {
+            export(&project, &out, (kind, &name), format, &options, &progress)?
         }
         Request::Extract { project, volume, settings } => {
             let extract = Command::Extract(Extract { volume, settings });
@@ -210,22 +209,19 @@ fn import(path: &Path, wait: Duration, command: ImportVolume, progress: &Progres
 fn export(
     project: &Path,
     out: &Path,
-    horizon: &str,
+    surface: (SurfaceKind, &str),
     format: Format,
     options: &ExportOptions,
     progress: &Progress,
 ) -> anyhow::Result<Report> {
-    let project = Project::open(project)?;
-    refuse_inside_project(out)?;
-    let document = project.document();
-    let entry = &document.horizons[document.position(Noun::Horizon, horizon)?];
-    let horizon = content::read_horizon(project.root(), entry, progress)?;
-    let written = formats::write_horizon_as(out, &horizon, document.frame()?, format, options)?;
+    let written = surface_export::write(&Project::open(project)?, out, surface, (format, options), progress)?;
     let mut report = Report::line(format!("{} written as {format}", out.display()));
     for note in &written.notes {
         report.say(format!("  {note}"));
     }
-    report.field("file", out).field("format", format.name()).field("horizon", &entry.name).fields(&written);
+    let (kind, name) = surface;
+    let field = if kind == SurfaceKind::Horizon { "horizon" } else { "fault" };
+    report.field("file", out).field("format", format.name()).field(field, name).fields(&written);
     Ok(report)
 }
 

@@ -131,6 +131,17 @@ fn picks_make_a_horizon_that_parameterizes_and_exports() {
     run_in(at, "horizon fill p.petro Cover").done();
     let text = run_in(at, "horizon show p.petro Top").done().stdout;
     assert!(text.contains("assembled by 1 pick") && text.contains("#336699"), "{text}");
+    // It stays smoothed until that is taken back; holes can be filled along the reflection instead.
+    let smoothed = run_in(at, "horizon smooth p.petro Top --radius 2 --passes 2 --json").done().json();
+    assert!(smoothed["result"]["smoothed"].as_f64().is_some_and(|most| most > 0.05), "{smoothed}");
+    assert_eq!(shown()["horizon"]["assembly"]["smooth"]["radius"], 2);
+    run_in(at, "horizon smooth p.petro Top --radius 0").done();
+    assert!(shown()["horizon"]["assembly"]["smooth"].is_null());
+    assert_eq!(run_in(at, "horizon smooth p.petro Top --radius 51").code, 2);
+    let along = run_in(at, "horizon fill p.petro Top --along-reflection --json").done().json();
+    let count = |key: &str| along["result"]["filled"][key].as_u64().unwrap();
+    assert!(count("along") > 0 && count("along") <= count("nodes"), "{along}");
+    assert_eq!(along["result"]["holes"]["count"].as_u64(), Some(0), "{along}");
     run_in(at, "parameterize p.petro --size 24x24x24").done();
     run_in(at, "export p.petro top.csv --horizon Top").done();
     run_in(at, "render p.petro top.png --size 200x150").done();

@@ -114,3 +114,24 @@ fn names_styles_and_contacts_survive_what_happens_to_horizons() {
     let horizons = run_in(at, "horizon list c.petro --json").done().json();
     assert_eq!(horizons["horizons"][0]["contact"], "erosional");
 }
+
+/// A horizon by inline and crossline alone has its place where the survey's lines are stated.
+#[test]
+fn lines_that_are_stated_place_a_horizon_without_coordinates() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let rows = (0..=10).flat_map(|i| (0..=3).map(move |x| (1000 + i, 240 - 10 * x)));
+    let text: String = rows.map(|(inline, crossline)| format!("{inline},{crossline},{}\n", inline - 500)).collect();
+    fs::write(at.join("H.csv"), format!("inline,crossline,depth_m\n{text}")).unwrap();
+    run_in(at, "create p.petro --bounds 0,100,0,300,0,1000 --size 11x4x41").done();
+    run_in(at, "horizon add p.petro H.csv --name H").failed(&["the survey's are 1 to 11, 1 to 4"]);
+    let lines = "--inlines 1000,1010 --crosslines 240,210,-10";
+    let refused = run_in(at, &format!("create q.petro --bounds 0,100,0,300,0,1000 --size 12x4x41 {lines}"));
+    assert!(refused.code == 2 && refused.stderr.contains("are 11 lines, and --size states 12"), "{}", refused.stderr);
+    run_in(at, &format!("create q.petro --bounds 0,100,0,300,0,1000 {lines}")).done();
+    run_in(at, "horizon add q.petro H.csv --name H").done();
+    run_in(at, "export q.petro out.csv --horizon H --format csv").done();
+    let out = fs::read_to_string(at.join("out.csv")).unwrap();
+    let row = out.lines().find(|line| line.starts_with("1010,210,")).unwrap();
+    assert!(row.starts_with("1010,210,100.0000,300.0000,510,"), "{row}");
+}

@@ -10,17 +10,17 @@
 
 use anyhow::{Context as _, bail};
 use app::Window;
-use app::state::picking::voxel_of;
-use app::state::{
-    Action, Appearance, Choice, Compare, Dialogue, ExportForm, FileContent, How, Layout, Look, Notice, Panel,
-    PickingStep, Place, Target,
-};
 use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, TexturesDelta, vec2};
 use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, TestRenderer};
 use glam::DVec3;
 use image::{Rgba, RgbaImage};
 use render::FaceData;
+use state::picking::voxel_of;
+use state::{
+    Action, Appearance, Choice, Compare, Dialogue, ExportForm, FileContent, How, Layout, Look, Notice, Panel,
+    PickingStep, Place, Target,
+};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -246,7 +246,7 @@ impl Tour {
             return;
         };
         let colour = ttf::Colour::new(0xf2, 0xc1, 0x2e);
-        app::state::volume_rendering::show_horizon(&mut scene, name, colour, true);
+        state::volume_rendering::show_horizon(&mut scene, name, colour, true);
         scene.media.horizons.iter_mut().for_each(|horizon| horizon.emission = 0.5);
         self.act(Action::Show(Box::new(scene)));
     }

@@ -1,6 +1,7 @@
 //! `petroglyph view`: the whole workflow in one window.
 //!
-//! Three parts. The state knows of no other, the workers know the state, and the panels know both:
+//! Three parts, the first of them a crate of its own. The state knows of no other, the workers know the state, and the
+//! panels know both:
 //!
 //! - [`state`]: what is open, selected and displayed, as plain values. [`state::State::apply`] turns an
 //!   [`state::Action`] into a new state and a list of [`state::Task`]s for the workers. No window, no file, no thread.
@@ -16,12 +17,11 @@
 //! Deliberately absent: project state that is not on disk, and any drawing of rock.
 
 pub mod error;
-mod hint;
 mod hold;
-pub mod state;
 pub mod views;
 pub mod window;
 pub mod work;
 
+pub use ::state;
 pub use error::WindowError;
 pub use window::{Window, run};

@@ -244,6 +244,14 @@ impl Format {
         self.codec().extension
     }
 
+    /// Whether surfaces of that kind can be written in it.
+    pub fn writes(self, kind: SurfaceKind) -> bool {
+        match kind {
+            SurfaceKind::Horizon => self.codec().write_horizon.is_some(),
+            SurfaceKind::Fault => self.codec().write_fault.is_some(),
+        }
+    }
+
     /// The format of that word.
     pub fn from_name(name: &str) -> Option<Self> {
         CODECS.iter().find(|c| c.name.eq_ignore_ascii_case(name)).map(|c| c.format)
@@ -441,7 +449,7 @@ pub fn write_horizon_as(
         let instead = names(|c| c.write_horizon.is_some());
         return Err(FormatError::Unsupported { format, action: "written", kind: SurfaceKind::Horizon, instead });
     };
-    let (horizon, notes) = match format {
+    let (horizon, mut notes) = match format {
         Format::Zmap | Format::Cps3 => unrotated::of(horizon, format, options)?,
         _ => (Cow::Borrowed(horizon), Vec::new()),
     };
@@ -453,6 +461,10 @@ pub fn write_horizon_as(
         }
         writer(out, &horizon, geometry)
     })?;
+    notes.extend(write::unpicked(&horizon).map(|share| match format {
+        Format::Csv => format!("{share}: the column quality says which"),
+        _ => format!("{share}: the format does not say which nodes; csv does"),
+    }));
     let corners = horizon.any_shape().map_or(0, |surface| surface.vertices.len());
     Ok(ExportReport { nodes: horizon.sheets.iter().map(Sheet::node_count).sum::<usize>() + corners, notes })
 }

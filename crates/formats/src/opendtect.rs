@@ -83,6 +83,9 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
 
 fn write_horizon(out: &mut dyn Write, horizon: &Horizon, geometry: &SurveyGeometry) -> Result<(), WriteFailure> {
     writeln!(out, "# \"X\"\t\"Y\"\t\"Inline\"\t\"Crossline\"\t\"Z\"")?;
+    if let Some(share) = write::unpicked(horizon) {
+        writeln!(out, "# {share}")?;
+    }
     writeln!(out, "# - - - - - - - - - -")?;
     for TableNode { lines, xy, z, .. } in write::nodes(horizon, geometry) {
         let [il, xl] = [lines.x, lines.y].map(write::line_number);

@@ -53,6 +53,16 @@ pub(super) fn beside(
     })
 }
 
+/// How many of the nodes were not picked, in words; none if all were.
+pub(super) fn unpicked(horizon: &Horizon) -> Option<String> {
+    let nodes = || horizon.sheets.iter().flat_map(|sheet| &sheet.quality).filter(|quality| **quality != Quality::Hole);
+    let made = nodes().filter(|quality| matches!(quality, Quality::Filled | Quality::Extrapolated)).count();
+    let share = 100.0 * made as f64 / nodes().count().max(1) as f64;
+    // A share that is rounded away is there all the same.
+    let percent = if share < 1.0 { "less than 1".to_owned() } else { format!("{share:.0}") };
+    (made > 0).then(|| format!("{percent} % of the nodes were not picked but filled or extrapolated"))
+}
+
 /// A node of a horizon, with everything that a table may state about it.
 pub(super) struct TableNode {
     pub lines: DVec2,

@@ -9,7 +9,7 @@
 
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Line, SourceFile};
-use super::write::WriteFailure;
+use super::write::{self, WriteFailure};
 use super::{Codec, Format, FormatError, SurfaceKind, irap};
 use glam::DVec2;
 use std::io::Write;
@@ -82,6 +82,9 @@ fn write_horizon(out: &mut dyn Write, horizon: &Horizon, _: &SurveyGeometry) -> 
     let name: String =
         horizon.name.chars().map(|c| if c.is_control() || ",@!+".contains(c) { ' ' } else { c }).collect();
     writeln!(out, "! written by Petroglyph: X and Y in m, depths or times positive down")?;
+    if let Some(share) = write::unpicked(horizon) {
+        writeln!(out, "! {share}")?;
+    }
     writeln!(out, "@ {}, GRID, 5", name.trim())?;
     writeln!(out, "20, {null}, , 7, 1")?;
     writeln!(out, "{nv}, {nu}, {:.6}, {:.6}, {:.6}, {:.6}", origin.x, far.x, origin.y, far.y)?;

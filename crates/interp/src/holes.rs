@@ -44,6 +44,10 @@ pub struct FillSettings {
     /// Holes with more traces are not filled; `None` (default) fills all.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_traces: Option<usize>,
+    /// Whether the reflection is followed through holes, where there is one ([`Filled::along`]); the surface of least
+    /// curvature fills the rest.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub along_reflection: bool,
 }
 
 /// The result of filling.
@@ -53,6 +57,8 @@ pub struct Filled {
     pub holes: usize,
     /// Count of nodes made.
     pub nodes: usize,
+    /// Count of those that follow the reflection.
+    pub along: usize,
     /// Count of traces left empty because the surface would have left its fault block there.
     pub across_faults: usize,
     /// Count of holes left because they are larger than [`FillSettings::max_traces`].

@@ -20,6 +20,7 @@
 //! | [`Project`] | applies commands; undo and redo |
 //! | [`figures`] | what a figure needs, loaded, and its page made |
 //! | [`segy_export`] | a volume written as SEG-Y |
+//! | [`surface_export`] | a horizon or fault written for other programs |
 //!
 //! Deliberately absent: the words of a command line or a window. An error says what is wrong; what helps is said here
 //! only where it is the same everywhere. The names of options and fields are known only to the program that shows the
@@ -40,6 +41,7 @@ pub mod placement;
 mod project;
 pub mod segy_export;
 pub mod styles;
+pub mod surface_export;
 mod weak_cache;
 
 pub use command::{Command, Effect};

@@ -14,7 +14,7 @@
 use crate::camera::ViewRay;
 use crate::error::RenderError;
 use crate::inputs::Inputs;
-use crate::media::prepared::Preparations;
+use crate::kept::Kept;
 use crate::resolved::{ResolvedInterpretation, ResolvedScene};
 use crate::scene::Scene;
 use crate::shade::{RayHit, pixel_shift, stopping_hit};
@@ -110,7 +110,7 @@ impl LayerDistortion {
 /// # Errors
 /// A scene that cannot be drawn, missing inputs, or cancellation.
 pub fn measure(scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<Vec<LayerDistortion>, RenderError> {
-    let resolved = ResolvedScene::new(scene, inputs, &mut Preparations::default())?;
+    let resolved = ResolvedScene::new(scene, inputs, &mut Kept::default())?;
     let Some(interpretation) = resolved.interpretation else { return Ok(Vec::new()) };
     let layers = interpretation.model.layer_count();
     let faces = FaceMetric::of(&resolved);

@@ -70,6 +70,12 @@ pub struct Relief {
     pub display_normal_from_voxel: Mat3,
 }
 
+/// The corners between which the ground of a scene lies.
+pub(crate) fn corners(scene: &Scene, geometry: &SurveyGeometry) -> [Vec3; 2] {
+    let roaming_box = scene.box_in(geometry);
+    [roaming_box.low().as_vec3(), roaming_box.high().as_vec3()]
+}
+
 /// What the march needs to know about a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Probe {
@@ -100,19 +106,24 @@ pub struct GroundHit {
 impl Relief {
     /// The relief of a model in a scene's box.
     pub fn new(ground: &Ground, scene: &Scene, geometry: &SurveyGeometry, model: &StructuralModel) -> Self {
+        let [low, high] = corners(scene, geometry);
+        Self::over(&Heights::of(model, low, high), ground, scene, geometry)
+    }
+
+    /// The relief over heights of a scene's box.
+    pub(crate) fn over(heights: &Heights, ground: &Ground, scene: &Scene, geometry: &SurveyGeometry) -> Self {
         let view = scene.view(geometry);
         let roaming_box = scene.box_in(geometry);
-        let heights = Heights::of(model, roaming_box.low().as_vec3(), roaming_box.high().as_vec3());
         let bearing = (scene.camera.azimuth_for(geometry, &roaming_box) + f64::from(ground.light_deg)).to_radians();
         let metric = geometry.metric_from_voxel();
         let longest = metric.x_axis.length().max(metric.y_axis.length()).max(metric.z_axis.length());
         Self {
             z_range: heights.z_range,
             steepest: heights.steepest,
-            horizons: heights.horizons,
+            horizons: heights.horizons.clone(),
             map_low: roaming_box.low().as_vec3().truncate(),
             map_cells: heights.cells,
-            map_tops: heights.tops,
+            map_tops: heights.tops.clone(),
             longest_m: longest as f32,
             light: DVec3::new(bearing.sin(), bearing.cos(), 1.0).normalize().as_vec3(),
             hill_shade: ground.hill_shade,
@@ -289,7 +300,8 @@ fn block_and_fault(model: &StructuralModel, p: Vec3) -> (u16, usize, f32) {
 }
 
 /// Heights of the ground in a box.
-struct Heights {
+#[derive(Debug)]
+pub(crate) struct Heights {
     z_range: [f32; 2],
     steepest: f32,
     horizons: Vec<usize>,
@@ -338,7 +350,7 @@ impl HeightRow {
 }
 
 impl Heights {
-    fn of(model: &StructuralModel, low: Vec3, high: Vec3) -> Self {
+    pub fn of(model: &StructuralModel, low: Vec3, high: Vec3) -> Self {
         let nodes = |axis: usize| -> Vec<f32> {
             let count = ((high[axis] - low[axis]) / STRIDE as f32).ceil() as usize;
             (0..=count).map(|n| (low[axis] + (n * STRIDE) as f32).min(high[axis])).collect()

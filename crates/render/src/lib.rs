@@ -29,6 +29,7 @@ pub mod faces;
 mod gpu;
 pub mod ground;
 pub mod inputs;
+mod kept;
 pub mod leaves;
 pub mod media;
 pub mod motion;

@@ -6,8 +6,8 @@
 
 use crate::error::RenderError;
 use crate::inputs::Inputs;
+use crate::kept::Kept;
 use crate::media::march::first_seen;
-use crate::media::prepared::Preparations;
 use crate::resolved::ResolvedScene;
 use crate::scene::Scene;
 use crate::shade::{RayHit, stopping_hit};
@@ -72,7 +72,7 @@ pub struct PickedPoint {
 /// # Errors
 /// A scene that cannot be drawn, or missing inputs.
 pub fn pick(scene: &Scene, inputs: &Inputs, pixel: DVec2) -> Result<Option<PickedPoint>, RenderError> {
-    let resolved = ResolvedScene::new(scene, inputs, &mut Preparations::default())?;
+    let resolved = ResolvedScene::new(scene, inputs, &mut Kept::default())?;
     let ray = Ray::from(resolved.view.ray(pixel));
     let hit = stopping_hit(&resolved, &ray, f32::MIN);
     let seen = resolved.field.as_ref().and_then(|field| first_seen(field, &resolved.solid, &ray, hit.t()));

@@ -7,10 +7,10 @@
 use crate::camera::ViewRay;
 use crate::error::RenderError;
 use crate::inputs::Inputs;
+use crate::kept::Kept;
 use crate::media::interleaved::{halves, interleave};
 use crate::media::light::LightVolume;
 use crate::media::light_grid::Asked;
-use crate::media::prepared::Preparations;
 use crate::outline::draw::draw as draw_outlines;
 use crate::resolved::ResolvedScene;
 use crate::scene::Scene;
@@ -52,7 +52,7 @@ pub fn render(scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<Rgb
 /// The CPU renderer. It keeps what it has computed from the data while [`Inputs::version`] stays the same.
 #[derive(Debug, Default)]
 pub struct CpuRenderer {
-    kept: Preparations,
+    kept: Kept,
 }
 
 impl CpuRenderer {

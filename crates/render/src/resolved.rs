@@ -2,11 +2,11 @@
 
 use crate::camera::View;
 use crate::error::RenderError;
-use crate::ground::Relief;
+use crate::ground::{self, Relief};
 use crate::inputs::{CandidateVolume, Inputs, NamedVolume};
+use crate::kept::{Kept, Shapes};
 use crate::leaves::FaceData;
 use crate::media::field::MediaField;
-use crate::media::prepared::Preparations;
 use crate::media::{Faces, IsosurfaceSource};
 use crate::pattern_size::Frequencies;
 use crate::scene::{Lookup, Scene};
@@ -42,6 +42,8 @@ pub(crate) struct ResolvedScene<'a> {
     pub illustrated: bool,
     /// The ground, if the scene has one.
     pub relief: Option<Relief>,
+    /// Sections of the model on faces of the block, and its ground.
+    pub shapes: Shapes,
     /// The linear part of the map from voxels to metres.
     pub metric: DMat3,
     /// Metres between voxels along x, y, z.
@@ -75,7 +77,7 @@ pub(crate) enum Flat<'a> {
 
 impl<'a> ResolvedScene<'a> {
     /// Checks the scene against the inputs and resolves its names.
-    pub fn new(scene: &'a Scene, inputs: &Inputs<'a>, kept: &mut Preparations) -> Result<Self, RenderError> {
+    pub fn new(scene: &'a Scene, inputs: &Inputs<'a>, kept: &mut Kept) -> Result<Self, RenderError> {
         scene.validate(inputs.geometry)?;
         let interpretation = resolve_interpretation(scene, inputs)?;
         let view = scene.view(inputs.geometry);
@@ -88,11 +90,12 @@ impl<'a> ResolvedScene<'a> {
         }
         let volumes = resolve_volumes(&tables, &media, inputs.volumes)?;
         let roaming_box = scene.box_in(inputs.geometry);
-        let relief = resolve_relief(scene, inputs, interpretation)?;
+        kept.renew(inputs.version);
+        let relief = resolve_relief(scene, inputs, interpretation, kept)?;
         let hidden =
             tables.globals.blend >= 1.0 && tables.globals.raw_volume != NONE && tables.globals.no_data[3] >= 1.0;
         let metric = inputs.geometry.metric_from_voxel();
-        let field = MediaField::new(&scene.media, inputs, &tables, &view, relief.is_some(), kept)?;
+        let field = MediaField::new(&scene.media, inputs, &tables, &view, relief.is_some(), &mut kept.preparations)?;
         let solid = scene.solid(inputs.geometry);
         let longest_m = (0..3).map(|axis| metric.col(axis).length() * roaming_box.extent()[axis]).fold(0.0, f64::max);
         let background = if scene.has_back_edges() { [0.0; 4] } else { scene.background.rgba() };
@@ -111,6 +114,7 @@ impl<'a> ResolvedScene<'a> {
             interpretation,
             illustrated: interpretation.is_some() && (!hidden || shows_depths(scene)),
             relief,
+            shapes: kept.shapes(),
             metric,
             voxel_m: DVec3::new(metric.x_axis.length(), metric.y_axis.length(), metric.z_axis.length()).as_vec3(),
         })
@@ -168,11 +172,13 @@ fn resolve_relief(
     scene: &Scene,
     inputs: &Inputs,
     interpretation: Option<ResolvedInterpretation>,
+    kept: &mut Kept,
 ) -> Result<Option<Relief>, RenderError> {
     match (&scene.ground, interpretation) {
         (None, _) => Ok(None),
         (Some(ground), Some(interpretation)) => {
-            Ok(Some(Relief::new(ground, scene, inputs.geometry, interpretation.model)))
+            let heights = kept.heights(interpretation.model, ground::corners(scene, inputs.geometry));
+            Ok(Some(Relief::over(&heights, ground, scene, inputs.geometry)))
         }
         (Some(_), None) => Err(RenderError::Missing {
             what: "horizons for the ground",

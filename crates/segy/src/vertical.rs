@@ -46,9 +46,9 @@ impl Vertical {
             }
             None => interval_field(frame, columns, findings)?,
         };
-        let unit = unit(frame, micro / 1000.0, options, findings);
+        let unit = unit(frame, micro, options, findings);
         let mut interval = micro / 1000.0;
-        if options.interval.is_none() && unit != FileUnit::Milliseconds && micro < 100.0 {
+        if options.interval.is_none() && unit != FileUnit::Milliseconds && micro < FEWEST_THOUSANDTHS {
             interval = micro;
             findings.assumption(Note::unless(
                 format!(
@@ -129,9 +129,86 @@ fn interval_field(frame: &FileLayout, columns: &Columns, findings: &mut Findings
     Ok(f64::from(chosen))
 }
 
+/// What the length of a trace makes of the axis: two-way times and depths of surveys lie in different, overlapping
+/// ranges.
+struct Plausibility {
+    time: bool,
+    depth: bool,
+    /// The interval as two-way time and as depth.
+    steps: [f64; 2],
+    samples: usize,
+}
+
+impl Plausibility {
+    /// `micro` is the interval as the file holds it.
+    fn of(micro: f64, samples: usize) -> Self {
+        let as_depth = if micro < FEWEST_THOUSANDTHS { micro } else { micro / 1000.0 };
+        let steps = [micro / 1000.0, as_depth];
+        let is_within = |step: f64, [least, most]: [f64; 2], longest: f64| {
+            step >= least && step <= most && step * samples.saturating_sub(1) as f64 <= longest
+        };
+        Self {
+            time: is_within(steps[0], TIME_STEPS_MS, LONGEST_TIME_MS),
+            depth: is_within(steps[1], DEPTH_STEPS_M, GREATEST_DEPTH_M),
+            steps,
+            samples,
+        }
+    }
+
+    /// Whether one of both kinds is plausible and the other not: the unit for it, where depths are in `in_depth`.
+    fn only(&self, in_depth: FileUnit) -> Option<FileUnit> {
+        match (self.time, self.depth) {
+            (true, false) => Some(FileUnit::Milliseconds),
+            (false, true) => Some(in_depth),
+            _ => None,
+        }
+    }
+
+    /// Samples, interval and length in words.
+    fn length(&self, unit: FileUnit) -> String {
+        let step = self.steps[usize::from(unit != FileUnit::Milliseconds)];
+        let long = step * self.samples.saturating_sub(1) as f64;
+        format!("{} samples every {step} {1} span {long} {1}", self.samples, unit.symbol())
+    }
+
+    fn tell(&self, unit: FileUnit, findings: &mut Findings) {
+        let words = |is_plausible: bool| if is_plausible { "plausible" } else { "not plausible" };
+        findings.evidence(format!(
+            "length of a trace: {} ({}), or as a depth {} ({})",
+            self.length(FileUnit::Milliseconds),
+            words(self.time),
+            self.length(FileUnit::Metres),
+            words(self.depth)
+        ));
+        let is_plausible = if unit == FileUnit::Milliseconds { self.time } else { self.depth };
+        if !is_plausible {
+            findings.warning(Note::unless(
+                format!("{}, which is unlikely", self.length(unit)),
+                Setting::VerticalUnit.stated_as(others(unit)),
+            ));
+        }
+    }
+}
+
+/// The units to state where the axis is not in this one.
+fn others(unit: FileUnit) -> &'static str {
+    if unit == FileUnit::Milliseconds { "m or ft" } else { "ms" }
+}
+
+/// Sample intervals of two-way time, from profilers of the sea floor to refraction data.
+const TIME_STEPS_MS: [f64; 2] = [0.02, 16.0];
+/// The deepest crustal sections record half a minute.
+const LONGEST_TIME_MS: f64 = 30_000.0;
+/// Sample intervals in depth.
+const DEPTH_STEPS_M: [f64; 2] = [0.05, 200.0];
+/// No survey in depth reaches the Earth's mantle below thick crust.
+const GREATEST_DEPTH_M: f64 = 60_000.0;
+/// An interval field of depth with less than this holds whole metres or feet.
+const FEWEST_THOUSANDTHS: f64 = 100.0;
+
 /// The unit of the axis: stated; or written in the text next to the interval; or by words that mean time or
-/// depth.
-fn unit(frame: &FileLayout, interval: f64, options: &SegyOptions, findings: &mut Findings) -> FileUnit {
+/// depth; or, where those contradict one another or say nothing, by what is plausible for the length of a trace.
+fn unit(frame: &FileLayout, micro: f64, options: &SegyOptions, findings: &mut Findings) -> FileUnit {
     if let Some(unit) = options.vertical_unit {
         findings.evidence(format!("vertical axis: {}, as stated", unit.description()));
         return unit;
@@ -140,7 +217,9 @@ fn unit(frame: &FileLayout, interval: f64, options: &SegyOptions, findings: &mut
         2 => FileUnit::Feet,
         _ => FileUnit::Metres,
     };
-    let words = TextWords::find(frame, interval);
+    let words = TextWords::find(frame, micro / 1000.0);
+    let plausibility = Plausibility::of(micro, frame.samples);
+    let likely = plausibility.only(in_depth);
     let said = |quote: &str| format!("text header: \"{quote}\"");
     let unit = match (&words.interval, &words.time, &words.depth) {
         (Some((unit, quote)), _, _) => {
@@ -156,22 +235,31 @@ fn unit(frame: &FileLayout, interval: f64, options: &SegyOptions, findings: &mut
             in_depth
         }
         (None, Some(time), Some(depth)) => {
+            let unit = likely.unwrap_or(FileUnit::Milliseconds);
             findings.warning(Note::unless(
                 format!(
-                    "the text header speaks of time (\"{time}\") and of depth (\"{depth}\"); the axis is taken as two-way time"
+                    "the text header speaks of time (\"{time}\") and of depth (\"{depth}\"); the axis is taken as {}{}",
+                    unit.description(),
+                    if likely.is_some() { ", for which alone the length of a trace is plausible" } else { "" }
                 ),
-                Setting::VerticalUnit.stated_as("m or ft"),
+                Setting::VerticalUnit.stated_as(others(unit)),
             ));
-            FileUnit::Milliseconds
+            unit
         }
         (None, None, None) => {
+            let unit = likely.unwrap_or(FileUnit::Milliseconds);
+            let why = match unit {
+                FileUnit::Milliseconds => String::new(),
+                _ => format!(", and {} would be unlikely", plausibility.length(FileUnit::Milliseconds)),
+            };
             findings.assumption(Note::unless(
-                "the vertical axis is two-way time in ms: the file does not say",
-                Setting::VerticalUnit.stated_as("m or ft"),
+                format!("the vertical axis is {}: the file does not say{why}", unit.description()),
+                Setting::VerticalUnit.stated_as(others(unit)),
             ));
-            FileUnit::Milliseconds
+            unit
         }
     };
+    plausibility.tell(unit, findings);
     if unit != FileUnit::Milliseconds && unit != in_depth && frame.binary.measurement != 0 {
         findings.warning(Note::unless(
             format!(

@@ -5,6 +5,7 @@
 //! - [`canvas`]: paints groups of a [`figure::DisplayList`] through egui;
 //! - [`event_order`]: a click counts where it was made, and a notch of the wheel is a line;
 //! - [`histogram`] and [`opacity_curve`]: the values of a volume, and an RGBA function drawn over them;
+//! - [`obstacle`] and [`percent`]: controls that say why they do nothing, and shares shown in percent;
 //! - [`keyboard`]: what Enter and Escape do in every dialogue and field, and names changed in place;
 //! - [`raster`]: paints what egui draws into an image, without a display.
 //!
@@ -17,7 +18,9 @@ pub mod fields;
 pub mod form;
 pub mod histogram;
 pub mod keyboard;
+pub mod obstacle;
 pub mod opacity_curve;
+pub mod percent;
 pub mod raster;
 pub mod theme;
 

@@ -76,6 +76,23 @@ pub(in crate::cli) struct FillArgs {
     /// Leave holes with more traces than this open [default: fill all]
     #[arg(long, value_name = "N")]
     pub(in crate::cli) max_traces: Option<usize>,
+    /// Follow the reflection through the holes where there is one, and fill the rest smoothly
+    #[arg(long)]
+    pub(in crate::cli) along_reflection: bool,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct SmoothArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Horizon
+    pub(in crate::cli) name: String,
+    /// Traces to the farthest nodes that count, 0 to 50; 0 takes the smoothing of an assembled horizon back
+    #[arg(long, value_name = "TRACES", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=50))]
+    pub(in crate::cli) radius: u32,
+    /// How often it is smoothed, 1 to 20
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=20))]
+    pub(in crate::cli) passes: u32,
 }
 
 #[derive(Debug, Args)]

@@ -1,7 +1,7 @@
 //! Arguments for volumes, horizons and faults.
 
 use super::SegyArgs;
-use super::assembly::{FaultPickArgs, FaultProposeArgs, FillArgs, ReplayArgs};
+use super::assembly::{FaultPickArgs, FaultProposeArgs, FillArgs, ReplayArgs, SmoothArgs};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -76,6 +76,9 @@ pub(in crate::cli) enum HorizonAction {
     /// Fill the holes of a horizon, never across a fault
     #[command(after_help = "Example:\n  petroglyph horizon fill north.petro \"Top Chalk\" --max-traces 200")]
     Fill(FillArgs),
+    /// Smooth a horizon, never across a fault; one that was assembled stays smoothed when its picks change
+    #[command(after_help = "Example:\n  petroglyph horizon smooth north.petro \"Top Chalk\" --radius 4 --passes 2")]
+    Smooth(SmoothArgs),
     /// Make the picks of horizons again, after another extraction
     #[command(after_help = "Example:\n  petroglyph horizon replay north.petro")]
     Replay(ReplayArgs),
@@ -271,12 +274,15 @@ pub(in crate::cli) struct ExportArgs {
     /// File to write
     pub(in crate::cli) out: PathBuf,
     /// Horizon to write
-    #[arg(long, value_name = "NAME", required_unless_present_any = ["candidates", "volume"], conflicts_with = "volume")]
+    #[arg(long, value_name = "NAME", required_unless_present_any = ["candidates", "fault", "volume"], conflicts_with_all = ["fault", "volume"])]
     pub(in crate::cli) horizon: Option<String>,
+    /// Fault to write, as opendtect (sticks) or tsurf (triangles)
+    #[arg(long, value_name = "NAME", conflicts_with = "volume")]
+    pub(in crate::cli) fault: Option<String>,
     /// Write all horizon candidates instead, as CSV with inline, crossline, z, leaf and surface of each point
-    #[arg(long, conflicts_with_all = ["horizon", "format", "volume"])]
+    #[arg(long, conflicts_with_all = ["horizon", "fault", "format", "volume"])]
     pub(in crate::cli) candidates: bool,
-    /// Format of the horizon's file: csv, irap, opendtect, tsurf, zmap or cps3 [default: by its extension]
+    /// Format of the file: csv, irap, opendtect, tsurf, zmap or cps3 [default: by its extension]
     #[arg(long, conflicts_with = "volume")]
     pub(in crate::cli) format: Option<String>,
     /// Volume to write as SEG-Y

@@ -14,7 +14,7 @@ mod well;
 
 pub(super) use animate::AnimateArgs;
 pub(super) use assembly::{
-    ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs, TimeArgs,
+    ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs, SmoothArgs, TimeArgs,
 };
 pub(super) use attribute::AttributeArgs;
 pub(super) use extraction::ExtractArgs;
@@ -80,7 +80,7 @@ pub(super) enum Action {
     },
     /// Create a project without seismic
     #[command(
-        after_help = "Example:\n  petroglyph create sketch.petro --bounds 0,5000,0,4000,0,2000 --size 201x161x101 --z-unit m"
+        after_help = "Example:\n  petroglyph create sketch.petro --bounds 0,5000,0,4000,0,2000 --size 201x161x101 --z-unit m\n  petroglyph create lines.petro --bounds 0,5000,0,4000,0,2000 --inlines 1001,1201 --crosslines 2000,2320,2"
     )]
     Create(CreateArgs),
     /// Read a SEG-Y volume into a project
@@ -255,6 +255,12 @@ pub(super) struct CreateArgs {
     /// Samples along X, Y and Z [default: 128x128x128]
     #[arg(long, value_name = "NxNxN", requires = "bounds")]
     pub(super) size: Option<String>,
+    /// Numbers of the inlines, which count along X: FIRST,LAST or FIRST,LAST,STEP [default: from 1]
+    #[arg(long, value_name = "FIRST,LAST[,STEP]", requires = "bounds", allow_hyphen_values = true)]
+    pub(super) inlines: Option<String>,
+    /// Numbers of the crosslines, which count along Y, in the same way
+    #[arg(long, value_name = "FIRST,LAST[,STEP]", requires = "bounds", allow_hyphen_values = true)]
+    pub(super) crosslines: Option<String>,
     /// Unit of Z: m or ms (two-way time) [default: m]
     #[arg(long, value_name = "UNIT", requires = "bounds")]
     pub(super) z_unit: Option<String>,

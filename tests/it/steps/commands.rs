@@ -132,10 +132,11 @@ pub const MAKING: [Scenario; 5] = [
 ];
 
 /// What changes horizons, faults and wells.
-pub const INTERPRETING: [Scenario; 14] = [
+pub const INTERPRETING: [Scenario; 15] = [
     of(Imported, "horizon add p.petro top.csv --name Another"),
     of(Imported, "horizon rename p.petro Top Roof"),
     of(Imported, "horizon fill p.petro Top"),
+    of(Imported, "horizon smooth p.petro Top"),
     of(Imported, "horizon contact p.petro Base erosional"),
     of(Imported, "horizon remove p.petro Top"),
     of(Imported, "fault pick p.petro --name G --stick 8,2,4 8,2,60 --stick 8,9,4 8,9,60"),

@@ -3,8 +3,10 @@
 use crate::state::{
     Action, Appearance, Choice, Compare, Dialogue, ExportForm, Layout as Arrangement, Panel, Session, State,
 };
-use eframe::egui::{Align, Button, Label, Layout, RichText, Slider, Ui};
+use eframe::egui::{Align, Button, Label, Layout, RichText, Ui};
 use render::Scene;
+use widgets::obstacle::{needs, unless};
+use widgets::percent;
 
 /// Width of everything but the project's name and the comparison, points.
 const OTHERS: f32 = 680.0;
@@ -58,22 +60,21 @@ pub fn show(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Act
             if ui.button("?").on_hover_text("Shortcuts (?)").clicked() {
                 actions.push(Action::Ask(Box::new(Dialogue::Shortcuts)));
             }
-            if ui
-                .add_enabled(session.is_drawable(), Button::new("Copy"))
-                .on_hover_text("Copy the picture (Ctrl Shift C)")
-                .clicked()
-            {
+            let nothing = needs(session.is_drawable(), NOTHING);
+            if unless(ui, nothing, Button::new("Copy")).on_hover_text("Copy the picture (Ctrl Shift C)").clicked() {
                 actions.push(Action::Copy);
             }
             let form = ExportForm::new(session.root.with_extension("png").display().to_string());
-            let can = session.is_drawable();
-            let export = ui.add_enabled(can, Button::new("Export…")).on_hover_text("Export the picture (Ctrl E)");
+            let export = unless(ui, nothing, Button::new("Export…")).on_hover_text("Export the picture (Ctrl E)");
             if export.clicked() {
                 actions.push(Action::Ask(Box::new(Dialogue::Export(form))));
             }
         });
     });
 }
+
+/// Why there is no picture.
+const NOTHING: &str = "There is nothing to draw yet: add a volume or a horizon";
 
 fn menu(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>) {
     ui.menu_button("Project", |ui| {
@@ -89,7 +90,7 @@ fn menu(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>
             ("Add a tile…", ask(Choice::Texture), true),
             ("Close", Action::Close, true),
         ] {
-            if ui.add_enabled(can, Button::new(name)).clicked() {
+            if unless(ui, needs(can, super::data::NO_SURVEY), Button::new(name)).clicked() {
                 actions.push(action);
                 ui.close();
             }
@@ -117,7 +118,8 @@ fn history(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ("Redo", session.redoable(), "Ctrl Shift Z", Action::Redo),
     ] {
         let hint = what.map_or_else(String::new, |what| format!("{name}: {what} ({keys})"));
-        let button = ui.add_enabled(what.is_some(), Button::new(name)).on_hover_text(hint);
+        let nothing = format!("Nothing to {}", name.to_lowercase());
+        let button = unless(ui, needs(what.is_some(), &nothing), Button::new(name)).on_hover_text(hint);
         if button.clicked() {
             actions.push(action);
         }
@@ -142,8 +144,8 @@ fn comparison(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             let mut blend = session.view.scene.blend;
             let name = ui.weak("to raw");
             ui.spacing_mut().slider_width = 80.0;
-            let slider = ui.add(Slider::new(&mut blend, 0.0..=1.0).fixed_decimals(2));
-            if slider.labelled_by(name.id).on_hover_text("0 is illustrated, 1 is raw").changed() {
+            let slider = ui.add(percent::slider(&mut blend));
+            if slider.labelled_by(name.id).on_hover_text("0 % is illustrated, 100 % is raw").changed() {
                 actions.push(Action::Show(Box::new(Scene { blend, ..session.view.scene.clone() })));
             }
         }

@@ -4,6 +4,7 @@ use crate::state::{Action, Session};
 use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Align, Button, ComboBox, DragValue, Grid, Layout, ProgressBar, Ui};
 use interp::{ExtractSettings, Extremum, Method};
+use widgets::obstacle::{needs, unless};
 
 /// The volume and the settings of the next extraction.
 #[derive(Default)]
@@ -45,7 +46,7 @@ impl CandidatesPanel {
             if let Some(report) = found {
                 ui.label(format!("{} surfaces, {} leaves", report.surfaces, report.leaves));
             }
-            if ui.add_enabled(can, Button::new(name)).on_disabled_hover_text("Needs a volume").clicked() {
+            if unless(ui, needs(can, "Needs a volume"), Button::new(name)).clicked() {
                 actions.push(Action::Extract(self.volume.clone(), Box::new(self.settings.clone())));
             }
         });

@@ -8,6 +8,7 @@ use project::command::{AddScene, Command, RemoveScene};
 use render::{Corner, Ground, PatternSize, Projection, Scene, VoxelBox};
 use survey::VerticalUnit;
 use ttf::Preset;
+use widgets::obstacle::{needs, unless};
 
 /// Opening angle that a perspective starts with.
 const FOV_DEG: f64 = 35.0;
@@ -67,7 +68,7 @@ impl Controls {
             let label = ui.label("Scene name");
             ui.add(TextEdit::singleline(&mut self.scene_name).desired_width(100.0)).labelled_by(label.id);
             let name = self.scene_name.trim().to_owned();
-            if ui.add_enabled(!name.is_empty(), Button::new("Save scene")).clicked() {
+            if unless(ui, needs(!name.is_empty(), "Give the scene a name"), Button::new("Save scene")).clicked() {
                 let command = AddScene { name, scene: session.view.scene.clone() };
                 actions.push(Action::Apply(Box::new(Command::AddScene(command))));
                 self.scene_name.clear();
@@ -210,11 +211,12 @@ fn block(ui: &mut Ui, session: &Session, scene: &mut Scene, actions: &mut Vec<Ac
             let corner: Corner = scene.view(geometry).nearest_corner(&block);
             scene.cut_outs = block.stair(corner, [0.6, 0.6], 0.75, 3);
         }
-        if ui.add_enabled(scene.has_cut_outs(), Button::new("No cut-outs")).clicked() {
+        if unless(ui, needs(scene.has_cut_outs(), "There are no cut-outs"), Button::new("No cut-outs")).clicked() {
             scene.cut_outs.clear();
             scene.cut_shapes.clear();
         }
-        if ui.add_enabled(scene.roaming_box.is_some(), Button::new("Whole survey")).clicked() {
+        let part = needs(scene.roaming_box.is_some(), "The block is the whole survey");
+        if unless(ui, part, Button::new("Whole survey")).clicked() {
             scene.roaming_box = None;
         }
     });

@@ -5,6 +5,7 @@ use eframe::egui::{Button, DragValue, Response, Ui};
 use glam::{DVec2, DVec3};
 use render::{CutShape, Scene, Side};
 use survey::SurveyGeometry;
+use widgets::obstacle::{needs, unless};
 
 /// Radius of a new shaft as a share of the shorter side of the block.
 const SHAFT: f64 = 0.25;
@@ -48,9 +49,10 @@ fn add(ui: &mut Ui, session: &Session, scene: &mut Scene, geometry: &SurveyGeome
     let block = scene.box_in(geometry);
     let view = scene.view(geometry);
     let fence = &session.view.fence;
-    let along = ui.add_enabled(fence.len() > 1, Button::new("Cut along fence"));
+    let line = needs(fence.len() > 1, "Click the corners of a line in the fence view first");
+    let along = unless(ui, line, Button::new("Cut along fence"));
     let along = along.on_hover_text("Cut away what lies before the line of the fence view");
-    if along.on_disabled_hover_text("Click the corners of a line in the fence view first").clicked() {
+    if along.clicked() {
         let side = Side::facing(fence, view.towards_camera(block.centre()).truncate());
         scene.cut_shapes.push(CutShape::Fence { fence: fence.clone(), side, smooth: false, depth: None });
     }

@@ -1,11 +1,10 @@
 //! The volumes, horizons, faults and wells of the project.
 
 use super::notices;
-use super::sections::entry_colour;
-use crate::state::{Action, Choice, Dialogue, Place, Session, State};
-use eframe::egui::{
-    Align, Button, DragValue, Id, Layout, Response, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, vec2,
-};
+use super::picking::swatch;
+use crate::state::{Action, Choice, Dialogue, Place, Session, State, SurfaceForm};
+use eframe::egui::{Align, Button, DragValue, Id, Layout, Response, ScrollArea, Ui, UiBuilder, WidgetInfo};
+use formats::SurfaceKind;
 use project::command::{
     Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameHorizon, SetFaultExtent, SetRaw, SetVelocity,
 };
@@ -14,11 +13,14 @@ use project::styles;
 use survey::VerticalUnit;
 use ttf::ColourMap;
 use widgets::keyboard::{Renamed, Renaming};
+use widgets::obstacle::{needs, unless};
 
 /// The panel, with the text being typed in it.
 #[derive(Default)]
 pub struct Data {
     renaming: Option<Renaming>,
+    /// The fault whose buttons are shown.
+    fault: Option<String>,
     velocity: Option<f64>,
     /// The fault whose extent is being changed, and the metres so far.
     extent: Option<(String, f64)>,
@@ -45,9 +47,10 @@ impl Data {
 
     fn horizons(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         for (index, entry) in session.document.horizons.iter().enumerate() {
+            let is_chosen = session.view.horizon.as_deref() == Some(&entry.name);
             ui.horizontal(|ui| {
-                let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
-                ui.painter().circle_filled(rect.center(), 5.0, entry_colour(entry, index));
+                eye(ui, session, SurfaceKind::Horizon, &entry.name, actions);
+                swatch(ui, entry, index, actions);
                 if let Some(renaming) = self.renaming.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
                     let renamed = renaming.show(ui, 150.0);
                     if let Renamed::To(to) = &renamed {
@@ -59,40 +62,53 @@ impl Data {
                     }
                     return;
                 }
-                let is_chosen = session.view.horizon.as_deref() == Some(&entry.name);
-                let label = ui.selectable_label(is_chosen, &entry.name);
-                if label.on_hover_text(&entry.source.reading).clicked() {
+                let row = named(ui, &entry.name, is_chosen, &format!("Remove horizon {}", entry.name));
+                if row.name.on_hover_text(format!("{}: {}", entry.name, entry.source.reading)).clicked() {
                     actions.push(Action::Horizon((!is_chosen).then(|| entry.name.clone())));
                 }
-                if is_chosen
-                    && ui.small_button("Rename").on_hover_text(format!("Rename horizon {}", entry.name)).clicked()
-                {
-                    self.renaming = Some(Renaming::of(&entry.name));
-                }
-                if remove(ui, &format!("Remove horizon {}", entry.name)) {
+                if row.is_removed {
                     let command = RemoveHorizon { name: entry.name.clone() };
                     actions.push(Action::Apply(Box::new(Command::RemoveHorizon(command))));
                 }
             });
+            if is_chosen {
+                ui.indent("chosen", |ui| {
+                    ui.horizontal(|ui| {
+                        let rename = ui.button("Rename").on_hover_text(format!("Rename horizon {}", entry.name));
+                        if rename.clicked() {
+                            self.renaming = Some(Renaming::of(&entry.name));
+                        }
+                        export(ui, session, SurfaceKind::Horizon, &entry.name, actions);
+                    });
+                });
+            }
         }
         add(ui, "Add a horizon…", Choice::Horizon, session.document.geometry.is_some(), actions);
     }
 
     fn faults(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         for entry in &session.document.faults {
+            let is_chosen = self.fault.as_ref() == Some(&entry.name);
             ui.horizontal(|ui| {
-                ui.label(&entry.name).on_hover_text(&entry.source.reading);
-                if let Some(other) = &entry.truncated_by {
-                    ui.weak(format!("ends at {other}"));
+                eye(ui, session, SurfaceKind::Fault, &entry.name, actions);
+                let row = named(ui, &entry.name, is_chosen, &format!("Remove fault {}", entry.name));
+                if row.name.on_hover_text(format!("{}: {}", entry.name, entry.source.reading)).clicked() {
+                    self.fault = (!is_chosen).then(|| entry.name.clone());
                 }
-                if remove(ui, &format!("Remove fault {}", entry.name)) {
+                if row.is_removed {
                     let command = RemoveFault { name: entry.name.clone() };
                     actions.push(Action::Apply(Box::new(Command::RemoveFault(command))));
                 }
             });
+            if let Some(other) = &entry.truncated_by {
+                ui.indent("ends", |ui| ui.weak(format!("ends at {other}")));
+            }
             // The identity is fixed, as that of the velocity.
             let row = UiBuilder::new().scope_id(Id::unique(("extent", &entry.name)));
             ui.scope_builder(row, |ui| ui.horizontal(|ui| self.extent(ui, entry, actions)));
+            if is_chosen {
+                ui.indent("chosen", |ui| export(ui, session, SurfaceKind::Fault, &entry.name, actions));
+            }
         }
         add(ui, "Add a fault…", Choice::Fault, session.document.geometry.is_some(), actions);
     }
@@ -173,8 +189,45 @@ pub(super) fn remove(ui: &mut Ui, hint: &str) -> bool {
         .inner
 }
 
+/// The name of a row, and whether it is to be removed.
+struct Row {
+    name: Response,
+    is_removed: bool,
+}
+
+/// A name that is cut off where there is no room, and a button to remove it at the end of the row.
+fn named(ui: &mut Ui, name: &str, is_chosen: bool, hint: &str) -> Row {
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        let is_removed = ui.small_button("Remove").on_hover_text(hint).clicked();
+        let label = Button::selectable(is_chosen, name).truncate();
+        let name = ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.add(label)).inner;
+        Row { name, is_removed }
+    })
+    .inner
+}
+
+/// A box that shows or hides the lines and surfaces of a horizon or fault.
+fn eye(ui: &mut Ui, session: &Session, kind: SurfaceKind, name: &str, actions: &mut Vec<Action>) {
+    let mut is_shown = !session.view.hidden.has(kind, name);
+    let shown = ui.name_inputs(format!("Show {kind} {name}"), |ui| ui.checkbox(&mut is_shown, ""));
+    if shown.on_hover_text("Its lines on sections, and its surface while interpreting").changed() {
+        actions.push(Action::Hide { kind, name: name.to_owned(), hidden: !is_shown });
+    }
+}
+
+/// A button that asks how to write a horizon or fault.
+fn export(ui: &mut Ui, session: &Session, kind: SurfaceKind, name: &str, actions: &mut Vec<Action>) {
+    if ui.button("Export…").on_hover_text(format!("Write {kind} {name} for other programs")).clicked() {
+        let form = SurfaceForm::new(kind, name, session.root.parent());
+        actions.push(Action::Ask(Box::new(Dialogue::Surface(form))));
+    }
+}
+
+/// Why nothing can be placed yet.
+pub(super) const NO_SURVEY: &str = "Add a volume first: it says where everything is";
+
 fn add(ui: &mut Ui, name: &str, choice: Choice, can: bool, actions: &mut Vec<Action>) {
-    if ui.add_enabled(can, Button::new(name)).clicked() {
+    if unless(ui, needs(can, NO_SURVEY), Button::new(name)).clicked() {
         actions.push(Action::Ask(Box::new(Dialogue::Choose(choice))));
     }
 }

@@ -8,6 +8,7 @@ use project::figures::FigureFormat;
 use project::picture::SparseHorizon;
 use std::path::Path;
 use widgets::keyboard::is_entered;
+use widgets::obstacle::{needs, unless};
 use widgets::theme;
 
 /// Largest side of a picture, pixels.
@@ -83,13 +84,8 @@ pub fn show(
         let is_accepted = accept(ui, sparse, &mut next);
         ui.horizontal(|ui| {
             let can = !is_drawing && !is_too_large && has_format && is_accepted;
-            if ui
-                .add_enabled(can, Button::new("Export"))
-                .on_hover_text("Enter")
-                .on_disabled_hover_text(obstacle(is_accepted))
-                .clicked()
-                || can && is_entered(ui)
-            {
+            let button = unless(ui, needs(can, obstacle(is_accepted)), Button::new("Export"));
+            if button.on_hover_text("Enter").clicked() || can && is_entered(ui) {
                 actions.push(Action::Export(Box::new(next.clone())));
             }
             if ui.button("Cancel").clicked() {
@@ -117,7 +113,8 @@ fn choices(ui: &mut Ui, has_layers: bool, next: &mut ExportForm) {
         (&mut next.north_arrow, "North arrow", true),
     ] {
         let mut is_shown = *shown == Shown::Yes;
-        if ui.add_enabled(can, Checkbox::new(&mut is_shown, name)).changed() {
+        let layers = needs(can, "There are no layers: add or pick horizons");
+        if unless(ui, layers, Checkbox::new(&mut is_shown, name)).changed() {
             *shown = if is_shown { Shown::Yes } else { Shown::No };
         }
     }

@@ -18,6 +18,7 @@ use image::RgbaImage;
 use render::FaceData;
 use std::sync::Arc;
 use widgets::canvas;
+use widgets::obstacle::{needs, unless};
 
 /// Margin for the numbers at the left and the top, points.
 const MARGIN: Vec2 = vec2(52.0, 20.0);
@@ -135,10 +136,11 @@ fn header(ui: &mut Ui, corners: &[DVec2], actions: &mut Vec<Action>) {
         ui.strong("Fence");
         let last = &corners[..corners.len().saturating_sub(1)];
         let some = !corners.is_empty();
-        if ui.add_enabled(some, Button::new("Remove last corner")).clicked() {
+        let line = needs(some, "Click the corners of a line on the slice first");
+        if unless(ui, line, Button::new("Remove last corner")).clicked() {
             actions.push(Action::Fence(last.iter().map(|at| at.to_array()).collect()));
         }
-        if ui.add_enabled(some, Button::new("New line")).clicked() {
+        if unless(ui, line, Button::new("New line")).clicked() {
             actions.push(Action::Fence(Vec::new()));
         }
     });

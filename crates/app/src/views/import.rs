@@ -19,6 +19,7 @@ use survey::{Setting, SurveyGeometry};
 use widgets::fields;
 use widgets::form;
 use widgets::keyboard::is_entered;
+use widgets::obstacle::{needs, unless};
 use widgets::theme;
 
 /// The text of a field whose value is detected in the file.
@@ -194,7 +195,9 @@ impl Import {
                 ui.label(format!("Into {}", session.name()));
             }
             let verb = if target == Target::NewProject { "Create project" } else { "Import" };
-            if ui.add_enabled(can, Button::new(verb)).clicked() || can && is_entered(ui) {
+            if unless(ui, needs(can, "The file has to be readable as stated above"), Button::new(verb)).clicked()
+                || can && is_entered(ui)
+            {
                 let name = self.name.trim();
                 let command = Box::new(ImportVolume {
                     path: self.path.clone(),

@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 use survey::{Contact, Setting};
 use widgets::form;
 use widgets::keyboard::is_entered;
+use widgets::obstacle::{needs, unless};
 use widgets::theme;
 
 /// The dialogue.
@@ -74,7 +75,14 @@ impl Interpretation {
             ui.separator();
             ui.horizontal(|ui| {
                 let can = !self.name.trim().is_empty() && self.reading.is_good(&self.options);
-                if ui.add_enabled(can, Button::new("Add")).clicked() || can && is_entered(ui) {
+                if unless(
+                    ui,
+                    needs(can, "Give it a name; the file has to be readable as stated above"),
+                    Button::new("Add"),
+                )
+                .clicked()
+                    || can && is_entered(ui)
+                {
                     actions.push(Action::Apply(Box::new(self.command(kind))));
                 }
                 if ui.button("Cancel").clicked() {

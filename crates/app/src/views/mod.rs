@@ -27,6 +27,7 @@ pub mod sections;
 pub mod shortcuts;
 pub mod start;
 pub mod status;
+pub mod surface;
 pub mod surfaces;
 pub mod texture;
 pub mod tiles;

@@ -6,13 +6,14 @@
 
 use super::surfaces;
 use crate::state::picking::voxel_of;
-use crate::state::{Panel, Session, camera};
+use crate::state::{Hidden, Panel, Session, camera};
 use crate::work::{Interpreted, ShownPick, sheet};
 use eframe::egui::{Painter, Rect, Ui};
 use figure::SectionKind;
 use figure::draw::overlay::{OverlayLines, SeenOn, stick};
 use figure::draw::surfaces::{Cells, OPACITY};
 use figure::interpretation::{DrawnInterpretation, DrawnSelection, Stick};
+use formats::SurfaceKind;
 use glam::DVec2;
 use project::figures::InterpreterView;
 use std::collections::HashMap;
@@ -24,8 +25,8 @@ use widgets::canvas;
 const STICKS: [Colour; 2] = [Colour::new(0x9c, 0x27, 0x6f), Colour::new(0xe0, 0x20, 0x60)];
 
 /// What the lines on a section depend on: the interpretation, the selection, the number of dismissed proposals, whether
-/// minor ones are shown, and the position of the section.
-type Made<P> = (u64, usize, (usize, bool), P);
+/// minor ones are shown, what is hidden, and the position of the section.
+type Made<P> = (u64, usize, (usize, bool, Hidden), P);
 
 /// What is drawn over the pictures while interpreting. Cheap to clone.
 #[derive(Clone, Default)]
@@ -146,7 +147,7 @@ impl Overlay {
     fn made<P>(&self, session: &Session, place: P) -> Made<P> {
         let number = self.interpreted.as_ref().map_or(0, |shown| shown.number);
         let picking = &session.view.picking;
-        (number, self.selection, (picking.dismissed.len(), picking.minor), place)
+        (number, self.selection, (picking.dismissed.len(), picking.minor, session.view.hidden.clone()), place)
     }
 
     /// The lines in which everything intersects a section.
@@ -158,7 +159,10 @@ impl Overlay {
             sheets: shown.sheets.iter().map(sheet).collect(),
             colour: picking.colour_in(&session.document),
         });
-        let seen = shown.seen(|proposal| picking.shows(proposal));
+        let mut seen = shown.seen(|proposal| picking.shows(proposal));
+        let hidden = &session.view.hidden;
+        seen.horizons.retain(|horizon| !hidden.has(SurfaceKind::Horizon, horizon.name));
+        seen.faults.retain(|fault| !hidden.has(SurfaceKind::Fault, fault.name));
         Some(OverlayLines::new(&DrawnInterpretation { selection, ..seen }, [nx, ny], on))
     }
 
@@ -170,7 +174,9 @@ impl Overlay {
         let Some(geometry) = &session.document.geometry else { return };
         let picking = &session.view.picking;
         let names = self.interpreted.iter().flat_map(|shown| &shown.horizons).map(|horizon| &horizon.name);
-        let horizons = self.cells.iter().zip(names).flat_map(|((colour, cells), name)| {
+        let shown = |name: &&String| !session.view.hidden.has(SurfaceKind::Horizon, name);
+        let horizons = self.cells.iter().zip(names).filter(|(_, name)| shown(name));
+        let horizons = horizons.flat_map(|((colour, cells), name)| {
             let opacity = OPACITY[usize::from(picking.horizon.as_ref() == Some(name))];
             cells.iter().map(move |cells| (cells, *colour, opacity))
         });

@@ -8,6 +8,7 @@ use eframe::egui::{
     TextureOptions, Ui, Vec2, WidgetInfo, pos2,
 };
 use std::path::Path;
+use widgets::obstacle::{needs, unless};
 use widgets::theme;
 
 /// Width of the column in the middle.
@@ -135,7 +136,7 @@ fn recovery(ui: &mut Ui, root: &Path, is_busy: bool, actions: &mut Vec<Action>) 
         ui.strong(format!("{} was still open when Petroglyph ended", name(root)));
         ui.label("Every change to it had been saved. Continue with the same view?");
         ui.horizontal(|ui| {
-            if ui.add_enabled(!is_busy, Button::new("Continue")).clicked() {
+            if unless(ui, needs(!is_busy, "Wait until the present work is done"), Button::new("Continue")).clicked() {
                 actions.push(Action::Recover);
             }
             if ui.button("Not now").clicked() {

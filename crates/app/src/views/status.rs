@@ -11,7 +11,7 @@ pub fn show(
     state: &State,
     pointed: Option<&Pointed>,
     running: &[RunningLine],
-    device: &str,
+    (is_drawing, device): (bool, &str),
     actions: &mut Vec<Action>,
 ) {
     ui.horizontal(|ui| {
@@ -40,6 +40,9 @@ pub fn show(
                     actions.push(Action::Dismiss(index));
                 }
                 ui.add(Label::new(&notice.text).truncate());
+            } else if running.is_empty() && is_drawing {
+                // No spinner: on a processor that draws both, each of its frames would take time from the picture.
+                ui.label("Drawing…");
             } else if running.is_empty() && !device.is_empty() {
                 ui.weak(format!("drawn by {device}"));
             }

@@ -14,6 +14,7 @@ use survey::Setting;
 use widgets::fields;
 use widgets::form;
 use widgets::keyboard::is_entered;
+use widgets::obstacle::{needs, unless};
 use widgets::theme;
 
 /// File extensions of tables.
@@ -66,7 +67,10 @@ impl WellDialogue {
             ui.separator();
             ui.horizontal(|ui| {
                 let can = !self.name.trim().is_empty() && self.unclear().is_none() && self.reading.is_good(&asked);
-                if ui.add_enabled(can, Button::new("Add")).clicked() || can && is_entered(ui) {
+                if unless(ui, needs(can, "Name the well, and state what is missing above"), Button::new("Add"))
+                    .clicked()
+                    || can && is_entered(ui)
+                {
                     let command = AddWell { name: self.name.trim().to_owned(), files, options };
                     actions.push(Action::Apply(Box::new(Command::AddWell(command))));
                 }

@@ -6,20 +6,21 @@ mod page;
 
 use super::error::WindowError;
 use super::hold::Hold;
-use super::state::picking::Pick;
-use super::state::{Action, Appearance, Dialogue, ExportForm, Notice, Place, Remembered, State, Task};
 use super::views::dropped::{self, Dropped};
 use super::views::{
     block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, fence::FenceView, functions::Functions,
     import::Import, interpretation::Interpretation, layers::Layers, map::MapView, overlay::Overlay, patterns::Patterns,
     picking::PickingPanel, pointed::Pointed, print::Page, sections::Sections, shortcuts, start::StartPage, status,
-    tiles::Tiles, well::WellDialogue,
+    surface, tiles::Tiles, well::WellDialogue,
 };
 use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
 use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};
 use follow::Needs;
 use frames::FrameTimes;
 use project::command::Command;
+use project::{Project, surface_export};
+use state::picking::Pick;
+use state::{Action, Appearance, Dialogue, ExportForm, Notice, Place, Remembered, State, SurfaceForm, Task};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -176,7 +177,7 @@ impl Window {
 
     /// Whether nothing is under way and the picture is final.
     pub fn is_settled(&self) -> bool {
-        let drawable = self.state.session.as_ref().is_some_and(super::state::Session::is_drawable);
+        let drawable = self.state.session.as_ref().is_some_and(state::Session::is_drawable);
         self.work.running.is_idle() && (!drawable || self.block.is_settled())
     }
 
@@ -196,8 +197,30 @@ impl Window {
             if let Task::Export(form) = &task {
                 self.export(form.as_ref().clone());
             }
+            if let Task::ExportSurface(form) = &task {
+                self.export_surface(form.as_ref().clone());
+            }
             self.work.run(task, place);
         }
+    }
+
+    /// Writes a horizon or fault for other programs.
+    fn export_surface(&self, form: SurfaceForm) {
+        let Some(root) = self.state.session.as_ref().map(|session| session.root.clone()) else { return };
+        self.work.background("Writing the file", Place::Dialogue, move |progress, outbox| {
+            let SurfaceForm { kind, name, path, format } = form;
+            let path = PathBuf::from(path.trim());
+            let write = |project: Project| {
+                let options = formats::ExportOptions::default();
+                surface_export::write(&project, &path, (kind, &name), (format, &options), progress)
+            };
+            let written = Project::open(&root).and_then(write);
+            let written = written.map_err(|error| Notice::failure(Place::Dialogue, &error))?;
+            outbox.send(Event::Exported(path));
+            let notes = written.notes.into_iter().map(|note| Event::Told(Notice::note(Place::Data, note)));
+            notes.for_each(|note| outbox.send(note));
+            Ok(())
+        });
     }
 
     /// Draws the page to a file.
@@ -242,6 +265,7 @@ impl Window {
             | Command::RemovePick(_)
             | Command::ReplayPicks(_)
             | Command::FillHorizon(_)
+            | Command::SmoothHorizon(_)
             | Command::SetHorizonColour(_)
             | Command::PickFault(_)
             | Command::AcceptFault(_) => Place::Interpret,
@@ -274,7 +298,7 @@ impl Window {
 
     /// Names the open project in the title of the window.
     fn entitle(&mut self, ctx: &Context) {
-        let name = self.state.session.as_ref().map(super::state::Session::name);
+        let name = self.state.session.as_ref().map(state::Session::name);
         if self.titled != name {
             let title = name.as_ref().map_or_else(|| "Petroglyph".to_owned(), |name| format!("{name} – Petroglyph"));
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
@@ -294,7 +318,9 @@ impl Window {
         let running = self.work.running.lines();
         self.dropped.receive(&ctx, &self.state, !running.is_empty(), &mut actions);
         Panel::bottom("status").exact_size(32.0).show(ui, |ui| {
-            status::show(ui, &self.state, self.pointed.as_ref(), &running, self.block.device(), &mut actions);
+            let drawable = self.state.session.as_ref().is_some_and(state::Session::is_drawable);
+            let device = (drawable && !self.block.is_settled(), self.block.device());
+            status::show(ui, &self.state, self.pointed.as_ref(), &running, device, &mut actions);
         });
         if self.state.session.is_some() {
             self.work_page(ui, &running, &mut actions);
@@ -356,6 +382,7 @@ impl Window {
                     export::show(ctx, &self.state, session, form, is_drawing, sparse, actions);
                 }
             }
+            Some(Dialogue::Surface(form)) => surface::dialogue(ctx, &self.state, form, actions),
             None => {}
         }
     }

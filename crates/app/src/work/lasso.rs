@@ -17,14 +17,15 @@ const NEAR: f64 = 2.0;
 /// Share of a leaf's vertices that must lie inside.
 const MOSTLY: f64 = 0.5;
 
-/// The picks that remove from a selection what a lasso encloses.
+/// The picks that remove from a selection what a lasso encloses, and the number of leaves of the selection that it holds
+/// a lesser part of, which stay.
 pub(super) fn nodes_inside(
     lasso: &Lasso,
     forest: &Forest,
     chosen: &Selection,
     geometry: &SurveyGeometry,
     horizon: &str,
-) -> Vec<PickNode> {
+) -> (Vec<PickNode>, usize) {
     let project: Box<dyn Fn(DVec3) -> Option<DVec2>> = match &lasso.on {
         LassoOn::Section(kind, at) => {
             let (kind, at) = (*kind, *at);
@@ -36,10 +37,10 @@ pub(super) fn nodes_inside(
         }
     };
     let surfaces = &forest.surfaces;
-    let is_inside = |leaf: u32| {
+    let enclosed = |leaf: u32| {
         let range = &forest.nodes[forest.leaves[leaf as usize - 1] as usize].triangles;
         if !chosen.contains(range.start) {
-            return false;
+            return Enclosed::Nothing;
         }
         let (mut seen, mut inside) = (0usize, 0usize);
         for &v in surfaces.triangles[range.start as usize..range.end as usize].iter().flatten() {
@@ -49,9 +50,15 @@ pub(super) fn nodes_inside(
                 inside += usize::from(contains(&lasso.corners, at));
             }
         }
-        seen > 0 && inside as f64 > MOSTLY * seen as f64
+        match inside {
+            0 => Enclosed::Nothing,
+            _ if inside as f64 > MOSTLY * seen as f64 => Enclosed::Mostly,
+            _ => Enclosed::Partly,
+        }
     };
-    let inside: Vec<bool> = (1..=forest.leaves.len() as u32).map(is_inside).collect();
+    let leaves: Vec<Enclosed> = (1..=forest.leaves.len() as u32).map(enclosed).collect();
+    let inside: Vec<bool> = leaves.iter().map(|leaf| *leaf == Enclosed::Mostly).collect();
+    let left = leaves.iter().filter(|leaf| **leaf == Enclosed::Partly).count();
     let mut picks = Vec::new();
     for &root in &forest.roots {
         gather(forest, root, &inside, &mut |node| {
@@ -67,7 +74,15 @@ pub(super) fn nodes_inside(
             });
         });
     }
-    picks
+    (picks, left)
+}
+
+/// How much of a leaf lies inside a lasso.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Enclosed {
+    Nothing,
+    Partly,
+    Mostly,
 }
 
 /// Names the highest nodes of a tree whose leaves are all inside.

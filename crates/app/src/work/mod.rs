@@ -201,7 +201,7 @@ impl Work {
                 return;
             }
             // The window handles these itself.
-            Task::Remember | Task::Copy | Task::Export(_) => return,
+            Task::Remember | Task::Copy | Task::Export(_) | Task::ExportSurface(_) => return,
         };
         // The thread lives as long as this value.
         let _ = self.orders.send(order);

@@ -41,6 +41,8 @@ pub struct PictureRequest {
     pub is_moving: bool,
     /// Start at full resolution, because the picture on the screen is already better than a coarse one would be.
     pub begins_fine: bool,
+    /// Whether the view is the one on the screen, of other data or styles: after the coarse picture the smooth one follows.
+    pub is_restyled: bool,
 }
 
 /// A click on volume rendering, where the place that is hit may lie behind the faces.
@@ -194,7 +196,7 @@ impl Artist {
             passes.push((divisor, 1));
         }
         if !request.is_moving {
-            if divisor > 1 || request.begins_fine {
+            if (divisor > 1 || request.begins_fine) && !request.is_restyled {
                 passes.push((1, 1));
             }
             passes.push((1, SMOOTH_SAMPLES));

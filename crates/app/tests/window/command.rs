@@ -1,7 +1,6 @@
 //! The panels and commands that the other tests leave out: each is used by its label and checked in the project.
 
 use super::driven::{Driven, click, document, open, state, wait};
-use app::state::{Action, Dialogue, FileContent, Panel, PickingStep};
 use eframe::egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
@@ -9,6 +8,7 @@ use interp::faults::{Proposal, ProposeSettings};
 use project::Project;
 use project::command::{Command, PickFault, ProposeFaults, SetLayer};
 use project::interpretation::proposals::{self, Proposals};
+use state::{Action, Dialogue, FileContent, Panel, PickingStep};
 use survey::{Contact, Progress, TriangleMesh};
 
 pub fn act(harness: &mut Driven, action: Action) {
@@ -230,7 +230,7 @@ fn a_tile_of_ones_own_is_added_and_a_scene_comes_and_goes() {
     let mut harness = open(folder.path());
     let tile = folder.path().join("dots.png");
     image::RgbaImage::from_pixel(8, 8, image::Rgba([9, 9, 9, 255])).save(&tile).unwrap();
-    act(&mut harness, Action::Ask(Box::new(Dialogue::Choose(app::state::Choice::Texture))));
+    act(&mut harness, Action::Ask(Box::new(Dialogue::Choose(state::Choice::Texture))));
     harness.get_by_label("Path").focus();
     harness.step();
     harness.key_press_modifiers(eframe::egui::Modifiers::COMMAND, Key::A);
@@ -276,25 +276,22 @@ fn what_is_on_the_screen_is_exported_while_interpreting() {
     let mut harness = open(folder.path());
     let export = |harness: &mut Driven, name: &str| {
         let path = folder.path().join(name);
-        let form = app::state::ExportForm {
-            size_cm: [10.0, 7.0],
-            dpi: 60.0,
-            ..app::state::ExportForm::new(path.display().to_string())
-        };
+        let form =
+            state::ExportForm { size_cm: [10.0, 7.0], dpi: 60.0, ..state::ExportForm::new(path.display().to_string()) };
         act(harness, Action::Export(Box::new(form)));
         wait(harness, "it is written", |_| path.exists());
         image::open(&path).unwrap().to_rgb8()
     };
     let illustrated = export(&mut harness, "illustrated.png");
     click(&mut harness, "Interpret");
-    act(&mut harness, Action::Picking(PickingStep::Look(app::state::Look::Faces)));
+    act(&mut harness, Action::Picking(PickingStep::Look(state::Look::Faces)));
     wait(&mut harness, "the horizons are read", |harness| harness.query_all_by_label_contains("%").count() > 0);
     let faces = export(&mut harness, "faces.png");
-    act(&mut harness, Action::Arrange(app::state::Layout::Sections));
+    act(&mut harness, Action::Arrange(state::Layout::Sections));
     let sections = export(&mut harness, "sections.png");
-    act(&mut harness, Action::Arrange(app::state::Layout::Map));
+    act(&mut harness, Action::Arrange(state::Layout::Map));
     let map = export(&mut harness, "map.png");
-    act(&mut harness, Action::Picking(PickingStep::Look(app::state::Look::VolumeRendering)));
+    act(&mut harness, Action::Picking(PickingStep::Look(state::Look::VolumeRendering)));
     let through = export(&mut harness, "through.png");
     let all = [&illustrated, &faces, &sections, &map, &through];
     for (n, picture) in all.iter().enumerate() {

@@ -1,7 +1,6 @@
 //! A window in a test harness, the helpers of the other tests, and tests of the main workflow.
 
 use crate::command::click_last;
-use app::state::{Compare, Dialogue, FileContent, Layout, State, Target};
 use app::window::Window;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
@@ -10,6 +9,7 @@ use formats::ImportOptions;
 use project::Project;
 use project::command::{AddHorizon, Age, Command};
 use segy::WriteOptions;
+use state::{Compare, Dialogue, FileContent, Layout, State, Target};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use survey::{Contact, Progress, SurveyGeometry, VerticalUnit, Volume};
@@ -175,7 +175,7 @@ fn a_survey_becomes_a_project_through_the_import_dialogue() {
     let path = survey(folder.path());
     let mut harness = driven(folder.path(), None);
     harness.step();
-    let ask = app::state::Action::Ask(Box::new(Dialogue::Survey { path, target: Target::NewProject }));
+    let ask = state::Action::Ask(Box::new(Dialogue::Survey { path, target: Target::NewProject }));
     harness.state_mut().as_mut().unwrap().act(ask);
     wait(&mut harness, "the headers are read", |harness| harness.query_by_label("Map of the traces").is_some());
     for label in ["Inline", "Crossline", "Polarity", "Middle inline"] {
@@ -192,7 +192,7 @@ fn a_horizon_comes_in_through_its_dialogue() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());
     let path = horizon(folder.path(), "Middle", 55.0);
-    let ask = app::state::Action::Ask(Box::new(Dialogue::Interpretation { path, kind: FileContent::Horizon }));
+    let ask = state::Action::Ask(Box::new(Dialogue::Interpretation { path, kind: FileContent::Horizon }));
     harness.state_mut().as_mut().unwrap().act(ask);
     wait(&mut harness, "the file is read", |harness| {
         harness.query_by_label("Add").is_some_and(|add| !add.accesskit_node().is_disabled())
@@ -259,10 +259,9 @@ fn a_picture_is_exported_at_its_printed_size() {
     click(&mut harness, "Export…");
     let path = folder.path().join("out.png");
     let Some(Dialogue::Export(form)) = &state(&harness).dialogue else { panic!("no dialogue") };
-    let form =
-        app::state::ExportForm { path: path.display().to_string(), size_cm: [6.0, 4.0], dpi: 60.0, ..form.clone() };
+    let form = state::ExportForm { path: path.display().to_string(), size_cm: [6.0, 4.0], dpi: 60.0, ..form.clone() };
     let expected = form.size_px();
-    harness.state_mut().as_mut().unwrap().act(app::state::Action::Ask(Box::new(Dialogue::Export(form))));
+    harness.state_mut().as_mut().unwrap().act(state::Action::Ask(Box::new(Dialogue::Export(form))));
     harness.run_steps(2);
     click(&mut harness, "Export");
     wait(&mut harness, "it is written", |_| path.exists());
@@ -278,8 +277,8 @@ fn a_picture_is_exported_as_paths_by_its_files_name() {
         click(harness, "Export…");
         let path = folder.path().join(file);
         let Some(Dialogue::Export(form)) = &state(harness).dialogue else { panic!("no dialogue") };
-        let form = app::state::ExportForm { path: path.display().to_string(), size_cm: [6.0, 4.0], ..form.clone() };
-        harness.state_mut().as_mut().unwrap().act(app::state::Action::Ask(Box::new(Dialogue::Export(form))));
+        let form = state::ExportForm { path: path.display().to_string(), size_cm: [6.0, 4.0], ..form.clone() };
+        harness.state_mut().as_mut().unwrap().act(state::Action::Ask(Box::new(Dialogue::Export(form))));
         harness.run_steps(2);
         path
     };

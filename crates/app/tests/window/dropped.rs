@@ -1,8 +1,8 @@
 //! Files dropped on the window.
 
 use crate::driven::{Driven, click, document, driven, open, project, state, survey, wait};
-use app::state::{Dialogue, FileContent};
 use egui_kittest::kittest::Queryable;
+use state::{Dialogue, FileContent};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

@@ -2,9 +2,9 @@
 
 use super::driven::{Driven, click, open, state};
 use super::picking::{act, interpreting, picking};
-use app::state::{PickingStep, Tool};
 use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, TouchPhase, vec2};
 use egui_kittest::kittest::Queryable;
+use state::{PickingStep, Tool};
 
 fn button(pos: Pos2, pressed: bool) -> Event {
     Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::default() }

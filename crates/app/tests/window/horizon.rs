@@ -3,7 +3,6 @@
 use super::command::{applied, click_last};
 use super::driven::{Driven, click, document, open, state, wait};
 use super::picking::{act, interpreting, on_a_trough, picking};
-use app::state::{Action, How, PickingStep};
 use eframe::egui::{Event, Key};
 use egui_kittest::kittest::Queryable;
 use formats::ImportOptions;
@@ -11,6 +10,7 @@ use glam::DVec3;
 use interp::ExtractSettings;
 use project::command::{AddHorizon, Age, Command};
 use project::document::{HorizonEntry, PickEntry};
+use state::{Action, How, PickingStep};
 use survey::Contact;
 
 fn entry(harness: &Driven) -> Option<HorizonEntry> {
@@ -135,6 +135,7 @@ fn a_horizon_is_renamed_filled_and_removed_in_the_panel() {
     click_last(&mut harness, "12 traces");
     let slices = state(&harness).session.as_ref().unwrap().view.slices;
     assert!((8.0..12.0).contains(&slices[0]) && (7.0..10.0).contains(&slices[1]), "{slices:?}");
+    click_last(&mut harness, "Along the reflection");
     click_last(&mut harness, "Fill holes");
     wait(&mut harness, "it has no hole", |harness| harness.query_by_label("no holes").is_some());
     click_last(&mut harness, "Rename…");
@@ -148,4 +149,19 @@ fn a_horizon_is_renamed_filled_and_removed_in_the_panel() {
     wait(&mut harness, "picks still go to it", |harness| picking(harness).horizon.as_deref() == Some(&renamed));
     click_last(&mut harness, "Remove");
     wait(&mut harness, "it is gone", |harness| document(harness).horizons.len() == 2);
+}
+
+#[test]
+fn a_horizon_is_smoothed_and_that_is_taken_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = interpreting(folder.path());
+    pick(&mut harness, on_a_trough(), 0);
+    let smoothing = |harness: &Driven| entry(harness).and_then(|entry| entry.assembly.unwrap().smooth);
+    click_last(&mut harness, "Smooth");
+    wait(&mut harness, "it is smoothed", |harness| smoothing(harness).is_some_and(|smooth| smooth.radius == 3));
+    wait(&mut harness, "the list says so", |harness| {
+        harness.query_by_label("Smoothed over 3 traces, passes: 1").is_some()
+    });
+    click_last(&mut harness, "Not smoothed");
+    wait(&mut harness, "it is as picked", |harness| smoothing(harness).is_none());
 }

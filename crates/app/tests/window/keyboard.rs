@@ -3,9 +3,9 @@
 
 use super::driven::{Driven, click, document, driven, open, project, state, wait};
 use super::picking::{act, interpreting, on_a_trough, picking};
-use app::state::{Action, Choice, Dialogue, How, Panel, PickingStep};
 use eframe::egui::{Event, Key, Modifiers, ViewportCommand};
 use egui_kittest::kittest::Queryable;
+use state::{Action, Choice, Dialogue, How, Panel, PickingStep};
 use std::cell::RefCell;
 
 fn type_text(harness: &mut Driven, text: &str) {

@@ -9,5 +9,6 @@ mod horizon;
 mod keyboard;
 mod panel;
 mod picking;
+mod tree;
 mod unpicked;
 mod volumes;

@@ -2,14 +2,12 @@
 
 use super::command::{act, applied, choose, click_last};
 use super::driven::{Driven, click, document, driven, open, project, state, survey, wait};
-use app::state::{
-    Action, Appearance, Choice, Dialogue, ExportForm, FileContent, Layout, Panel, PickingStep, Target, Tool,
-};
 use eframe::egui::Key;
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
 use project::command::{Command, SetLayer, SetScalar};
 use render::Projection;
+use state::{Action, Appearance, Choice, Dialogue, ExportForm, FileContent, Layout, Panel, PickingStep, Target, Tool};
 use std::collections::HashSet;
 use std::path::Path;
 use ttf::{ScalarInterval, ScalarTtf};
@@ -328,4 +326,41 @@ fn a_layer_is_named_repeated_and_inked_in_its_editor() {
     wait(&mut harness, "it has another name", |harness| {
         document(harness).layers().iter().any(|name| name.contains("Chalk"))
     });
+}
+
+/// Controls that can do nothing now and do not say why, to those who cannot see a tooltip either.
+fn silent(harness: &Driven) -> Vec<String> {
+    let nodes = [Role::Button, Role::CheckBox].map(|role| harness.query_all_by_role(role).collect::<Vec<_>>());
+    let disabled = nodes.iter().flatten().map(|node| node.accesskit_node()).filter(|node| node.is_disabled());
+    let silent = disabled.filter(|node| node.description().is_none_or(|why| why.is_empty()));
+    silent.map(|node| node.label().unwrap_or_default()).collect()
+}
+
+#[test]
+fn what_can_do_nothing_says_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    let why = |harness: &Driven, label: &str| {
+        let node = harness.query_all_by_label(label).last().unwrap().accesskit_node();
+        node.is_disabled().then(|| node.description()).flatten()
+    };
+    for panel in [Panel::Layers, Panel::Data, Panel::Values, Panel::Interpret] {
+        act(&mut harness, Action::Panel(panel));
+        assert_eq!(silent(&harness), Vec::<String>::new(), "{panel:?}");
+    }
+    assert_eq!(why(&harness, "Redo").as_deref(), Some("Nothing to redo"));
+    act(&mut harness, Action::Picking(PickingStep::Use(Tool::Sticks)));
+    assert!(why(&harness, "End stick").unwrap().contains("two points"));
+    assert_eq!(silent(&harness), Vec::<String>::new());
+    act(&mut harness, Action::Panel(Panel::Layers));
+    act(&mut harness, Action::Arrange(Layout::Fence));
+    assert!(why(&harness, "New line").is_some() && silent(&harness).is_empty());
+    act(&mut harness, Action::Ask(Box::new(Dialogue::Choose(Choice::Well))));
+    // Shares are shown in percent wherever they are.
+    act(&mut harness, Action::Answered);
+    act(&mut harness, Action::Layer(Some("Top - Base".into())));
+    let shown = |label: &str| harness.query_all_by_label(label).last().unwrap().accesskit_node().value().unwrap();
+    for label in ["In cut-outs", "Opacity of pattern 1", "to raw"] {
+        assert!(shown(label).ends_with('%'), "{label}: {}", shown(label));
+    }
 }

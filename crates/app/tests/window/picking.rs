@@ -2,7 +2,6 @@
 //! gives.
 
 use super::driven::{Driven, click, document, driven, project, state, wait};
-use app::state::{Action, How, Layout, Panel, PickingStep, Tool};
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
@@ -10,6 +9,7 @@ use interp::ExtractSettings;
 use interp::assembly::Operation;
 use project::Project;
 use project::command::{Climb, Command, Extract, PickNode};
+use state::{Action, How, Layout, Panel, PickingStep, Tool};
 use std::path::Path;
 use survey::Progress;
 
@@ -41,7 +41,7 @@ pub fn act(harness: &mut Driven, step: PickingStep) {
     harness.run_steps(2);
 }
 
-pub fn picking(harness: &Driven) -> &app::state::Picking {
+pub fn picking(harness: &Driven) -> &state::Picking {
     &state(harness).session.as_ref().unwrap().view.picking
 }
 
@@ -212,10 +212,12 @@ fn a_lasso_on_a_slice_erases_part_of_a_horizon_in_one_step() {
     let before = (nodes(&harness).unwrap(), document(&harness).step);
     let z = on_a_trough().z.round();
     let corners = [[-1.0, -1.0], [12.0, -1.0], [12.0, 30.0], [-1.0, 30.0]].map(glam::DVec2::from_array).to_vec();
-    let on = app::state::LassoOn::Section(app::state::SectionKind::Slice, z);
-    act(&mut harness, PickingStep::Erase(app::state::Lasso { on, corners }));
+    let on = state::LassoOn::Section(state::SectionKind::Slice, z);
+    act(&mut harness, PickingStep::Erase(state::Lasso { on, corners }));
     wait(&mut harness, "part of it is gone", |harness| nodes(harness).is_some_and(|now| now < before.0));
     assert_eq!(document(&harness).step, before.1 + 1);
+    let told = harness.query_all_by_label_contains("farther than the lasso").count();
+    assert_eq!(told, 1, "leaves across its edge stay, and that is said: {:?}", state(&harness).notices);
 }
 
 #[test]
@@ -285,7 +287,7 @@ fn a_key_switches_between_volume_rendering_and_faces() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = interpreting(folder.path());
     let is_clear = |harness: &Driven| {
-        let scene = app::state::showing::scene(state(harness).session.as_ref().unwrap(), None);
+        let scene = state::showing::scene(state(harness).session.as_ref().unwrap(), None);
         matches!(scene.media.shading, render::Shading::Occlusion(_))
     };
     assert!(is_clear(&harness));
@@ -326,7 +328,7 @@ fn a_well_comes_in_through_its_dialogue() {
     std::fs::write(&path, "md_m,x_m,y_m,tvdss_m\n0,250,250,0\n40,250,250,40\n100,260,250,99\n").unwrap();
     let mut harness = driven(folder.path(), Some(root));
     wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
-    let ask = Action::Ask(Box::new(app::state::Dialogue::Well { path }));
+    let ask = Action::Ask(Box::new(state::Dialogue::Well { path }));
     harness.state_mut().as_mut().unwrap().act(ask);
     wait(&mut harness, "the files are read", |harness| {
         harness.query_by_label("Add").is_some_and(|add| !add.accesskit_node().is_disabled())

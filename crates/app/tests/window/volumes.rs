@@ -2,9 +2,9 @@
 
 use super::command::{choose, click_last};
 use super::driven::{Driven, click, open, state, wait};
-use app::state::volume_rendering::{Extent, extent};
 use egui_kittest::kittest::Queryable;
 use render::{Media, Scene, Shading};
+use state::volume_rendering::{Extent, extent};
 
 fn scene(harness: &Driven) -> &Scene {
     &state(harness).session.as_ref().unwrap().view.scene

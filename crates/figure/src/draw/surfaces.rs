@@ -9,7 +9,7 @@ use crate::interpretation::TraceSheet;
 use glam::{DVec2, DVec3};
 use image::{Rgba, RgbaImage, imageops};
 use render::{Scene, View};
-use survey::SurveyGeometry;
+use survey::{Quality, SurveyGeometry};
 use ttf::Colour;
 
 /// Most cells of a sheet along an axis: drawing them takes a few milliseconds.
@@ -19,10 +19,20 @@ pub const OPACITY: [f32; 3] = [0.22, 0.6, 0.85];
 /// Samples a pixel along each axis.
 const SAMPLES: u32 = 2;
 
-/// A sheet as cells, each with its corners.
+/// How far the colour of what was not picked is taken towards white.
+const FILLED_LIGHTER: f32 = 0.6;
+
+/// A sheet as cells.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cells {
-    cells: Vec<[DVec3; 4]>,
+    cells: Vec<Cell>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Cell {
+    corners: [DVec3; 4],
+    /// Whether more of its corners were filled or extrapolated than picked: it is drawn lighter.
+    is_filled: bool,
 }
 
 impl Cells {
@@ -60,7 +70,9 @@ impl Cells {
                     corner(pair[0], other[1]),
                 ];
                 if corners.iter().all(|corner| corner.z.is_finite()) {
-                    cells.push(corners);
+                    let quality = corners.map(|corner| sheet.quality[corner.x as usize * ny + corner.y as usize]);
+                    let is_open = |quality: &&Quality| matches!(quality, Quality::Filled | Quality::Extrapolated);
+                    cells.push(Cell { corners, is_filled: quality.iter().filter(is_open).count() > 2 });
                 }
             }
         }
@@ -97,7 +109,7 @@ pub fn seen<'a>(
     let to_viewer = (towards * metres).normalize_or_zero();
     let mut drawn: Vec<(f64, SeenCell)> = Vec::new();
     for (cells, colour, opacity) in surfaces {
-        for corners in &cells.cells {
+        for Cell { corners, is_filled } in &cells.cells {
             let middle = (corners[0] + corners[2]) * 0.5;
             if middle.cmplt(low).any() || middle.cmpgt(high).any() {
                 continue;
@@ -105,7 +117,9 @@ pub fn seen<'a>(
             let [a, b, c, d] = corners.map(|corner| corner * metres);
             let normal = (c - a).cross(d - b).normalize_or_zero();
             let light = 0.45 + 0.55 * normal.dot(to_viewer).abs() as f32;
-            let shaded = Colour { rgb: colour.rgb.map(|channel| (f32::from(channel) * light) as u8) };
+            let lighter = if *is_filled { FILLED_LIGHTER } else { 0.0 };
+            let own = |channel: u8| f32::from(channel) + lighter * (255.0 - f32::from(channel));
+            let shaded = Colour { rgb: colour.rgb.map(|channel| (own(channel) * light) as u8) };
             let cell = SeenCell { corners: corners.map(|corner| view.project(corner)), colour: shaded, opacity };
             drawn.push(((middle * metres).dot(to_viewer), cell));
         }
@@ -174,7 +188,6 @@ fn fill(image: &mut RgbaImage, [a, mut b, mut c]: [DVec2; 3], colour: [f32; 3], 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use survey::Quality;
 
     #[test]
     fn a_large_sheet_is_drawn_in_few_cells_up_to_its_far_corner() {
@@ -182,7 +195,7 @@ mod tests {
         let (z, quality) = (vec![7.0; nx * ny], vec![Quality::Tracked; nx * ny]);
         let cells = Cells::of(&TraceSheet { block: 0, z: &z, quality: &quality }, [nx, ny]).cells;
         assert!(cells.len() <= CELLS * CELLS);
-        let high = cells.iter().flatten().fold(DVec3::ZERO, |high, corner| high.max(*corner));
+        let high = cells.iter().flat_map(|cell| cell.corners).fold(DVec3::ZERO, |high, corner| high.max(corner));
         assert_eq!(high, DVec3::new(300.0, 119.0, 7.0));
     }
 
@@ -192,8 +205,23 @@ mod tests {
         let z: Vec<f32> = (0..nx * ny).map(|n| if (10..30).contains(&(n / ny)) { f32::NAN } else { 1.0 }).collect();
         let quality = vec![Quality::Tracked; nx * ny];
         let cells = Cells::of(&TraceSheet { block: 0, z: &z, quality: &quality }, [nx, ny]).cells;
-        assert!(cells.iter().flatten().all(|corner| corner.x < 10.0 || corner.x >= 30.0));
+        assert!(cells.iter().flat_map(|cell| cell.corners).all(|corner| corner.x < 10.0 || corner.x >= 30.0));
         assert!(!cells.is_empty());
+    }
+
+    #[test]
+    fn what_was_filled_is_lighter() {
+        let geometry = SurveyGeometry::regular([9, 9, 9], 25.0, 4.0, survey::VerticalUnit::Milliseconds);
+        let (z, mut quality) = (vec![4.0; 81], vec![Quality::Tracked; 81]);
+        quality[..27].fill(Quality::Filled);
+        quality[27..36].fill(Quality::Extrapolated);
+        let cells = Cells::of(&TraceSheet { block: 0, z: &z, quality: &quality }, [9, 9]);
+        let scene = Scene::default();
+        let drawn =
+            seen(&scene.view(&geometry), &scene, &geometry, [(&cells, Colour::new(0, 100, 200), 0.5)].into_iter());
+        let light = drawn.iter().filter(|cell| cell.colour.rgb[0] > 0).count();
+        // Three rows of cells lie between filled nodes; a fourth has as many picked ones as filled.
+        assert_eq!((light, drawn.len()), (3 * 8, 8 * 8));
     }
 
     #[test]

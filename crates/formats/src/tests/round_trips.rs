@@ -137,3 +137,37 @@ fn rotated_surveys_are_resampled_for_formats_without_rotation_or_refused() {
         }
     }
 }
+
+#[test]
+fn the_share_that_was_not_picked_is_written_where_there_is_room() {
+    let geometry = SurveyGeometry::regular([6, 5, 40], 25.0, 4.0, VerticalUnit::Milliseconds);
+    let grid = NodeGrid {
+        origin: geometry.origin,
+        u_step: geometry.inline_vector,
+        v_step: geometry.crossline_vector,
+        count: [6, 5],
+    };
+    let mut sheet = Sheet::new(grid, vec![60.0; 30], Quality::Picked);
+    let mut horizon = Horizon::new("Top", vec![sheet.clone()]);
+    let folder = tempfile::tempdir().unwrap();
+    let write = |horizon: &Horizon, format: Format| {
+        let path = folder.path().join(format.name());
+        let report = write_horizon(&path, horizon, &geometry, format).unwrap();
+        let read = read_horizons(&path, &geometry, &ImportOptions::default()).is_ok();
+        (report.notes.join(" "), std::fs::read_to_string(&path).unwrap(), read)
+    };
+    assert_eq!(write(&horizon, Format::Csv).0, "");
+    sheet.quality[..12].fill(Quality::Filled);
+    sheet.quality[12..15].fill(Quality::Extrapolated);
+    horizon.sheets = vec![sheet];
+    let share = "50 % of the nodes were not picked but filled or extrapolated";
+    for format in [Format::Csv, Format::Irap, Format::OpendTect, Format::Zmap, Format::Cps3, Format::Tsurf] {
+        let (told, text, _) = write(&horizon, format);
+        assert!(told.contains(share), "{format}: {told}");
+        assert_eq!(told.contains("the column quality"), format == Format::Csv, "{format}: {told}");
+        assert_eq!(text.contains(share), matches!(format, Format::OpendTect | Format::Zmap), "{format}");
+    }
+    for format in [Format::OpendTect, Format::Zmap] {
+        assert!(write(&horizon, format).2, "{format} is read back");
+    }
+}

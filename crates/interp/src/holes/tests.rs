@@ -100,7 +100,7 @@ fn the_filling_bends_least() {
 #[test]
 fn large_holes_stay_when_only_small_ones_are_asked_for() {
     let broken = sheet(|_, _| 5.0, |x, y| disc(x, y, [20, 20], 8) || disc(x, y, [40, 30], 2));
-    let (done, rest) = filled(&broken, &FillSettings { max_traces: Some(50) });
+    let (done, rest) = filled(&broken, &FillSettings { max_traces: Some(50), ..FillSettings::default() });
     assert_eq!((done.holes, done.left, done.nodes), (1, 1, 13));
     assert_eq!(find_holes(&[rest], SIZE).len(), 1);
 }

@@ -9,12 +9,12 @@ mod contact;
 mod extract;
 mod fault;
 mod fault_pick;
-mod fill;
 mod horizon;
 mod import;
 mod layer;
-pub(crate) mod parameterization;
-mod pick;
+mod parameterization;
+pub(crate) mod pick;
+mod refine;
 mod scalar;
 mod scene;
 mod survey_frame;
@@ -27,7 +27,6 @@ pub use contact::SetContact;
 pub use extract::{Extract, ProposeFaults};
 pub use fault::{AddFault, FaultAdded, RemoveFault, SetFaultExtent, SetTruncation};
 pub use fault_pick::{AcceptFault, PickFault};
-pub use fill::{FillHorizon, HorizonFilled};
 pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
 pub use import::{ImportVolume, RemoveVolume, VolumeImported};
 pub use layer::{ResetLayer, SetLayer};
@@ -36,6 +35,7 @@ pub use pick::{
     Climb, Move, MovePick, PickNode, PickNodes, Picked, RemovePick, ReplayPicks, Replayed, ReplayedPick,
     SetHorizonColour, Unfit,
 };
+pub use refine::{FillHorizon, HorizonRefined, SmoothHorizon};
 pub use scalar::{RemoveScalar, SetRaw, SetScalar};
 pub use scene::{AddScene, RemoveScene};
 pub use survey_frame::SetVelocity;
@@ -98,6 +98,8 @@ pub enum Command {
     ReplayPicks(ReplayPicks),
     /// Fill the holes of a horizon.
     FillHorizon(FillHorizon),
+    /// Smooth a horizon.
+    SmoothHorizon(SmoothHorizon),
     /// Draw a fault by sticks.
     PickFault(PickFault),
     /// Accept a proposed fault.
@@ -165,7 +167,7 @@ pub enum Effect {
     /// Picks were repeated.
     Replayed(Box<Replayed>),
     /// Holes of a horizon were filled.
-    HorizonFilled(Box<HorizonFilled>),
+    HorizonRefined(Box<HorizonRefined>),
     /// A fault was added or changed.
     FaultAdded(Box<FaultAdded>),
     /// A well was added.
@@ -214,6 +216,7 @@ impl Command {
             Self::SetHorizonColour(change) => change.execute(draft),
             Self::ReplayPicks(change) => change.execute(draft, progress),
             Self::FillHorizon(change) => change.execute(draft, progress),
+            Self::SmoothHorizon(change) => change.execute(draft, progress),
             Self::PickFault(change) => change.execute(draft, progress),
             Self::AcceptFault(change) => change.execute(draft, progress),
             Self::AddFault(change) => change.execute(draft, progress),
@@ -260,7 +263,7 @@ impl Effect {
             | Self::FaultsProposed(_)
             | Self::Picked(_)
             | Self::Replayed(_)
-            | Self::HorizonFilled(_)
+            | Self::HorizonRefined(_)
             | Self::Changed { .. } => Vec::new(),
         }
     }
@@ -287,7 +290,10 @@ impl Effect {
             Self::HorizonAdded(done) => format!("horizon {}", done.report.name),
             Self::Picked(done) => format!("pick {} of {}", done.pick, done.horizon),
             Self::Replayed(done) => format!("{} picks repeated", done.picks.len()),
-            Self::HorizonFilled(done) => format!("holes of {} filled", done.horizon),
+            Self::HorizonRefined(done) if done.result.smoothed.is_some() => {
+                format!("horizon {} smoothed", done.horizon)
+            }
+            Self::HorizonRefined(done) => format!("holes of {} filled", done.horizon),
             Self::FaultAdded(done) => format!("fault {}", done.report.name),
             Self::WellAdded(done) => format!("well {}", done.name),
             Self::Changed { summary } => summary.clone(),
@@ -324,7 +330,7 @@ impl std::fmt::Display for Effect {
             Self::HorizonAdded(done) => write!(f, "{}", done.report),
             Self::Picked(done) => write!(f, "{done}"),
             Self::Replayed(done) => write!(f, "{done}"),
-            Self::HorizonFilled(done) => write!(f, "{done}"),
+            Self::HorizonRefined(done) => write!(f, "{done}"),
             Self::FaultAdded(done) => write!(f, "{}", done.report),
             Self::WellAdded(done) => write!(f, "{done}"),
             Self::Created | Self::Changed { .. } => f.write_str(&self.summary()),

@@ -209,7 +209,7 @@ impl PickNode {
             return assembly::log_of(draft, &self.horizon);
         }
         draft.document.check_new_name(Noun::Horizon, &self.horizon)?;
-        Ok(Assembly { colour: assembly::next_colour(&draft.document), fill: None, picks: Vec::new() })
+        Ok(Assembly { colour: assembly::next_colour(&draft.document), fill: None, smooth: None, picks: Vec::new() })
     }
 
     /// Appends the pick to a log; returns the overlap that ended the climb.

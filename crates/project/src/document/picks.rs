@@ -6,6 +6,7 @@
 
 use interp::assembly::{Fingerprint, Operation};
 use interp::holes::FillSettings;
+use refine::SmoothSettings;
 use serde::{Deserialize, Serialize};
 use ttf::Colour;
 
@@ -18,6 +19,9 @@ pub struct Assembly {
     /// How its holes are filled; `None`: they stay.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fill: Option<FillSettings>,
+    /// How it is smoothed after that; `None`: it is as picked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub smooth: Option<SmoothSettings>,
     /// Its picks, first to last.
     pub picks: Vec<PickEntry>,
 }

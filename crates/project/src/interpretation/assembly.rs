@@ -14,9 +14,10 @@ use interp::Forest;
 use interp::assembly::{
     AssemblyError, Conflict, ConflictSettings, NamedSheets, Overlap, Selection, assemble, conflicts, node_above,
 };
-use interp::holes::{Filled, Hole, fill_holes, find_holes};
+use interp::holes::{FillSettings, Filled, Hole, fill_holes, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon, reassemble, to_horizon};
 use model::{ContactRules, FaultNetwork};
+use refine::{SmoothSettings, fill_along};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -43,6 +44,9 @@ pub struct AssemblyReport {
     /// What was filled.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub filled: Option<Filled>,
+    /// The largest change of a node by smoothing, samples.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smoothed: Option<f32>,
     /// Conflicts with other horizons.
     pub conflicts: Vec<ReportedConflict>,
 }
@@ -168,9 +172,15 @@ impl std::fmt::Display for AssemblyReport {
         }
         if let Some(filled) = &self.filled {
             write!(f, "\n  filled {} hole{} with {} nodes", filled.holes, plural(filled.holes), filled.nodes)?;
+            if filled.along > 0 {
+                write!(f, ", {} of them along the reflection", filled.along)?;
+            }
             if filled.across_faults > 0 {
                 write!(f, "; {} traces across a fault stay empty", filled.across_faults)?;
             }
+        }
+        if let Some(most) = self.smoothed {
+            write!(f, "\n  smoothed, by {most:.2} samples at most")?;
         }
         if let HoleReport { count, traces, largest, at: Some([inline, crossline]) } = self.holes {
             write!(
@@ -263,7 +273,6 @@ pub(crate) fn rebuild(
     progress: &Progress,
 ) -> Result<AssemblyReport, ProjectError> {
     let geometry = draft.document.frame()?.clone();
-    let [nx, ny, _] = geometry.size();
     let forest = &candidates.forest;
     let chosen = selection(name, &log, candidates)?;
     if chosen.is_empty() {
@@ -272,18 +281,44 @@ pub(crate) fn rebuild(
     let leaves = log.picks.iter().map(|pick| node_above(forest, pick.leaf, 0)).collect::<Result<Vec<_>, _>>()?;
     let seeds: Vec<u32> = leaves.iter().map(|&leaf| forest.nodes[leaf as usize].triangles.start).collect();
     let mut assembled = reassemble(forest, &chosen, &seeds, blocks);
-    let filled = match &log.fill {
-        Some(settings) => Some(fill_holes(&mut assembled.sheets, [nx, ny], blocks, settings, progress)?),
-        None => None,
-    };
+    let made = refined(draft, &mut assembled.sheets, blocks, log.fill.as_ref(), log.smooth.as_ref(), progress)?;
     let mut report = report_on(&assembled.sheets, &geometry);
-    report.filled = filled;
+    (report.filled, report.smoothed) = made;
     report.past_faults = assembled.left_out;
     report.overlap = ReportedOverlap::new(assembled.overlap, &geometry);
     let horizon = to_horizon(name, &assembled.sheets, &geometry);
-    put(draft, &horizon, Some(log), progress)?;
+    put(draft, &horizon, Some(log), "", progress)?;
     report.conflicts = conflicts_with(draft, candidates, blocks, name, &assembled.sheets, progress)?;
     Ok(report)
+}
+
+/// Fills and smooths sheets; returns what was filled, and the largest change by smoothing in samples. A reflection is
+/// followed in the volume that candidates were extracted from, or else in the first one.
+pub(crate) fn refined(
+    draft: &Draft,
+    sheets: &mut [VoxelSheet],
+    blocks: &FaultNetwork,
+    fill: Option<&FillSettings>,
+    smooth: Option<&SmoothSettings>,
+    progress: &Progress,
+) -> Result<(Option<Filled>, Option<f32>), ProjectError> {
+    let document = &draft.document;
+    let size = document.frame()?.size();
+    let plane = [size[0], size[1]];
+    let filled = match fill {
+        Some(settings) if settings.along_reflection => {
+            let extracted = document.extraction.as_ref().map(|extraction| &extraction.volume);
+            let own = || document.volumes.iter().filter(|entry| entry.geometry.is_none());
+            let entry = own().find(|entry| extracted == Some(&entry.name)).or_else(|| own().next());
+            let volume = content::open_recorded(draft.root(), entry.ok_or(ProjectError::NoVolume)?, document.frame()?)?;
+            let read = |first, extent| -> Result<_, ProjectError> { Ok(volume.read_box_f32(0, first, extent)?) };
+            Some(fill_along(sheets, size, blocks, settings, read, progress)?)
+        }
+        Some(settings) => Some(fill_holes(sheets, plane, blocks, settings, progress)?),
+        None => None,
+    };
+    let smoothed = smooth.map(|settings| refine::smooth(sheets, plane, blocks, settings, progress)).transpose()?;
+    Ok((filled, smoothed))
 }
 
 /// Counts nodes, traces and holes of sheets.
@@ -307,11 +342,13 @@ pub fn report_on(sheets: &[VoxelSheet], geometry: &SurveyGeometry) -> AssemblyRe
     }
 }
 
-/// Writes a horizon and its entry. An existing horizon keeps its contact; its place follows its depth.
+/// Writes a horizon and its entry. An existing horizon keeps its contact; its place follows its depth. `done` completes the
+/// record of an imported one, such as "; holes filled".
 pub(crate) fn put(
     draft: &mut Draft,
     horizon: &Horizon,
     log: Option<Assembly>,
+    done: &str,
     progress: &Progress,
 ) -> Result<(), ProjectError> {
     let geometry = draft.document.frame()?.clone();
@@ -334,7 +371,7 @@ pub(crate) fn put(
         }
         (None, Some(old)) => {
             let Source { path, bytes, reading } = document.horizons[old].source.clone();
-            let reading = if reading.ends_with(FILLED) { reading } else { reading + FILLED };
+            let reading = if reading.ends_with(done) { reading } else { reading + done };
             Source { path, bytes, reading }
         }
         (None, None) => return Err(ProjectError::NothingLeft { horizon: name.clone() }),
@@ -351,9 +388,6 @@ pub(crate) fn put(
     }
     Ok(())
 }
-
-/// Completes the record of a horizon whose holes were filled.
-const FILLED: &str = "; holes filled";
 
 /// Conflicts that involve horizon `name`, in line numbers.
 fn conflicts_with(

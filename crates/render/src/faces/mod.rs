@@ -22,8 +22,8 @@ mod volumes;
 use crate::error::RenderError;
 use crate::gpu::Gpu;
 use crate::inputs::Inputs;
+use crate::kept::Kept;
 use crate::media::interleaved::{halves, interleave};
-use crate::media::prepared::Preparations;
 use crate::outline::draw::draw as draw_outlines;
 use crate::resolved::{Flat, MAX_VOLUMES, ResolvedScene};
 use crate::scene::{Lookup, Scene};
@@ -80,7 +80,7 @@ pub struct Renderer {
     textures: Option<TextureBuffers>,
     volumes: HashMap<String, wgpu::Texture>,
     no_volume: wgpu::Texture,
-    kept: Preparations,
+    kept: Kept,
     light_layout: wgpu::BindGroupLayout,
     light_pipeline_layout: wgpu::PipelineLayout,
     light: Option<LightBuffers>,
@@ -162,7 +162,7 @@ impl Renderer {
             textures: None,
             volumes: HashMap::new(),
             no_volume,
-            kept: Preparations::default(),
+            kept: Kept::default(),
             light_layout,
             light_pipeline_layout,
             light: None,

@@ -12,7 +12,7 @@ use crate::media::Faces;
 use crate::resolved::{ResolvedInterpretation, ResolvedScene};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
-use model::section::{LineKind, LineQuality, Section, SectionPlane};
+use model::section::{LineKind, LineQuality, SectionPlane};
 use rayon::prelude::*;
 
 /// Visible lines by kind, pixels.
@@ -59,7 +59,7 @@ impl OutlineLines {
             return;
         }
         let plane = face.section_plane();
-        let section = Section::new(interpretation.model, &plane);
+        let section = resolved.shapes.section(interpretation.model, &plane);
         let beside = (beside(face, &plane), face.bounds());
         let seen = |points: &[DVec2]| {
             let points: Vec<DVec3> = points.iter().map(|&st| plane.voxel(st)).collect();

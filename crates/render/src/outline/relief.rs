@@ -11,6 +11,7 @@ use crate::resolved::{ResolvedInterpretation, ResolvedScene};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// How far from a fault the ground of its block is tested, voxels: far enough to meet the rock below an
 /// overhanging scarp.
@@ -39,6 +40,8 @@ struct Map<'a> {
     low: DVec3,
     counts: [usize; 2],
     step: DVec2,
+    /// Heights at the nodes, and one beyond the last along each axis.
+    heights: Arc<Vec<f32>>,
 }
 
 impl Map<'_> {
@@ -52,13 +55,16 @@ impl Map<'_> {
         xy.extend(f64::from(z))
     }
 
+    /// The ground at a node.
+    fn node(&self, [x, y]: [usize; 2]) -> DVec3 {
+        self.xy(DVec2::new(x as f64, y as f64)).extend(f64::from(self.heights[x * (self.counts[1] + 2) + y]))
+    }
+
     /// Segments on which a function on the map is zero, as points on the ground.
-    fn zero_lines(&self, f: impl Fn(DVec2) -> f64 + Sync) -> Vec<[DVec3; 2]> {
+    fn zero_lines(&self, f: impl Fn([usize; 2]) -> f64 + Sync) -> Vec<[DVec3; 2]> {
         let [nx, ny] = self.counts;
-        let values: Vec<f64> = (0..(nx + 1) * (ny + 1))
-            .into_par_iter()
-            .map(|n| f(DVec2::new((n / (ny + 1)) as f64, (n % (ny + 1)) as f64)))
-            .collect();
+        let values: Vec<f64> =
+            (0..(nx + 1) * (ny + 1)).into_par_iter().map(|n| f([n / (ny + 1), n % (ny + 1)])).collect();
         let mut segments = Vec::new();
         for x in 0..nx {
             for y in 0..ny {
@@ -88,16 +94,26 @@ pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
     let counts = [0, 1].map(|axis: usize| (high[axis] - low[axis]).ceil().max(1.0) as usize);
     let step = (high - low).truncate() / DVec2::new(counts[0] as f64, counts[1] as f64);
     for block in 0..interpretation.model.block_count() as u16 {
-        let map = Map { interpretation, block, low, counts, step };
+        let key = |fault: usize| ([low.x, low.y, low.z, high.x, high.y, high.z].map(f64::to_bits), block, fault);
+        let heights = resolved.shapes.heights(key(0), || {
+            let nodes = (0..(counts[0] + 2) * (counts[1] + 2)).into_par_iter();
+            let height = |n: usize| {
+                let node = DVec2::new((n / (counts[1] + 2)) as f64, (n % (counts[1] + 2)) as f64);
+                let xy = (low.truncate() + node * step).as_vec2();
+                interpretation.model.horizon_z(0, block, xy.x, xy.y)
+            };
+            nodes.map(height).collect()
+        });
+        let map = Map { interpretation, block, low, counts, step, heights };
         for fault in 0..interpretation.model.faults().surfaces().len() {
-            let side = |node: DVec2| f64::from(interpretation.model.faults().side(fault, map.ground(node).as_vec3()));
-            let segments = map.zero_lines(side);
+            let side = |node| f64::from(interpretation.model.faults().side(fault, map.node(node).as_vec3()));
+            let segments = resolved.shapes.traces(key(fault), || map.zero_lines(side));
             let traces = seen(resolved, interpretation, &segments, |p| beside_fault(interpretation, fault, block, p));
             lines.faults.extend(traces.into_iter().map(|trace| (fault, trace)));
         }
-        let facing = |node: DVec2| {
-            let p = map.ground(node);
-            let (dx, dy) = (map.ground(node + DVec2::X) - p, map.ground(node + DVec2::Y) - p);
+        let facing = |[x, y]: [usize; 2]| {
+            let p = map.node([x, y]);
+            let (dx, dy) = (map.node([x + 1, y]) - p, map.node([x, y + 1]) - p);
             dx.cross(dy).dot(resolved.view.towards_camera(p))
         };
         let segments = map.zero_lines(facing);

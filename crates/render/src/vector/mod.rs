@@ -24,9 +24,9 @@ pub use sections::{SeenSection, seen_sections};
 
 use crate::error::RenderError;
 use crate::inputs::Inputs;
+use crate::kept::Kept;
 use crate::leaves::FaceData;
 use crate::media::Faces;
-use crate::media::prepared::Preparations;
 use crate::outline::draw::OutlineLines;
 use crate::resolved::ResolvedScene;
 use crate::scene::Scene;
@@ -161,7 +161,7 @@ pub fn vectors(
     if scene.has_back_edges() {
         return Ok(None);
     }
-    let mut kept = Preparations::default();
+    let mut kept = Kept::default();
     let resolved = ResolvedScene::new(scene, inputs, &mut kept)?;
     let mut block = VectorBlock { lines: lines(&resolved), ..VectorBlock::default() };
     if !is_drawn(&resolved) {

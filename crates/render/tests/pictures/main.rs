@@ -5,5 +5,7 @@ mod closed_form;
 mod gpu;
 mod gpu_media;
 mod gpu_shapes;
+mod kept;
 mod media;
+mod motion;
 mod vector;

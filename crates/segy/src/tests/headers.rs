@@ -310,3 +310,40 @@ fn what_is_no_number_is_counted_and_read_as_zero() {
     assert_eq!(found.volume.trace(1, 1), &[0.0, 1.0, 0.0, 0.0]);
     assert!(has(&found.info.warnings, "3 samples"));
 }
+
+#[test]
+fn the_length_of_a_trace_tells_depth_from_time_where_words_do_not() {
+    let of = |interval: u16, samples: usize, words: &str| {
+        let mut file = built().each(|_, t| {
+            t.i16(115, samples as i16);
+            t.i16(117, interval.cast_signed());
+            t.floats(&vec![1.0; samples]);
+        });
+        file.binary(3217, interval);
+        file.binary(3221, samples as u16);
+        file.say(1, words);
+        file.info()
+    };
+    // 25 ms between samples is no survey in time, 25 m is one in depth.
+    let silent = of(25_000, 400, "PROJECT NORTH");
+    assert_eq!((silent.vertical_unit, silent.interval), (FileUnit::Metres, 25.0));
+    assert!(
+        has(&silent.assumptions, "400 samples every 25 ms span 9975 ms would be unlikely"),
+        "{:?}",
+        silent.assumptions
+    );
+    let whole_metres = of(10, 400, "PROJECT NORTH");
+    assert_eq!((whole_metres.vertical_unit, whole_metres.interval), (FileUnit::Metres, 10.0));
+    // Both are plausible: time, as is usual, and the evidence says so.
+    let both = of(4_000, 1500, "PROJECT NORTH");
+    assert_eq!(both.vertical_unit, FileUnit::Milliseconds);
+    assert!(has(&both.evidence, "span 5996 ms (plausible), or as a depth"), "{:?}", both.evidence);
+    // Words that contradict one another are weighed by it, and the contradiction is told.
+    let torn = of(25_000, 400, "PSDM STACK, TIME DOMAIN");
+    assert_eq!(torn.vertical_unit, FileUnit::Metres);
+    assert!(has(&torn.warnings, "for which alone the length of a trace is plausible"), "{:?}", torn.warnings);
+    // One word alone is followed, and its unlikely length is told.
+    let unlikely = of(25_000, 400, "TWT");
+    assert_eq!(unlikely.vertical_unit, FileUnit::Milliseconds);
+    assert!(has(&unlikely.warnings, "which is unlikely"), "{:?}", unlikely.warnings);
+}

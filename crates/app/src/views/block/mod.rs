@@ -191,12 +191,15 @@ impl BlockView {
                 && fine.iter().zip(&requested.0).all(|(fine, scene)| is_but_for_horizons(fine, scene))
         };
         let begins_fine = !is_moving && self.fine.as_ref().is_some_and(is_alike);
+        // The same view of other data or styles: its outlines are on the screen already, only colours change.
+        let is_restyled = !is_moving && self.fine.as_ref() == Some(&requested.0);
         drawing.draw(PictureRequest {
             number: self.number,
             scenes: requested.0.clone(),
             rocks: rocks.clone(),
             is_moving,
             begins_fine,
+            is_restyled,
         });
         self.requested = Some(requested);
     }

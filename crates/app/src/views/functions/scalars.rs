@@ -4,6 +4,7 @@ use crate::work::Swatches;
 use eframe::egui::{ComboBox, DragValue, Role, Sense, Ui, WidgetInfo, vec2};
 use ttf::{ScalarInterval, ScalarTtf};
 use widgets::histogram::Histogram;
+use widgets::percent;
 use widgets::theme;
 
 /// The histogram of a volume, with the ranges that have a texture marked.
@@ -35,8 +36,8 @@ pub(super) fn intervals(ui: &mut Ui, function: &mut ScalarTtf, swatches: &Swatch
                 ui.name_inputs(format!("{name} of {} {ordinal}", function.volume), |ui| ui.add(drag))
                     .on_hover_text(format!("{name}, times the layer's own"));
             }
-            ui.weak("opacity");
-            let drag = DragValue::new(&mut interval.opacity).speed(0.01).range(0.0..=1.0).max_decimals(2);
+            ui.weak("times the layer's, opacity");
+            let drag = percent::drag(&mut interval.opacity);
             ui.name_inputs(format!("Opacity of {} {ordinal}", function.volume), |ui| ui.add(drag))
                 .on_hover_text("Opacity over the layer's pattern");
             if ui.small_button("Split").on_hover_text("Split this range in two").clicked() {

@@ -12,8 +12,7 @@ use super::tiles::Tiles;
 use crate::state::{Action, Choice, Dialogue, Panel, Place, Session, State};
 use crate::work::{Rocks, Swatches};
 use eframe::egui::{
-    Button, ComboBox, Frame, Grid, Key, Response, Role, ScrollArea, Sense, Slider, Stroke, TextEdit, Ui, WidgetInfo,
-    vec2,
+    Button, ComboBox, Frame, Grid, Key, Response, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, WidgetInfo, vec2,
 };
 use legibility::Legibility;
 use project::command::{Command, ResetLayer, SetContact, SetLayer};
@@ -23,6 +22,8 @@ use render::Unpicked;
 use style::{colours, definition, frequencies, intervals};
 use survey::Contact;
 use ttf::{Colour, LayerStyle, LayerTtf, TextureLibrary};
+use widgets::obstacle::{needs, unless};
+use widgets::percent;
 
 /// Size of a layer's swatch in the column, points.
 const SWATCH: [f32; 2] = [64.0, 40.0];
@@ -72,10 +73,12 @@ impl Layers {
         if document.horizons.is_empty() {
             ui.label("Layers lie between horizons. Pick some in the volume, or add them from files.");
             ui.horizontal_wrapped(|ui| {
-                if ui.add_enabled(!document.volumes.is_empty(), Button::new("Pick horizons")).clicked() {
+                let volume = needs(!document.volumes.is_empty(), "Horizons are picked in a volume: add one first");
+                if unless(ui, volume, Button::new("Pick horizons")).clicked() {
                     actions.push(Action::Panel(Panel::Interpret));
                 }
-                if ui.add_enabled(document.geometry.is_some(), Button::new("Add a horizon…")).clicked() {
+                let survey = needs(document.geometry.is_some(), crate::views::data::NO_SURVEY);
+                if unless(ui, survey, Button::new("Add a horizon…")).clicked() {
                     actions.push(Action::Ask(Box::new(Dialogue::Choose(Choice::Horizon))));
                 }
             });
@@ -135,9 +138,9 @@ impl Layers {
             colours(ui, &mut style);
             frequencies(ui, &mut style);
             let label = ui.label("In cut-outs").on_hover_text(
-                "Opacity where the block is cut away: 0 removes the layer, 1 leaves it standing in the cut-out",
+                "Opacity where the block is cut away: 0 % removes the layer, 100 % leaves it standing in the cut-out",
             );
-            ui.add(Slider::new(&mut style.opacity, 0.0..=1.0).max_decimals(2)).labelled_by(label.id);
+            ui.add(percent::slider(&mut style.opacity)).labelled_by(label.id);
             ui.end_row();
             definition(ui, document, layer, actions);
         });
@@ -145,7 +148,7 @@ impl Layers {
         intervals(ui, layer, &mut style, actions);
         ui.horizontal(|ui| {
             let is_own = document.style.layers.style(layer).is_some() || document.k.contains_key(layer);
-            if ui.add_enabled(is_own, Button::new("Default style")).clicked() {
+            if unless(ui, needs(is_own, "The layer has its default style"), Button::new("Default style")).clicked() {
                 self.draft = None;
                 let command = ResetLayer { layer: layer.to_owned() };
                 actions.push(Action::Apply(Box::new(Command::ResetLayer(command))));

@@ -6,6 +6,7 @@ use param::KDefinition;
 use project::command::{Command, SetLayer};
 use project::document::Document;
 use ttf::{Colour, DepthInterval, Frequency, LayerStyle};
+use widgets::percent;
 
 /// Repeats that a layer starts with when it gets its own.
 const FREQUENCY: Frequency = Frequency { horizontal: 40.0, vertical: 3.0 };
@@ -42,6 +43,7 @@ pub(super) fn frequencies(ui: &mut Ui, style: &mut LayerStyle) {
             ui.name_inputs("Repeats along", |ui| ui.add(drag(&mut frequency.horizontal)));
             ui.label("×");
             ui.name_inputs("Repeats through", |ui| ui.add(drag(&mut frequency.vertical)));
+            ui.weak("tiles");
         }
     });
     ui.end_row();
@@ -97,8 +99,8 @@ pub(super) fn intervals(ui: &mut Ui, layer: &str, style: &mut LayerStyle, action
             if button.clicked() {
                 actions.push(browse((count > 1).then_some(index)));
             }
-            let opacity =
-                DragValue::new(&mut style.intervals[index].opacity).speed(0.01).range(0.0..=1.0).max_decimals(2);
+            ui.weak("opacity");
+            let opacity = percent::drag(&mut style.intervals[index].opacity);
             ui.name_inputs(format!("Opacity of pattern {ordinal}"), |ui| ui.add(opacity))
                 .on_hover_text("Opacity of the pattern");
             if ui.small_button("Split").on_hover_text("Split this part of the layer in two").clicked() {

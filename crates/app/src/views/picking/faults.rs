@@ -8,6 +8,7 @@ use interp::faults::Proposal;
 use project::command::{AcceptFault, Command};
 use std::collections::HashMap;
 use survey::SurveyGeometry;
+use widgets::obstacle::{needs, unless};
 
 /// The texts being typed.
 #[derive(Default)]
@@ -46,11 +47,13 @@ impl FaultsPanel {
                 if picking.stick.len() == 1 { "" } else { "s" }
             ));
             ui.horizontal(|ui| {
-                if ui.add_enabled(picking.stick.len() > 1, Button::new("End stick")).on_hover_text("Enter").clicked() {
+                let two = needs(picking.stick.len() > 1, "Click at least two points along the fault");
+                if unless(ui, two, Button::new("End stick")).on_hover_text("Enter").clicked() {
                     actions.push(step(PickingStep::EndStick));
                 }
                 let some = !(picking.stick.is_empty() && picking.sticks.is_empty());
-                if ui.add_enabled(some, Button::new("Remove last point")).on_hover_text("Backspace").clicked() {
+                let none = needs(some, "No point is drawn");
+                if unless(ui, none, Button::new("Remove last point")).on_hover_text("Backspace").clicked() {
                     actions.push(step(PickingStep::Backspace));
                 }
             });
@@ -63,7 +66,7 @@ impl FaultsPanel {
                     actions.push(step(PickingStep::NameFault(name.clone())));
                 }
                 let can = !name.trim().is_empty() && (complete > 0 || picking.stick.len() > 1);
-                if ui.add_enabled(can, Button::new("Make fault")).clicked() {
+                if unless(ui, needs(can, "Draw a stick, and name the fault"), Button::new("Make fault")).clicked() {
                     actions.push(step(PickingStep::MakeFault));
                 }
             });
@@ -74,7 +77,9 @@ impl FaultsPanel {
         let is_looking = running.iter().any(|line| line.title == "Proposing faults");
         let can = !session.document.horizons.is_empty() && !is_looking;
         let hint = "A fault is proposed wherever horizons are offset (Q)";
-        if ui.add_enabled(can, Button::new("Propose faults")).on_hover_text(hint).clicked() {
+        let why =
+            if is_looking { "Looking for faults already" } else { "Faults are found from horizons: pick some first" };
+        if unless(ui, needs(can, why), Button::new("Propose faults")).on_hover_text(hint).clicked() {
             actions.push(Action::ProposeFaults);
         }
         let Some(shown) = shown else { return };

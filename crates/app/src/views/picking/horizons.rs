@@ -10,11 +10,13 @@ use interp::assembly::Operation;
 use interp::holes::FillSettings;
 use project::command::{
     Command, FillHorizon, Move, MovePick, RemoveHorizon, RemovePick, RenameHorizon, ReplayPicks, SetHorizonColour,
-    Unfit,
+    SmoothHorizon, Unfit,
 };
 use project::document::HorizonEntry;
+use refine::SmoothSettings;
 use survey::SurveyGeometry;
 use widgets::keyboard::{Renamed, Renaming};
+use widgets::obstacle::{needs, unless};
 
 /// Largest number of holes that are listed.
 const HOLES: usize = 5;
@@ -24,6 +26,8 @@ const HOLES: usize = 5;
 pub(super) struct HorizonList {
     renaming: Option<Renaming>,
     max_traces: usize,
+    along_reflection: bool,
+    smoothing: SmoothSettings,
 }
 
 impl HorizonList {
@@ -160,6 +164,7 @@ impl HorizonList {
         }
         picks(ui, entry, geometry, actions);
         self.holes(ui, session, entry, facts, actions);
+        self.smooth(ui, entry, actions);
     }
 
     fn holes(
@@ -190,9 +195,12 @@ impl HorizonList {
                 ui.weak(format!("and {} smaller", holes.len() - HOLES));
             }
         });
+        let along = ui.checkbox(&mut self.along_reflection, "Along the reflection");
+        along.on_hover_text("Where neighbouring traces in a hole show it; the smoothest surface fills the rest");
         ui.horizontal(|ui| {
             if ui.button("Fill holes").on_hover_text("With the smoothest surface, never across a fault").clicked() {
-                let settings = FillSettings { max_traces: (self.max_traces > 0).then_some(self.max_traces) };
+                let max_traces = (self.max_traces > 0).then_some(self.max_traces);
+                let settings = FillSettings { max_traces, along_reflection: self.along_reflection };
                 let command = FillHorizon { name: entry.name.clone(), settings };
                 actions.push(Action::Apply(Box::new(Command::FillHorizon(command))));
             }
@@ -202,10 +210,37 @@ impl HorizonList {
             ui.name_inputs("Largest hole to fill", |ui| ui.add(drag));
         });
     }
+
+    /// Smoothing, which stays with a horizon that was assembled until it is taken back.
+    fn smooth(&mut self, ui: &mut Ui, entry: &HorizonEntry, actions: &mut Vec<Action>) {
+        let mut order = |settings: SmoothSettings| {
+            actions.push(apply(Command::SmoothHorizon(SmoothHorizon { name: entry.name.clone(), settings })));
+        };
+        ui.horizontal(|ui| {
+            if ui.button("Smooth").on_hover_text("By planes through the nodes around, never across a fault").clicked() {
+                order(self.smoothing);
+            }
+            let SmoothSettings { radius, passes } = SmoothSettings::MOST;
+            let drag = DragValue::new(&mut self.smoothing.radius).range(1..=radius);
+            ui.name_inputs("Radius of smoothing", |ui| ui.add(drag)).on_hover_text("More takes out longer waves");
+            ui.weak("traces,");
+            let drag = DragValue::new(&mut self.smoothing.passes).range(1..=passes);
+            ui.name_inputs("Passes of smoothing", |ui| ui.add(drag));
+            ui.weak("passes");
+        });
+        if let Some(SmoothSettings { radius, passes }) = entry.assembly.as_ref().and_then(|log| log.smooth) {
+            ui.horizontal(|ui| {
+                ui.weak(format!("Smoothed over {radius} traces, passes: {passes}"));
+                if ui.small_button("Not smoothed").on_hover_text("Show it as it was picked").clicked() {
+                    order(SmoothSettings { radius: 0, passes: 1 });
+                }
+            });
+        }
+    }
 }
 
 /// The colour of a horizon; it can be changed if the horizon was assembled from picks.
-fn swatch(ui: &mut Ui, entry: &HorizonEntry, index: usize, actions: &mut Vec<Action>) {
+pub fn swatch(ui: &mut Ui, entry: &HorizonEntry, index: usize, actions: &mut Vec<Action>) {
     match &entry.assembly {
         Some(log) => {
             if let Some(colour) = palette(ui, log.colour, &format!("Colour of {}", entry.name)) {
@@ -241,7 +276,12 @@ fn picks(ui: &mut Ui, entry: &HorizonEntry, geometry: &SurveyGeometry, actions: 
         ui.horizontal_wrapped(|ui| {
             ui.add_space(8.0);
             let mut button = |ui: &mut Ui, name: &str, hint: &str, can: bool, command: Command| {
-                let button = ui.add_enabled(can, Button::new(name).small());
+                let why = if name == "Down" {
+                    "It is a leaf already"
+                } else {
+                    "The horizon has no other pick: remove it instead"
+                };
+                let button = unless(ui, needs(can, why), Button::new(name).small());
                 if button.on_hover_text(format!("{hint} pick {}", pick.id)).clicked() {
                     actions.push(apply(command));
                 }

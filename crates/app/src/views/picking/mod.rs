@@ -4,6 +4,8 @@ mod faults;
 mod horizons;
 mod palette;
 
+pub(super) use horizons::swatch;
+
 use super::candidates::CandidatesPanel;
 use super::{notices, overlay::Overlay};
 use crate::state::picking::voxel_of;
@@ -15,6 +17,7 @@ use horizons::HorizonList;
 use render::FaceData;
 use std::sync::Arc;
 use survey::SurveyGeometry;
+use widgets::obstacle::{needs, unless};
 
 /// The panel, with the text being typed in it.
 #[derive(Default)]
@@ -112,6 +115,15 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     });
 }
 
+/// Why a leaf cannot be descended.
+const AT_LEAF: &str =
+    "This is a leaf, the smallest piece: take it out with Alt and a click, or extract with smaller leaves";
+
+/// What helps against an overlap, so many levels above the leaf.
+fn way_out(up: u32) -> &'static str {
+    if up > 0 { "descend" } else { "deselect it, or draw the fault between both parts; a leaf cannot be descended" }
+}
+
 fn selected(ui: &mut Ui, session: &Session, overlay: &Overlay, geometry: &SurveyGeometry, actions: &mut Vec<Action>) {
     let step = |step| Action::Picking(step);
     let Some(pick) = &session.view.picking.pick else {
@@ -127,17 +139,23 @@ fn selected(ui: &mut Ui, session: &Session, overlay: &Overlay, geometry: &Survey
     if let Some(overlap) = facts.filter(|shown| shown.is_wrong).and_then(|shown| shown.overlap.as_ref()) {
         ui.colored_label(
             ui.visuals().warn_fg_color,
-            format!("Overlaps at {} traces, by up to {:.0} samples: descend.", overlap.traces, overlap.apart),
+            format!(
+                "Overlaps at {} traces, by up to {:.0} samples: {}.",
+                overlap.traces,
+                overlap.apart,
+                way_out(pick.up)
+            ),
         );
         if ui.small_button("Show where").clicked() {
             go(geometry, overlap.at, actions);
         }
     }
     ui.horizontal_wrapped(|ui| {
-        if ui.add_enabled(pick.up < pick.levels, Button::new("Climb")).on_hover_text("Up arrow").clicked() {
+        let top = needs(pick.up < pick.levels, "This is the whole surface: there is nothing above it");
+        if unless(ui, top, Button::new("Climb")).on_hover_text("Up arrow").clicked() {
             actions.push(step(PickingStep::Climb(1)));
         }
-        if ui.add_enabled(pick.up > 0, Button::new("Descend")).on_hover_text("Down arrow").clicked() {
+        if unless(ui, needs(pick.up > 0, AT_LEAF), Button::new("Descend")).on_hover_text("Down arrow").clicked() {
             actions.push(step(PickingStep::Climb(-1)));
         }
         let hint = "Climb to the highest node without overlap (H)";

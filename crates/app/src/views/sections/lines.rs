@@ -1,10 +1,14 @@
-//! Colours of horizons, and the positions of the other sections.
+//! Colours of horizons, which lines are shown, and the positions of the other sections.
 
 use crate::state::{Layout, SectionKind, Session};
 use eframe::egui::Color32;
+use figure::cut::CutLine;
 use figure::draw::section::Marks;
+use formats::SurfaceKind;
 use glam::DVec2;
+use model::section::LineKind;
 use project::document::HorizonEntry;
+use std::borrow::Cow;
 
 /// The colour of a horizon: its own, or else the default of its place in the list.
 pub fn horizon_colour(own: Option<ttf::Colour>, index: usize) -> Color32 {
@@ -23,4 +27,22 @@ pub(super) fn marks(session: &Session, kind: SectionKind) -> Marks {
     let has_fence = kind == SectionKind::Slice && session.view.layout == Layout::Fence;
     let fence = session.view.fence.iter().filter(|_| has_fence).map(|at| DVec2::from_array(*at));
     Marks { down: vec![s], across: vec![t], fence: fence.collect() }
+}
+
+/// The lines of what is not hidden.
+pub(super) fn visible<'a>(session: &Session, lines: &'a [CutLine]) -> Cow<'a, [CutLine]> {
+    let (hidden, document) = (&session.view.hidden, &session.document);
+    if hidden.is_empty() {
+        return Cow::Borrowed(lines);
+    }
+    let is_hidden = |line: &&CutLine| match line.kind {
+        LineKind::Horizon { horizon } => {
+            document.horizons.get(horizon).is_some_and(|entry| hidden.has(SurfaceKind::Horizon, &entry.name))
+        }
+        LineKind::Fault { fault, .. } => {
+            document.faults.get(fault).is_some_and(|entry| hidden.has(SurfaceKind::Fault, &entry.name))
+        }
+        _ => false,
+    };
+    Cow::Owned(lines.iter().filter(|line| !is_hidden(line)).cloned().collect())
 }

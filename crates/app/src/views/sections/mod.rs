@@ -26,6 +26,7 @@ use figure::draw::section::{SectionContents, Zoom};
 use glam::DVec2;
 use image::RgbaImage;
 use render::FaceData;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -207,9 +208,9 @@ impl Pane {
         let is_interpreting = session.view.panel == Panel::Interpret;
         let (on_page, seen) = (canvas::page_rect(image), canvas::page_rect(body));
         if let (Some((pixels, lines)), Some(texture)) = (&self.shown, &self.texture) {
-            let lines = if is_interpreting { &[] } else { lines.as_slice() };
+            let lines = if is_interpreting { Cow::Borrowed(&[][..]) } else { lines::visible(session, lines) };
             let horizons = project::figures::horizons(&session.document);
-            let contents = contents(pixels, lines, &horizons, extent, session, kind);
+            let contents = contents(pixels, &lines, &horizons, extent, session, kind);
             canvas::paint(&painter, &contents.drawn(seen, on_page), Some(texture.id()));
         }
         if is_interpreting {

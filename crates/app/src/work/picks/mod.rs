@@ -316,7 +316,14 @@ impl Keeper {
             PickingTask::Erase(lasso, horizon) => {
                 let chosen = followed.chosen(Some(&horizon));
                 let geometry = &followed.geometry;
-                let picks = super::lasso::nodes_inside(&lasso, &candidates.forest, &chosen, geometry, &horizon);
+                let (picks, left) = super::lasso::nodes_inside(&lasso, &candidates.forest, &chosen, geometry, &horizon);
+                if left > 0 && !picks.is_empty() {
+                    let (leaves, verb) = if left == 1 { ("leaf", "reaches") } else { ("leaves", "reach") };
+                    let text = format!(
+                        "{left} {leaves} of {horizon} {verb} farther than the lasso and stayed; Alt and a click takes a leaf out"
+                    );
+                    self.outbox.send(Event::Told(Notice::note(Place::Interpret, text)));
+                }
                 self.outbox.send(if picks.is_empty() {
                     let text =
                         format!("nothing of {horizon} lies mostly inside the lasso; draw it around whole leaves");

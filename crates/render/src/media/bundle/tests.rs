@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::inputs::{Inputs, NamedVolume};
+use crate::kept::Kept;
 use crate::media::light_grid::Asked;
-use crate::media::prepared::Preparations;
 use crate::media::{EmptySpace, LayerOpacity, Media, Medium, MediumColour, Occlusion, Phong};
 use crate::resolved::ResolvedScene;
 use crate::{Camera, Projection, Scene, VoxelBox};
@@ -41,7 +41,7 @@ fn function(colours: [Colour; 2]) -> RgbaFunction {
 
 /// The largest difference in colour or transmittance, and the largest opacity.
 fn apart(scene: &Scene, inputs: &Inputs) -> (f32, f32) {
-    let mut kept = Preparations::default();
+    let mut kept = Kept::default();
     let resolved = ResolvedScene::new(scene, inputs, &mut kept).unwrap();
     let field = resolved.field.as_ref().unwrap();
     let quiet = Progress::silent();

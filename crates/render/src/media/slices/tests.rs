@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::inputs::{Inputs, NamedVolume};
+use crate::kept::Kept;
 use crate::media::light::LightVolume;
 use crate::media::light_grid::Asked;
-use crate::media::prepared::Preparations;
 use crate::media::{LayerOpacity, MediumColour};
 use crate::media::{Media, Medium, Occlusion, Shading, white_ramp};
 use crate::resolved::ResolvedScene;
@@ -84,7 +84,7 @@ fn light_in_the_block_does_not_depend_on_windows_or_runs() {
     for projection in [Projection::Orthographic, Projection::Perspective { fov_deg: 60.0 }] {
         for cut in [false, true] {
             let light = |unseen: bool, asked: Asked| {
-                let (scene, mut kept) = (scene(projection, cut, unseen), Preparations::default());
+                let (scene, mut kept) = (scene(projection, cut, unseen), Kept::default());
                 let resolved = ResolvedScene::new(&scene, &inputs, &mut kept).unwrap();
                 let field = resolved.field.as_ref().unwrap();
                 assert_eq!(field.only_medium().is_none(), unseen);

@@ -1,11 +1,12 @@
 //! Actions, and the tasks for the workers that follow from them.
 
 use super::Appearance;
-use super::dialogue::{Dialogue, ExportForm};
+use super::dialogue::{Dialogue, ExportForm, SurfaceForm};
 use super::notice::{Notice, Place};
 use super::picking::{PickingStep, PickingTask};
 use super::session::Snapshot;
 use super::view::{Compare, Layout, Panel, StandardView};
+use formats::SurfaceKind;
 use project::command::Command;
 use render::Scene;
 use std::path::PathBuf;
@@ -54,6 +55,8 @@ pub enum Action {
     },
     /// Draw the page to a file.
     Export(Box<ExportForm>),
+    /// Write a horizon or fault for other programs.
+    ExportSurface(Box<SurfaceForm>),
     /// Copy the picture to the clipboard.
     Copy,
     /// Show another scene: camera, box, cut-outs, blend.
@@ -84,6 +87,15 @@ pub enum Action {
     Layer(Option<String>),
     /// Show a horizon on the map.
     Horizon(Option<String>),
+    /// Show or hide the lines and surfaces of a horizon or fault.
+    Hide {
+        /// Whether it is a horizon or a fault.
+        kind: SurfaceKind,
+        /// Its name.
+        name: String,
+        /// Whether it is hidden from now on.
+        hidden: bool,
+    },
     /// Show or hide the handles of the box and the cut-outs.
     Handles(bool),
     /// Choose the light or the dark theme.
@@ -118,6 +130,8 @@ pub enum Task {
     Picking(PickingTask),
     /// Draw the page to a file.
     Export(Box<ExportForm>),
+    /// Write a horizon or fault for other programs.
+    ExportSurface(Box<SurfaceForm>),
     /// Copy the picture to the clipboard.
     Copy,
     /// Release everything that was loaded for the open project.

@@ -58,7 +58,7 @@ pub struct Left {
 /// What outlives the window.
 ///
 /// ```
-/// use app::state::Remembered;
+/// use state::Remembered;
 /// use std::path::Path;
 ///
 /// let mut remembered = Remembered::default();

@@ -34,7 +34,7 @@ pub fn hold(before: &View, scene: &mut Scene, geometry: &SurveyGeometry, size: D
 /// the viewer.
 ///
 /// ```
-/// use app::state::camera;
+/// use state::camera;
 /// use glam::DVec2;
 /// use render::Scene;
 /// use survey::{SurveyGeometry, VerticalUnit};

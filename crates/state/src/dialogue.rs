@@ -1,7 +1,8 @@
 //! The dialogues.
 
 use figure::Annotation;
-use std::path::PathBuf;
+use formats::{Format, SurfaceKind};
+use std::path::{Path, PathBuf};
 
 /// What a file or folder is chosen for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,8 +81,43 @@ pub enum Dialogue {
     },
     /// Export the picture.
     Export(ExportForm),
+    /// Write a horizon or fault for other programs.
+    Surface(SurfaceForm),
     /// The list of shortcuts.
     Shortcuts,
+}
+
+/// What is written of a horizon or fault, and where.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SurfaceForm {
+    /// Whether it is a horizon or a fault.
+    pub kind: SurfaceKind,
+    /// Its name.
+    pub name: String,
+    /// File to write.
+    pub path: String,
+    /// The file's format.
+    pub format: Format,
+}
+
+impl SurfaceForm {
+    /// The defaults: a table of a horizon, triangles of a fault, beside the project in `folder`.
+    pub fn new(kind: SurfaceKind, name: &str, folder: Option<&Path>) -> Self {
+        let format = if kind == SurfaceKind::Horizon { Format::Csv } else { Format::Tsurf };
+        let plain: String =
+            name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
+        let file = format!("{plain}.{}", format.extension());
+        let path = folder.map_or_else(|| PathBuf::from(&file), |folder| folder.join(&file)).display().to_string();
+        Self { kind, name: name.to_owned(), path, format }
+    }
+
+    /// Takes another format, and the file's ending with it where that was the usual one.
+    pub fn choose(&mut self, format: Format) {
+        if let Some(stem) = self.path.strip_suffix(&format!(".{}", self.format.extension())) {
+            self.path = format!("{stem}.{}", format.extension());
+        }
+        self.format = format;
+    }
 }
 
 /// Millimetres in an inch.
@@ -160,5 +196,16 @@ mod tests {
     fn an_inch_has_its_dots() {
         let form = ExportForm { size_cm: [2.54, 5.08], dpi: 300.0, ..ExportForm::new(String::new()) };
         assert_eq!(form.size_px(), [300, 600]);
+    }
+
+    #[test]
+    fn the_ending_of_a_surfaces_file_follows_its_format() {
+        let mut form = SurfaceForm::new(SurfaceKind::Horizon, "Top / Chalk", Some(Path::new("work")));
+        assert_eq!(Path::new(&form.path), Path::new("work").join("Top___Chalk.csv"));
+        form.choose(Format::Tsurf);
+        assert!(form.path.ends_with("Top___Chalk.ts"), "{}", form.path);
+        form.path = "mine.txt".to_owned();
+        form.choose(Format::Csv);
+        assert_eq!(form.path, "mine.txt");
     }
 }

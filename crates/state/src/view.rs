@@ -3,10 +3,12 @@
 pub use figure::SectionKind;
 
 use super::picking::Picking;
+use formats::SurfaceKind;
 use project::document::Document;
 use project::picture::scene;
 use render::{Scene, Unpicked, VoxelBox};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use survey::SurveyGeometry;
 
 /// Which views fill the middle of the window.
@@ -86,6 +88,45 @@ impl StandardView {
     }
 }
 
+/// The horizons and faults whose lines and surfaces are hidden, on sections and while interpreting. Rock is drawn with all
+/// of them.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Hidden {
+    horizons: BTreeSet<String>,
+    faults: BTreeSet<String>,
+}
+
+impl Hidden {
+    fn of(&self, kind: SurfaceKind) -> &BTreeSet<String> {
+        if kind == SurfaceKind::Horizon { &self.horizons } else { &self.faults }
+    }
+
+    /// Whether that horizon or fault is hidden.
+    pub fn has(&self, kind: SurfaceKind, name: &str) -> bool {
+        self.of(kind).contains(name)
+    }
+
+    /// Whether nothing is.
+    pub fn is_empty(&self) -> bool {
+        self.horizons.is_empty() && self.faults.is_empty()
+    }
+
+    pub(crate) fn set(&mut self, kind: SurfaceKind, name: String, hidden: bool) {
+        let names = if kind == SurfaceKind::Horizon { &mut self.horizons } else { &mut self.faults };
+        if hidden {
+            names.insert(name);
+        } else {
+            names.remove(&name);
+        }
+    }
+
+    fn fit(&mut self, document: &Document) {
+        self.horizons.retain(|name| document.horizons.iter().any(|entry| entry.name == *name));
+        self.faults.retain(|name| document.faults.iter().any(|entry| entry.name == *name));
+    }
+}
+
 /// How the open project is displayed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ViewState {
@@ -110,6 +151,9 @@ pub struct ViewState {
     pub horizon: Option<String>,
     /// Whether the handles of the box and the cut-outs are shown.
     pub handles: bool,
+    /// What is hidden.
+    #[serde(default)]
+    pub hidden: Hidden,
     /// The interpretation under way.
     #[serde(default)]
     pub picking: Picking,
@@ -134,6 +178,7 @@ impl ViewState {
             layer: None,
             horizon: None,
             handles: true,
+            hidden: Hidden::default(),
             picking: Picking::default(),
         }
     }
@@ -159,6 +204,7 @@ impl ViewState {
         for corner in &mut self.fence {
             *corner = [0, 1].map(|axis| corner[axis].clamp(0.0, last[axis]));
         }
+        self.hidden.fit(document);
         self.layer = self.layer.take().filter(|name| document.layers().contains(name));
         self.horizon = self.horizon.take().filter(|name| document.horizons.iter().any(|entry| entry.name == *name));
     }

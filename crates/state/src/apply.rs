@@ -74,6 +74,11 @@ impl State {
                 self.quieten(Place::Foot);
                 return self.task(Task::Export(form));
             }
+            Action::ExportSurface(form) => {
+                self.quieten(Place::Foot);
+                self.quieten(Place::Dialogue);
+                return self.task(Task::ExportSurface(form));
+            }
             Action::Copy => return self.task(Task::Copy),
             Action::Picking(step) => return self.pick(step),
             Action::Extract(volume, settings) => {
@@ -128,6 +133,7 @@ impl State {
             Action::Panel(panel) => view.panel = panel,
             Action::Layer(layer) => view.layer = layer,
             Action::Horizon(horizon) => view.horizon = horizon,
+            Action::Hide { kind, name, hidden } => view.hidden.set(kind, name, hidden),
             Action::Handles(shown) => view.handles = shown,
             _ => {}
         }

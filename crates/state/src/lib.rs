@@ -9,6 +9,7 @@ mod apply;
 pub mod camera;
 mod dialogue;
 pub mod faces;
+mod hint;
 mod notice;
 pub mod picking;
 mod picking_steps;
@@ -24,17 +25,17 @@ pub mod volume_rendering;
 mod tests;
 
 pub use action::{Action, Task};
-pub use dialogue::{Choice, Dialogue, ExportForm, FileContent, Shown, Target};
+pub use dialogue::{Choice, Dialogue, ExportForm, FileContent, Shown, SurfaceForm, Target};
 pub use notice::{Notice, Place};
 pub use picking::{How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, Tool};
 pub use remembered::{Appearance, Remembered};
 pub use session::{Session, Snapshot};
-pub use view::{Compare, Layout, Panel, SectionKind, StandardView, ViewState};
+pub use view::{Compare, Hidden, Layout, Panel, SectionKind, StandardView, ViewState};
 
 /// Everything that the window shows.
 ///
 /// ```
-/// use app::state::{Action, Remembered, Snapshot, State, Task};
+/// use state::{Action, Remembered, Snapshot, State, Task};
 /// use project::document::Document;
 /// use survey::{SurveyGeometry, VerticalUnit};
 ///

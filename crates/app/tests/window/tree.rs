@@ -1,0 +1,76 @@
+//! The list of everything in the project: shown and hidden, renamed, written for other programs, by labels.
+
+use super::command::{applied, choose, click_last};
+use super::driven::{Driven, click, document, open, state, wait};
+use eframe::egui::{Key, Modifiers};
+use egui_kittest::kittest::{NodeT, Queryable};
+use formats::SurfaceKind;
+use project::command::{Command, PickFault};
+
+fn type_path(harness: &mut Driven, path: &std::path::Path) {
+    harness.get_by_label("File").focus();
+    harness.step();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.get_by_label("File").type_text(&path.display().to_string());
+    harness.run_steps(2);
+}
+
+#[test]
+fn horizons_and_faults_are_written_from_the_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    let stick = |crossline: f64| vec![[9.0, crossline, 4.0], [13.0, crossline, 120.0]];
+    let fault = PickFault { name: "East".into(), sticks: vec![stick(2.0), stick(18.0)] };
+    applied(&mut harness, &Command::PickFault(fault));
+    click(&mut harness, "Data");
+    for (name, kind, format) in [("Base", "horizon", "irap"), ("East", "fault", "opendtect")] {
+        click_last(&mut harness, name);
+        click_last(&mut harness, "Export…");
+        harness.get_by_label(&format!("Export {kind} {name}"));
+        choose(&mut harness, "Format", format);
+        // A place that cannot be written keeps the dialogue, which says why.
+        type_path(&mut harness, &folder.path().join("nowhere").join(name));
+        click_last(&mut harness, "Export");
+        wait(&mut harness, "it is told", |harness| harness.query_by_label_contains("No such file").is_some());
+        let out = folder.path().join(name);
+        type_path(&mut harness, &out);
+        click_last(&mut harness, "Export");
+        wait(&mut harness, "it is written", |harness| out.exists() && state(harness).dialogue.is_none());
+        assert!(std::fs::read_to_string(&out).unwrap().lines().count() > 3, "{name}");
+        // Chosen no more, so that the next row's button is the last.
+        click_last(&mut harness, name);
+    }
+}
+
+#[test]
+fn a_horizon_is_hidden_and_shown_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    click(&mut harness, "Data");
+    let is_hidden =
+        |harness: &Driven| state(harness).session.as_ref().unwrap().view.hidden.has(SurfaceKind::Horizon, "Top");
+    click_last(&mut harness, "Show horizon Top");
+    assert!(is_hidden(&harness));
+    click_last(&mut harness, "Show horizon Top");
+    assert!(!is_hidden(&harness));
+    // What is removed is not remembered as hidden.
+    click_last(&mut harness, "Show horizon Top");
+    let removes: Vec<_> = harness.query_all_by_label("Remove").collect();
+    assert_eq!(removes[1].accesskit_node().label().as_deref(), Some("Remove"));
+    removes[1].click();
+    harness.run_steps(2);
+    wait(&mut harness, "it is gone", |harness| document(harness).horizons.len() == 1);
+    assert!(!is_hidden(&harness));
+}
+
+/// While a picture is drawn the foot says so, until it is sharp.
+#[test]
+fn a_picture_that_is_being_drawn_is_said_to_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    assert!(harness.query_by_label("Drawing…").is_none());
+    click(&mut harness, "From above");
+    harness.get_by_label("Drawing…");
+    wait(&mut harness, "it is sharp", |harness| harness.state().as_ref().unwrap().is_settled());
+    assert!(harness.query_by_label("Drawing…").is_none());
+}
