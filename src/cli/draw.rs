@@ -72,18 +72,22 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
 
 /// Makes all figures of a project.
 pub(super) fn figures(
-    project: &Path,
+    root: &Path,
     out: &Path,
     device: Device,
     volume_bytes: Option<u64>,
     progress: &Progress,
 ) -> anyhow::Result<Report> {
     let volume_bytes = volume_bytes.unwrap_or_else(memory_budget::half_of_available);
-    let made = figures::make_all(&Project::open(project)?, out, device, volume_bytes, progress)?;
+    let made = figures::make_all(&Project::open(root)?, out, device, volume_bytes, progress)?;
     let mut report = Report::default();
+    let mut pairs: Vec<NamedConfusion> = Vec::new();
     for figure in &made {
         report.say(written(&figure.file, figure.size_px, figure.dpi));
+        let new: Vec<_> = figure.look_alikes.iter().filter(|pair| !pairs.contains(pair)).cloned().collect();
+        pairs.extend(new);
     }
+    advise(root, pairs, &mut report);
     report.field("figures", made);
     Ok(report)
 }

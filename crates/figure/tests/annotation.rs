@@ -51,6 +51,8 @@ impl Survey {
         let inputs = FigureInputs {
             source: SectionSource { data, raw: Some(&Self::raw()) },
             horizons: &[NamedColour { name: "H1".into(), colour: Colour::BLACK }],
+            strata: &[],
+            wells: &[],
             faults: &["F1".to_owned()],
             layers: &self.layers,
             library: None,

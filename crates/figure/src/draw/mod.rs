@@ -7,6 +7,7 @@ pub mod annotation;
 pub mod axes;
 pub mod block;
 pub mod colour_bar;
+pub mod correlation;
 pub mod legend;
 pub mod map;
 pub mod north;

@@ -14,7 +14,8 @@ pub use confusion::{NamedConfusion, confusions};
 pub use interpreter::{InterpreterView, borrowed};
 pub use output::{FigureFormat, title, write};
 
-use crate::document::Document;
+use crate::content;
+use crate::document::{Document, WellEntry};
 use crate::error::ProjectError;
 use crate::picture::load::{self, Loaded, Stage};
 use crate::picture::{Device, Painter};
@@ -31,7 +32,7 @@ use model::StructuralModel;
 use render::vector::{VectorBlock, vectors};
 use render::{FaceData, Faces, Media, RenderError, Scene};
 use std::time::Instant;
-use survey::{Progress, memory};
+use survey::{Progress, Well, memory};
 use ttf::{LayerStyle, LayerTtf, Preset, TextureLibrary};
 
 /// The page of a figure, and how it was made.
@@ -79,7 +80,8 @@ pub fn make(
     let picks = if figure.interpretation { Some(InterpreterPicks::read(project, view, progress)?) } else { None };
     let shown = picks.as_ref().map(InterpreterPicks::borrowed);
     let names_layers = figure.annotate.contains(&Annotation::Layers);
-    let needs_library = figure.legend || names_layers || settings.has_vectors;
+    let has_wells = figure.parts.iter().any(|part| matches!(part, Part::Correlation(_)));
+    let needs_library = figure.legend || names_layers || settings.has_vectors || has_wells;
     let library = if needs_library { Some(styles::pattern_library(project.root(), document)?) } else { None };
     let mut layers = library.as_ref().map(|library| layer_styles(document, library)).unwrap_or_default();
     layers.iter_mut().for_each(|style| *style = figure.printed_in().layer(style));
@@ -91,6 +93,8 @@ pub fn make(
     let inputs = FigureInputs {
         source: SectionSource { data, raw: loaded.raw.as_ref() },
         horizons: &horizons(document),
+        strata: &document.stratigraphy().horizons,
+        wells: &if has_wells { wells_of(project)? } else { Vec::new() },
         faults: &document.faults.iter().map(|entry| entry.name.clone()).collect::<Vec<_>>(),
         layers: &layers,
         library: library.as_ref(),
@@ -189,7 +193,7 @@ fn needs(figure: &Figure) -> Scene {
             }
             Part::Section(section) => (is_raw, shown) = (true, section.show),
             Part::Fence(fence) => (is_raw, shown) = (true, fence.show),
-            Part::Map(_) => {}
+            Part::Map(_) | Part::Correlation(_) => {}
         }
     }
     if scene.face_data == FaceData::Rock {
@@ -207,6 +211,12 @@ pub fn interpreted(scene: &Scene) -> Scene {
     let is_through = scene.media.faces == Faces::None;
     let media = if is_through { scene.media.clone() } else { Media::default() };
     Scene { blend: 1.0, ground: None, media, ..scene.clone() }
+}
+
+/// The wells of a project under the names that they have in it.
+fn wells_of(project: &Project) -> Result<Vec<Well>, ProjectError> {
+    let read = |entry: &WellEntry| Ok(Well { name: entry.name.clone(), ..content::read_well(project.root(), entry)? });
+    project.document().wells.iter().map(read).collect()
 }
 
 /// The horizons of a project with the colours that figures and the window draw them in.

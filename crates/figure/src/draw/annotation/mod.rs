@@ -19,6 +19,7 @@ use glam::{DVec2, DVec3};
 use model::StructuralModel;
 use render::vector::{SeenSection, seen_sections};
 use render::{FaceData, Faces, Scene, View};
+pub(crate) use room::holds;
 use room::{LabelRoom, meet};
 use survey::SurveyGeometry;
 use ttf::Colour;
