@@ -26,6 +26,7 @@
 pub mod animation;
 mod annotation;
 mod compress;
+mod convex;
 pub mod correlation;
 pub mod cut;
 pub mod draw;

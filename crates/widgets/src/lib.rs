@@ -6,6 +6,7 @@
 //! - [`event_order`]: a click counts where it was made, and a notch of the wheel is a line;
 //! - [`histogram`] and [`opacity_curve`]: the values of a volume, and an RGBA function drawn over them;
 //! - [`keyboard`]: what Enter and Escape do in every dialogue and field, and names changed in place;
+//! - [`page`]: a figure's page as it will be printed, on which labels are dragged;
 //! - [`raster`]: paints what egui draws into an image, without a display.
 //!
 //! Deliberately absent: the state of the window, projects, files, threads.
@@ -18,6 +19,7 @@ pub mod form;
 pub mod histogram;
 pub mod keyboard;
 pub mod opacity_curve;
+pub mod page;
 pub mod raster;
 pub mod theme;
 

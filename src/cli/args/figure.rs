@@ -60,9 +60,9 @@ pub(in crate::cli) struct FigureArgs {
     #[arg(long)]
     pub(in crate::cli) north_arrow: bool,
     /// Write on the blocks: axes (inlines, crosslines, depth or time along the edges), layers (names along the
-    /// layers), faults (names, measured throw, half-arrows), colours (a bar of the raw data's values), provenance
+    /// layers), faults (names, measured throw, half-arrows), wells (names of wells and tops), colours (a bar of the raw data's values), provenance
     /// (program, project, --credit); all adds the legend, the scale bar and the north arrow
-    #[arg(long, value_name = "all|axes,layers,faults,colours,provenance", value_delimiter = ',')]
+    #[arg(long, value_name = "all|axes,layers,faults,wells,colours,provenance", value_delimiter = ',')]
     pub(in crate::cli) annotate: Vec<String>,
     /// Whose data the figure shows, for the line of provenance
     #[arg(long, value_name = "TEXT")]

@@ -1,6 +1,7 @@
 //! The block on a page: one picture or two compared, surfaces and sticks before them, and which is which.
 
 use super::annotation::BlockAnnotation;
+use super::moved::BLOCK;
 use super::north;
 use super::overlay;
 use super::surfaces::{self, Cells, OPACITY};
@@ -147,7 +148,7 @@ impl BlockPanel<'_> {
     /// # Errors
     /// What the painter says.
     pub fn drawn(&self, room: Rect, painter: &mut dyn BlockPainter) -> Result<DrawnBlock, FigureError> {
-        let mut group = Group::new(GroupKind::Panel, "block");
+        let mut group = Group::new(GroupKind::Panel, BLOCK);
         let (mut points_per_m, mut compass) = (0.0, [DVec2::ZERO; 2]);
         let blends = self.comparison.blends();
         let beside = |room: Rect| self.annotation.map_or(room, |annotation| annotation.pane(room, self.scene));

@@ -2,12 +2,13 @@
 
 use super::Maker;
 use super::prepared::Prepared;
-use super::seen::{Seen, seen};
+use crate::annotation::Annotation;
 use crate::cut::CutLine;
 use crate::draw::NamedColour;
 use crate::draw::block::Comparison;
 use crate::draw::legend::{Legend, LegendLine};
 use crate::draw::section::Zoom;
+use crate::draw::seen::{Seen, seen};
 use crate::list::{GroupKind, Stroke};
 use crate::spec::{BlockPart, Part};
 use crate::style::{FAULT_PT, HORIZON_PT};
@@ -169,6 +170,11 @@ impl Maker<'_> {
         }
         if outlines.faults.width_px > 0.0 && !seen.faults.is_empty() {
             add("Fault".into(), GroupKind::Fault, FAULT_PT, outlines.faults.colour);
+        }
+        if self.wants(Annotation::Wells) && !seen.wells.is_empty() {
+            // Each has its name beside it.
+            add("Well".into(), GroupKind::Well, 2.0 * HORIZON_PT, scene.wells.colour);
+            return lines;
         }
         for well in seen.wells.iter().filter_map(|index| self.inputs.source.data.wells.get(*index)) {
             add(well.name.to_owned(), GroupKind::Well, 2.0 * HORIZON_PT, scene.wells.colour);

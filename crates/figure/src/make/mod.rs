@@ -2,7 +2,6 @@
 
 mod legend;
 mod prepared;
-mod seen;
 
 use crate::Rect;
 use crate::annotation::Annotation;
@@ -15,7 +14,7 @@ use crate::draw::correlation::CorrelationPanel;
 use crate::draw::map::{MapPanel, title};
 use crate::draw::section::Marks;
 use crate::draw::vector_block::BlockNames;
-use crate::draw::{NamedColour, colour_bar, north, scale, words};
+use crate::draw::{NamedColour, colour_bar, moved, north, scale, words};
 use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
 use crate::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH};
@@ -131,6 +130,11 @@ pub fn make(
     for ((part, prepared), room) in figure.parts.iter().zip(prepared).zip(rooms) {
         panels.push(maker.part(part, prepared, room, painter)?.into());
     }
+    let labels = figure.parts.iter().find_map(|part| match part {
+        Part::Block(block) => Some(&block.scene.labels[..]),
+        _ => None,
+    });
+    moved::change(&mut list.items, labels.unwrap_or_default());
     // The legend explains what is drawn before it.
     panels.append(&mut list.items);
     list.items = panels;
@@ -266,6 +270,7 @@ impl<'a> Maker<'a> {
                 geometry: self.geometry,
                 model: self.inputs.source.data.model.filter(|_| !self.figure.interpretation),
                 names,
+                wells: self.inputs.wells,
             }),
             names,
         };
@@ -281,6 +286,7 @@ impl<'a> Maker<'a> {
             let caption = scale::block_caption(&part.scene, self.geometry);
             drawn.group.push(scale::drawn(below, Some(drawn.points_per_m), &caption));
         }
+        moved::change(&mut drawn.group.items, &part.scene.labels);
         Ok(drawn.group)
     }
 

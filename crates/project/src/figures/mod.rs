@@ -81,6 +81,7 @@ pub fn make(
     let shown = picks.as_ref().map(InterpreterPicks::borrowed);
     let names_layers = figure.annotate.contains(&Annotation::Layers);
     let has_wells = figure.parts.iter().any(|part| matches!(part, Part::Correlation(_)));
+    let names_wells = figure.annotate.contains(&Annotation::Wells);
     let needs_library = figure.legend || names_layers || settings.has_vectors || has_wells;
     let library = if needs_library { Some(styles::pattern_library(project.root(), document)?) } else { None };
     let mut layers = library.as_ref().map(|library| layer_styles(document, library)).unwrap_or_default();
@@ -94,7 +95,7 @@ pub fn make(
         source: SectionSource { data, raw: loaded.raw.as_ref() },
         horizons: &horizons(document),
         strata: &document.stratigraphy().horizons,
-        wells: &if has_wells { wells_of(project)? } else { Vec::new() },
+        wells: &if has_wells || names_wells { wells_of(project)? } else { Vec::new() },
         faults: &document.faults.iter().map(|entry| entry.name.clone()).collect::<Vec<_>>(),
         layers: &layers,
         library: library.as_ref(),

@@ -4,6 +4,7 @@
 //! corners show also what is thinner than the grid. A line is seen where it runs over the part of its face that no other
 //! face hides; a well where no rock lies before it.
 
+use crate::convex::{area, holds};
 use glam::{DVec2, DVec3, Vec3};
 use model::StructuralModel;
 use model::section::LineKind;
@@ -19,12 +20,14 @@ use survey::SurveyGeometry;
 const COLUMNS: u32 = 160;
 /// How far behind a face its layer is asked for, voxels.
 const BEHIND: f32 = 0.02;
+/// Faces that are seen smaller than this are seen edge on, square pixels.
+const LEAST_PX: f64 = 1.0;
 /// How far below a line rock has to lie for it to be a line on rock, voxels.
 const BELOW: f64 = 0.3;
 
 /// What is seen of a block.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Seen {
+pub(crate) struct Seen {
     /// Layers, 0 = the deepest.
     pub layers: BTreeSet<u16>,
     /// Horizons whose lines are seen on faces.
@@ -36,41 +39,50 @@ pub(super) struct Seen {
 }
 
 /// What is seen of a scene, whose size is that of its picture.
-pub(super) fn seen(scene: &Scene, geometry: &SurveyGeometry, model: &StructuralModel, wells: &[DrawnWell]) -> Seen {
-    let sight = Sight {
-        model,
-        view: scene.view(geometry),
-        solid: scene.solid(geometry),
-        relief: scene.ground.as_ref().map(|ground| Relief::new(ground, scene, geometry, model)),
-        faces: scene.media.faces,
-        size: DVec2::new(f64::from(scene.size_px[0]), f64::from(scene.size_px[1])),
-    };
+pub(crate) fn seen(scene: &Scene, geometry: &SurveyGeometry, model: &StructuralModel, wells: &[DrawnWell]) -> Seen {
+    let sight = Sight::new(scene, geometry, model);
     let mut seen = Seen::default();
     if sight.faces != Faces::None {
         seen.layers = sight.layers_on_rays();
+        // The ground is known no closer than a ray meets it: just above lies air.
+        seen.layers.retain(|layer| scene.ground.is_none() || *layer != render::ground::air_layer(model));
     }
     if sight.faces == Faces::All {
         sight.add_faces(scene, geometry, &mut seen);
     }
     if scene.wells.radius > 0.0 {
-        let size = scene.box_in(geometry);
-        let reach = f64::from(scene.wells.radius) * (size.high() - size.low()).max_element();
-        seen.wells = (0..wells.len()).filter(|well| sight.sees_well(wells[*well].path, reach)).collect();
+        seen.wells = (0..wells.len()).filter(|well| sight.sees_well(wells[*well].path)).collect();
     }
     seen
 }
 
 /// A picture's eye and what it looks at.
-struct Sight<'a> {
+pub(crate) struct Sight<'a> {
     model: &'a StructuralModel,
     view: render::View,
     solid: Solid,
     relief: Option<Relief>,
     faces: Faces,
     size: DVec2,
+    /// Radius of wells, voxels.
+    reach: f64,
 }
 
-impl Sight<'_> {
+impl<'a> Sight<'a> {
+    /// What a picture of a scene looks at.
+    pub(crate) fn new(scene: &Scene, geometry: &SurveyGeometry, model: &'a StructuralModel) -> Self {
+        let block = scene.box_in(geometry);
+        Self {
+            model,
+            view: scene.view(geometry),
+            solid: scene.solid(geometry),
+            relief: scene.ground.as_ref().map(|ground| Relief::new(ground, scene, geometry, model)),
+            faces: scene.media.faces,
+            size: DVec2::new(f64::from(scene.size_px[0]), f64::from(scene.size_px[1])),
+            reach: f64::from(scene.wells.radius) * (block.high() - block.low()).max_element(),
+        }
+    }
+
     fn is_air(&self, p: Vec3) -> bool {
         self.relief.as_ref().is_some_and(|relief| relief.is_air(self.model, p))
     }
@@ -124,11 +136,15 @@ impl Sight<'_> {
     fn add_faces(&self, scene: &Scene, geometry: &SurveyGeometry, seen: &mut Seen) {
         for face in seen_sections(scene, geometry, self.model) {
             let plane = face.section.plane;
+            // A face that is seen edge on shows nothing.
+            if face.pieces.iter().map(|piece| area(piece)).sum::<f64>() < LEAST_PX {
+                continue;
+            }
             let is_seen = |st: &DVec2| {
                 let voxel = plane.voxel(*st);
                 let px = self.view.project(voxel);
                 let is_rock = !self.is_air((voxel + DVec3::Z * BELOW).as_vec3());
-                is_rock && self.holds(px) && face.pieces.iter().any(|piece| crate::draw::annotation::holds(piece, px))
+                is_rock && self.holds(px) && face.pieces.iter().any(|piece| holds(piece, px))
             };
             for polygon in &face.section.polygons {
                 let is_air = self.relief.is_some() && polygon.region.layer == render::ground::air_layer(self.model);
@@ -158,18 +174,30 @@ impl Sight<'_> {
         px.cmpge(DVec2::ZERO).all() && px.cmple(self.size).all()
     }
 
-    /// Whether something of a well lies in the block, in the picture, and before all rock; `reach` is its radius, voxels.
-    fn sees_well(&self, path: &[DVec3], reach: f64) -> bool {
+    /// Whether a place lies in the block.
+    pub(crate) fn is_within(&self, p: DVec3) -> bool {
         let [low, high] = self.solid.roaming_box.map(Vec3::as_dvec3);
-        let is_seen = |p: DVec3| {
-            let px = self.view.project(p);
-            if !(p.cmpge(low).all() && p.cmple(high).all() && self.holds(px)) {
-                return false;
-            }
-            let ray = Ray::from(self.view.ray(px));
-            let own = (p - ray.origin.as_dvec3()).dot(ray.direction.as_dvec3());
-            self.faces == Faces::None || self.rock(&ray).is_none_or(|(t, _)| f64::from(t) > own - reach)
-        };
-        path.windows(2).any(|pair| (0..4).any(|n| is_seen(pair[0].lerp(pair[1], f64::from(n) / 4.0))))
+        p.cmpge(low).all() && p.cmple(high).all()
+    }
+
+    /// Whether a place lies in rock.
+    pub(crate) fn is_rock(&self, p: DVec3) -> bool {
+        self.solid.contains(p.as_vec3()) && !self.is_air(p.as_vec3())
+    }
+
+    /// Whether a place on a well lies in the block, in the picture, and before all rock.
+    pub(crate) fn sees(&self, p: DVec3) -> bool {
+        let px = self.view.project(p);
+        if !(self.is_within(p) && self.holds(px)) {
+            return false;
+        }
+        let ray = Ray::from(self.view.ray(px));
+        let own = (p - ray.origin.as_dvec3()).dot(ray.direction.as_dvec3());
+        self.faces == Faces::None || self.rock(&ray).is_none_or(|(t, _)| f64::from(t) > own - self.reach)
+    }
+
+    /// Whether something of a well is seen.
+    fn sees_well(&self, path: &[DVec3]) -> bool {
+        path.windows(2).any(|pair| (0..4).any(|n| self.sees(pair[0].lerp(pair[1], f64::from(n) / 4.0))))
     }
 }
