@@ -1,5 +1,6 @@
 //! `petroglyph render`: draws a picture, and reports the assumptions behind it.
 
+use super::page::PageRequest;
 use super::report::Report;
 use super::request::RenderRequest;
 use super::run::scene_file;
@@ -35,7 +36,9 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     }
     scene::prepare(document, &mut scene, progress)?;
     memory::check("the picture", &scene.size_px.map(|side| side as usize), PIXEL_BYTES)?;
-    if let Some(page) = &request.figure {
+    // Water is drawn by pages.
+    let bare = PageRequest::default();
+    if let Some(page) = request.figure.as_ref().or(scene.water.map(|_| &bare)) {
         return super::page::draw(request, page, &project, &scene, progress);
     }
     let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);

@@ -8,7 +8,7 @@ use figure::{Annotation, BlockPart, Figure, FigureInputs, PageSize, make};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use model::{ModelSettings, StructuralModel};
-use render::{DrawnWell, Ground, Inputs, LabelChange, NamedVolume, Projection, Scene, VoxelBox, pick};
+use render::{DrawnWell, Ground, Inputs, LabelChange, NamedVolume, Projection, Scene, VoxelBox, Water, pick};
 use survey::well::{Survey as Station, Top, WellPath};
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume, Well};
 use synth::closed_form::ClosedForm;
@@ -368,4 +368,43 @@ fn labels_stand_where_a_scene_moves_them_and_what_marks_a_place_stays() {
     assert_eq!(arrows(&scene(Vec::new())), arrows(&scene(vec![far.clone()])));
     let (page, _) = survey.page(&scene(vec![far]), &wanted);
     assert_eq!(page.texts().into_iter().find(|text| text.text.starts_with("F1")).unwrap().size, 12.0);
+}
+
+/// Flat ground at sample 14: the sides of the water are as high as the air, and its upper face is the block's.
+#[test]
+fn water_lies_between_the_ground_and_the_top_of_the_block_and_not_in_cut_outs() {
+    let survey = Survey::new(|geometry| ClosedForm::flat(geometry, &[14.0, 26.0]).with_fault(65.0, 0.0));
+    let size = survey.geometry.size().map(|count| count as f64 - 1.0);
+    let mut scene = cut(&survey);
+    (scene.ground, scene.water) = (Some(Ground::default()), Some(Water::default()));
+    let drawn = |scene: &Scene| {
+        let (page, asked) = survey.page(scene, &[]);
+        let mut found = Vec::new();
+        groups(&page.items, "Water", &mut found);
+        (found.into_iter().cloned().collect::<Vec<_>>(), asked)
+    };
+    let (water, asked) = drawn(&scene);
+    assert_eq!(water.len(), 1);
+    let view = asked.view(&survey.geometry);
+    let paths = water[0].items.iter().filter_map(|face| match face {
+        Item::Group(face) => face.items.first(),
+        _ => None,
+    });
+    let paths: Vec<&Item> = paths.collect();
+    let bounds = paths.iter().filter_map(|item| if let Item::Path(path) = item { path.path.bounds() } else { None });
+    let bounds = bounds.reduce(|a, b| a.around(b.min).around(b.max)).unwrap();
+    // From the highest corner of the block's top to the lowest one of the ground.
+    let corners = |z: f64| {
+        [[0.0, 0.0], [size[0], 0.0], [0.0, size[1]], [size[0], size[1]]]
+            .map(|[x, y]| view.project(DVec3::new(x, y, z)).y)
+    };
+    let high = corners(0.0).into_iter().fold(f64::INFINITY, f64::min) * 72.0 / DPI;
+    let low = corners(14.0).into_iter().fold(f64::NEG_INFINITY, f64::max) * 72.0 / DPI;
+    assert!(bounds.min.y - high > -1.0 && bounds.max.y - low < 1.0, "{bounds:?} beside {high} and {low}");
+    assert!(bounds.height() > 0.7 * (low - high), "{bounds:?} beside {high} and {low}");
+    // The walls of the cut-out are faces of the water too; without a cut-out there are three.
+    assert!(paths.len() > 3, "{}", paths.len());
+    assert_eq!(drawn(&Scene { cut_outs: Vec::new(), ..scene.clone() }).0[0].items.len(), 3);
+    assert!(drawn(&Scene { ground: None, ..scene.clone() }).0.is_empty(), "no ground, no water");
+    assert!(drawn(&Scene { water: None, ..scene }).0.is_empty());
 }

@@ -4,7 +4,7 @@
 //! when the figure is made. So the place at which a label is dropped is the place at which it is printed.
 
 use eframe::egui::{
-    Color32, ColorImage, CursorIcon, Image, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind,
+    Color32, ColorImage, CursorIcon, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind,
     TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo,
 };
 use figure::DisplayList;
@@ -55,7 +55,9 @@ impl PagePreview {
         let (_, texture, labels) = self.drawn.as_ref()?;
         let size = Vec2::new(page.size.x as f32, page.size.y as f32);
         let scale = (room / size).min_elem();
-        let response = ui.add(Image::new((texture.id(), size * scale)).sense(Sense::click_and_drag()));
+        let (rect, response) = ui.allocate_exact_size(size * scale, Sense::click_and_drag());
+        let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+        ui.painter().image(texture.id(), rect, whole, Color32::WHITE);
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Page as it will be printed"));
         let on_page = |at: Pos2| {
             let at = (at - response.rect.min) / scale;

@@ -6,6 +6,7 @@ use super::north;
 use super::overlay;
 use super::surfaces::{self, Cells, OPACITY};
 use super::vector_block::{self, BlockNames};
+use super::water;
 use crate::Rect;
 use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
@@ -13,6 +14,7 @@ use crate::list::{Across, Group, GroupKind, Item, POINTS_PER_INCH, Path, PathIte
 use crate::style::{ACCENT, FRAME_PT, INK, RULE_INK, TEXT_PT};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
+use model::StructuralModel;
 use render::vector::VectorBlock;
 use render::{Outlines, RenderError, Scene, View};
 use serde::{Deserialize, Serialize};
@@ -125,6 +127,8 @@ pub struct BlockPanel<'a> {
     pub has_surfaces: bool,
     /// Dots an inch that pictures are drawn at.
     pub dpi: f64,
+    /// The model, for the water above its ground.
+    pub model: Option<&'a StructuralModel>,
     /// What is written on it.
     pub annotation: Option<BlockAnnotation<'a>>,
     /// What its paths are called.
@@ -177,6 +181,9 @@ impl BlockPanel<'_> {
                 None => shown.push(Picture::in_rect(painter.paint(&scene)?, pane)),
             }
             let view = scene.view(self.geometry);
+            let on_page = |px: DVec2| pane.min + px * POINTS_PER_INCH / self.dpi;
+            let water = self.model.and_then(|model| water::drawn(&scene, self.geometry, model, &on_page));
+            water.into_iter().for_each(|water| shown.push(water));
             if let Some(interpretation) = self.interpretation {
                 self.lay_over(&mut shown, &scene, &view, interpretation, pane);
             }
@@ -291,6 +298,7 @@ mod tests {
             interpretation: None,
             has_surfaces: true,
             dpi: 144.0,
+            model: None,
             annotation: None,
             names: BlockNames::default(),
         };

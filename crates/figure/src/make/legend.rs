@@ -9,6 +9,7 @@ use crate::draw::block::Comparison;
 use crate::draw::legend::{Legend, LegendLine};
 use crate::draw::section::Zoom;
 use crate::draw::seen::{Seen, seen};
+use crate::draw::water::colour_on_paper;
 use crate::list::{GroupKind, Stroke};
 use crate::spec::{BlockPart, Part};
 use crate::style::{FAULT_PT, HORIZON_PT};
@@ -105,11 +106,25 @@ impl Maker<'_> {
             |part: &Part| matches!(part, Part::Block(block) if block.scene.face_data == FaceData::Distortion);
         listed.layers = match self.figure.parts.iter().any(is_measured) {
             true => distortion_classes(),
-            false => layers.into_iter().filter_map(|layer| self.inputs.layers.get(layer).cloned()).collect(),
+            false => self
+                .water()
+                .into_iter()
+                .chain(layers.into_iter().filter_map(|layer| self.inputs.layers.get(layer).cloned()))
+                .collect(),
         };
         let named = horizons.into_iter().filter_map(|horizon| self.inputs.horizons.get(horizon).cloned());
         listed.horizons.extend(named);
         listed
+    }
+
+    /// Water, where a block shows it.
+    fn water(&self) -> Option<LayerStyle> {
+        let shown = self.figure.parts.iter().find_map(|part| match part {
+            Part::Block(block) => block.scene.water.filter(|_| block.scene.ground.is_some()),
+            _ => None,
+        });
+        let is_modelled = self.inputs.source.data.model.is_some() && !self.figure.interpretation;
+        shown.filter(|_| is_modelled).map(|water| LayerStyle::plain("Water", colour_on_paper(&water)))
     }
 
     /// The horizons that an interpreter sees in front of a block.

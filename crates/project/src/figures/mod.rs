@@ -106,11 +106,28 @@ pub fn make(
     let (device, preset) = (settings.device, figure.printed_in());
     let mut painter = FigurePainter { painter: None, device, loaded: &loaded, library, preset, stages, progress };
     let page = figure::make(figure, &inputs, &mut painter)?;
+    warn_of_boxes(&page, progress);
     let device = painter.painter.map(|painter| painter.device().to_owned());
     let stages = painter.stages;
     let scene = Scene { preset, ..needs(figure) };
     let confusions = confusions(project.root(), document, loaded.rock.as_ref(), &scene)?;
     Ok(MadeFigure { page, device, stages, confusions })
+}
+
+/// Says which texts have letters that the face lacks.
+fn warn_of_boxes(page: &DisplayList, progress: &Progress) {
+    let is_box = |c: char| !c.is_whitespace() && !ttf::text::is_known(c);
+    let mut texts: Vec<&str> = page.texts().into_iter().map(|text| text.text.as_str()).collect();
+    texts.retain(|text| text.chars().any(is_box));
+    texts.sort_unstable();
+    texts.dedup();
+    if let Some(first) = texts.first() {
+        let more = if texts.len() > 1 { format!(" and {} more", texts.len() - 1) } else { String::new() };
+        progress.warn(format!(
+            "\"{first}\"{more} has letters that the figures' face lacks, and they are drawn as boxes; the face has Latin, \
+             Greek and Cyrillic letters: write the name in one of these, or set the text in a program that edits SVG"
+        ));
+    }
 }
 
 /// Draws and traces the blocks of a figure; a device is looked for when the first picture is asked for.
