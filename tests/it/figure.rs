@@ -108,7 +108,9 @@ fn odd_names_and_tiny_pages_make_sensible_figures() {
     let at = folder.path();
     let state = at.join("p.petro/project.toml");
     let plain = fs::read_to_string(&state).unwrap();
-    fs::write(&state, format!("{plain}\n[[style.layers]]\nlayer = 'Alpha - Bravo'\ncolour = '#c0b090'\n")).unwrap();
+    let patternless = plain.replace("layers = []", "layers = [{ layer = 'Alpha - Bravo', colour = '#c0b090' }]");
+    assert_ne!(patternless, plain);
+    fs::write(&state, patternless).unwrap();
     for file in ["a.svg", "a.pdf", "a.png"] {
         let told = run_in(at, &format!("render p.petro {file} --title '<&> Grès' --annotate all {SMALL}")).done();
         assert!(!told.stderr.contains("boxes"), "{}", told.stderr);
