@@ -40,6 +40,26 @@ pub enum ParamError {
         /// Count of layers of the model.
         layers: usize,
     },
+    /// A parameterization from elsewhere is that of other layers.
+    #[error(
+        "{:.0} % of its samples lie in another layer than in the project, which has {layers}: it is of other horizons. \
+         Layers are counted from the deepest, 0; add the horizons that it was computed from",
+        100.0 * share
+    )]
+    OtherLayers {
+        /// The share of its samples, 0 to 1.
+        share: f64,
+        /// Count of layers of the model.
+        layers: usize,
+    },
+    /// A parameterization from elsewhere has no values in a layer.
+    #[error(
+        "it has no values in layer {layer} (0 = deepest) of one fault block; compute it there too, or leave out --from"
+    )]
+    NoValues {
+        /// Index of the layer, 0 = deepest.
+        layer: usize,
+    },
     /// The requested volume has no samples.
     #[error("a voxel parameterization of {size:?} has no voxels; every side must be at least 1")]
     VolumeSize {

@@ -21,7 +21,8 @@
 //!    region comes from the model and the fraction between the sheets from the sheets.
 //!    [`Parameterization::voxel_volumes`] samples it at voxels; [`PackedVolume`] is the paper's 3-component
 //!    volume with the paper's lookups.
-//! 5. [`accuracy`] measures both lookups.
+//! 5. [`Parameterization::of_volumes`] takes i, j, k from elsewhere instead.
+//! 6. [`accuracy`] measures both lookups.
 //!
 //! # Spaces and units
 //! Positions are voxels (x = inline index, y = crossline index, z = sample index, down). Distances and angles
@@ -88,6 +89,7 @@ mod compute;
 mod error;
 mod flow;
 mod grid;
+mod imported;
 mod lattice;
 mod layer;
 mod metric;
@@ -106,6 +108,7 @@ mod voxels;
 pub use compute::ComputeCost;
 pub use error::ParamError;
 pub use grid::{FlatPoint, RegionGrid, SheetRef, SheetSource};
+pub use imported::Taken;
 pub use model::{LayerModel, Region};
 pub use packed::PackedVolume;
 pub use parameterization::Parameterization;

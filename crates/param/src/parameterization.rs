@@ -51,33 +51,13 @@ impl Parameterization {
         }
         let metric = Metric::new(model.metric(), settings.exaggeration)?;
         let planner = Planner::new(model, settings, &metric);
-        let scan = ColumnScan::of(model, progress)?;
         let region = |n: usize| Region { layer: (n % layers) as u16, block: (n / layers) as u16 };
-        let touched: Vec<RegionColumns> = (0..layers * blocks)
-            .into_par_iter()
-            .map(|n| {
-                let region = region(n);
-                let (bottom, top) = plan::horizons(model, n % layers);
-                let field = |horizon: &usize| model.level(*horizon, region.block).is_none();
-                let (bottom, top) = (bottom.filter(field), top.filter(field));
-                let node = |horizon: Option<usize>, x, y, open| {
-                    horizon.map_or(open, |horizon| model.sheet(horizon, region.block).node(x, y))
-                };
-                scan.touched(region, |x, y| (node(bottom, x, y, f32::INFINITY), node(top, x, y, f32::NEG_INFINITY)))
-            })
-            .collect();
-        drop(scan);
-        let rows: usize = touched.iter().map(|region| region.size[0]).sum();
-        progress.begin("parameterizing", rows as u64);
-        let mut reaches = vec![1.0f32; layers];
-        for (n, touched) in touched.iter().enumerate() {
-            let reach = &mut reaches[n % layers];
-            *reach = reach.max(planner.farthest(region(n), touched));
+        let mut touched = Vec::with_capacity(layers * blocks);
+        let mut planned = Vec::with_capacity(layers * blocks);
+        for (grid, method, columns) in Self::plan(model, &planner, progress)? {
+            planned.push((grid, method));
+            touched.push(columns);
         }
-        let planned: Vec<(RegionGrid, Method)> = (0..layers * blocks)
-            .into_par_iter()
-            .map(|n| planner.plan(region(n), &touched[n], reaches[n % layers]))
-            .collect();
         let up = |p: Vec3, at: Region| {
             let (grid, _) = &planned[usize::from(at.block) * layers + usize::from(at.layer)];
             grid.rise(model, &metric, p)
@@ -134,6 +114,43 @@ impl Parameterization {
             grids.push(grid);
         }
         Ok(Self { size, layers, blocks, grids, cost })
+    }
+
+    /// What is to be computed for each region, in the order of the grids, and the columns that it occupies.
+    pub(crate) fn plan<M: LayerModel + ?Sized>(
+        model: &M,
+        planner: &Planner<M>,
+        progress: &Progress,
+    ) -> Result<Vec<(RegionGrid, Method, RegionColumns)>, ParamError> {
+        let (layers, blocks) = (model.layer_count(), model.block_count());
+        let scan = ColumnScan::of(model, progress)?;
+        let region = |n: usize| Region { layer: (n % layers) as u16, block: (n / layers) as u16 };
+        let touched: Vec<RegionColumns> = (0..layers * blocks)
+            .into_par_iter()
+            .map(|n| {
+                let region = region(n);
+                let (bottom, top) = plan::horizons(model, n % layers);
+                let field = |horizon: &usize| model.level(*horizon, region.block).is_none();
+                let (bottom, top) = (bottom.filter(field), top.filter(field));
+                let node = |horizon: Option<usize>, x, y, open| {
+                    horizon.map_or(open, |horizon| model.sheet(horizon, region.block).node(x, y))
+                };
+                scan.touched(region, |x, y| (node(bottom, x, y, f32::INFINITY), node(top, x, y, f32::NEG_INFINITY)))
+            })
+            .collect();
+        drop(scan);
+        let rows: usize = touched.iter().map(|region| region.size[0]).sum();
+        progress.begin("parameterizing", rows as u64);
+        let mut reaches = vec![1.0f32; layers];
+        for (n, touched) in touched.iter().enumerate() {
+            let reach = &mut reaches[n % layers];
+            *reach = reach.max(planner.farthest(region(n), touched));
+        }
+        let planned = touched.into_par_iter().enumerate().map(|(n, touched)| {
+            let (grid, method) = planner.plan(region(n), &touched, reaches[n % layers]);
+            (grid, method, touched)
+        });
+        Ok(planned.collect())
     }
 
     /// The grid of a region.

@@ -87,10 +87,9 @@ pub fn unfold<M: LayerModel + ?Sized>(
                 let cells: Vec<Cell> = (0..lattice.blocks).flat_map(of_block).collect();
                 let frame = Frame::of(metres, cells.iter().filter_map(|(_, _, normal)| *normal));
                 let problem = Problem { lattice: &lattice, cells: &cells, frame: &frame, metres };
-                let solve = |which: usize| problem.solve(which, before.as_ref(), progress);
-                let (u, v) = rayon::join(|| solve(0), || solve(1));
+                let solved = problem.solve(before.as_ref(), progress)?;
                 progress.step(1)?;
-                Ok(Some([lattice.spread(&u?), lattice.spread(&v?)]))
+                Ok(Some([0, 1].map(|which| lattice.spread(&solved, which))))
             })
             .collect::<Result<_, Cancelled>>()?;
     }
@@ -122,13 +121,8 @@ struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// u (0) or v (1) in metres, from what was found on a coarser lattice.
-    fn solve(
-        &self,
-        which: usize,
-        before: Option<&[Vec<LevelField>; 2]>,
-        progress: &Progress,
-    ) -> Result<Vec<f64>, Cancelled> {
+    /// u and v in metres, from what was found on a coarser lattice. Their equations differ in the right sides alone.
+    fn solve(&self, before: Option<&[Vec<LevelField>; 2]>, progress: &Progress) -> Result<Vec<[f64; 2]>, Cancelled> {
         let (lattice, voxel) = (self.lattice, self.metres.inverse());
         let step = |axis: usize| self.metres.col(axis).length() * f64::from(lattice.nodes.step[axis]);
         let spacing_m = (0..3).map(step).fold(0.0, f64::max);
@@ -137,22 +131,24 @@ impl Problem<'_> {
         lattice.add_smoothness(SMOOTH / spacing_m, &mut equations);
         for &(block, node, normal) in self.cells {
             let Some(n) = normal else { continue };
-            let mut slope = |direction: DVec3, weight: f64, right: f64| {
+            let mut slope = |direction: DVec3, weight: f64, right: [f64; 2]| {
                 equations.add(weight, lattice.slope(block, node, direction, voxel), right);
             };
-            slope(n, ACROSS, 0.0);
-            if let Some(along) = self.frame.along(n) {
-                slope(along[which], 1.0, 1.0);
-                slope(along[1 - which], 1.0, 0.0);
+            slope(n, ACROSS, [0.0; 2]);
+            if let Some([along_u, along_v]) = self.frame.along(n) {
+                slope(along_u, 1.0, [1.0, 0.0]);
+                slope(along_v, 1.0, [0.0, 1.0]);
             }
         }
-        let axis = [self.frame.x, self.frame.y][which];
-        let on_map = lattice.guess(|_, p| (self.metres * p.as_dvec3()).dot(axis));
+        let on_map = lattice.guess(|_, p| {
+            let p = self.metres * p.as_dvec3();
+            [p.dot(self.frame.x), p.dot(self.frame.y)]
+        });
         for (unknown, &at) in on_map.iter().enumerate() {
             equations.add(HELD / extent_m, [(unknown as u32, 1.0)], at);
         }
         let guess = match before {
-            Some(coarse) => lattice.guess(|block, p| f64::from(coarse[which][block].value(p))),
+            Some(coarse) => lattice.guess(|block, p| [0, 1].map(|n: usize| f64::from(coarse[n][block].value(p)))),
             None => on_map,
         };
         equations.solve(guess, TOLERANCE, MOST_STEPS, progress)

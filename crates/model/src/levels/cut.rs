@@ -141,8 +141,8 @@ impl CutLattice {
     }
 
     /// A first guess of all unknowns: a function of the voxel position in a block.
-    pub fn guess(&self, value: impl Fn(usize, Vec3) -> f64) -> Vec<f64> {
-        let mut guess = vec![0.0; self.unknowns];
+    pub fn guess<const N: usize>(&self, value: impl Fn(usize, Vec3) -> [f64; N]) -> Vec<[f64; N]> {
+        let mut guess = vec![[0.0; N]; self.unknowns];
         for block in 0..self.blocks {
             for node in 0..self.nodes.count() {
                 if let Some(at) = guess.get_mut(self.unknown(block, node) as usize) {
@@ -153,12 +153,13 @@ impl CutLattice {
         guess
     }
 
-    /// A solution at all nodes of each block; nodes that were not wanted continue their neighbours.
-    pub fn spread(&self, values: &[f64]) -> Vec<LevelField> {
+    /// One of the solutions at all nodes of each block; nodes that were not wanted continue their neighbours.
+    pub fn spread<const N: usize>(&self, values: &[[f64; N]], which: usize) -> Vec<LevelField> {
         let NodeBox { origin, step, size } = self.nodes;
         let field = |block: usize| {
-            let at =
-                |node: usize| values.get(self.unknown(block, node) as usize).map_or(f32::NAN, |&value| value as f32);
+            let at = |node: usize| {
+                values.get(self.unknown(block, node) as usize).map_or(f32::NAN, |value| value[which] as f32)
+            };
             let mut found: Vec<f32> = (0..self.nodes.count()).map(at).collect();
             let mut edge: Vec<usize> = (0..found.len()).filter(|&node| found[node].is_finite()).collect();
             while !edge.is_empty() {
@@ -210,7 +211,7 @@ impl CutLattice {
     }
 
     /// Adds the second differences of all blocks, which are 0 where the solution is as straight as can be.
-    pub fn add_smoothness(&self, weight: f64, equations: &mut Equations) {
+    pub fn add_smoothness<const N: usize>(&self, weight: f64, equations: &mut Equations<N>) {
         let size = self.nodes.size;
         let strides = [size[1] * size[2], size[2], 1];
         for block in 0..self.blocks {
@@ -220,7 +221,7 @@ impl CutLattice {
                     let of = |block: usize| nodes.iter().map(move |&(n, _)| self.unknown(block, n));
                     // What a block shares with one before it was added there.
                     if of(block).all(|n| n != NONE) && (0..block).all(|other| of(other).ne(of(block))) {
-                        equations.add(weight, nodes.iter().map(|&(n, c)| (self.unknown(block, n), c)), 0.0);
+                        equations.add(weight, nodes.iter().map(|&(n, c)| (self.unknown(block, n), c)), [0.0; N]);
                     }
                 };
                 for axis in 0..3 {

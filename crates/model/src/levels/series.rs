@@ -108,25 +108,25 @@ impl Series<'_> {
             let value = lattice.value(usize::from(point.block), point.p);
             // The youngest lies at 0, the oldest at 1, the others where they fit best.
             match point.horizon {
-                0 => equations.add(POINT_WEIGHT, value, 0.0),
-                h if h + 1 == self.horizons => equations.add(POINT_WEIGHT, value, 1.0),
+                0 => equations.add(POINT_WEIGHT, value, [0.0]),
+                h if h + 1 == self.horizons => equations.add(POINT_WEIGHT, value, [1.0]),
                 h => {
                     let level = (first_level + h as u32 - 1, -1.0);
-                    equations.add(POINT_WEIGHT, value.into_iter().chain([level]), 0.0);
+                    equations.add(POINT_WEIGHT, value.into_iter().chain([level]), [0.0]);
                 }
             }
         }
         let mut guess = lattice.guess(|block, p| match before {
-            Some(before) => f64::from(before.fields[block].value(p)),
-            None => f64::from((p.z / self.size[2] as f32).clamp(0.0, 1.0)),
+            Some(before) => [f64::from(before.fields[block].value(p))],
+            None => [f64::from((p.z / self.size[2] as f32).clamp(0.0, 1.0))],
         });
         for h in 1..self.horizons - 1 {
-            guess.push(before.map_or(h as f64 / (self.horizons - 1) as f64, |before| before.levels[h]));
+            guess.push([before.map_or(h as f64 / (self.horizons - 1) as f64, |before| before.levels[h])]);
         }
         let mut values = equations.solve(guess, TOLERANCE, MOST_STEPS, progress)?;
         let between = values.split_off(lattice.unknowns);
-        let levels = [0.0].into_iter().chain(between).chain([1.0]).collect();
-        Ok(Solution { fields: lattice.spread(&values), levels })
+        let levels = [[0.0]].into_iter().chain(between).chain([[1.0]]).map(|[level]| level).collect();
+        Ok(Solution { fields: lattice.spread(&values, 0), levels })
     }
 
     /// Metres along ∇τ for a unit of τ: the median over the points.

@@ -8,7 +8,7 @@
 pub const MODEL: u32 = 2;
 
 /// The parameterization.
-pub const PARAMETERIZATION: u32 = 2;
+pub const PARAMETERIZATION: u32 = 3;
 
 /// Horizon candidates: extrema, growing, surface trees, distances.
 pub const EXTRACTION: u32 = 1;
@@ -122,7 +122,7 @@ mod tests {
     fn a_changed_result_has_a_changed_revision() {
         let known = [
             ("MODEL", MODEL, of_model(), (2, "f3513521b9d7")),
-            ("PARAMETERIZATION", PARAMETERIZATION, of_parameterization(), (2, "b365248c779a")),
+            ("PARAMETERIZATION", PARAMETERIZATION, of_parameterization(), (3, "b365248c779a")),
             ("EXTRACTION", EXTRACTION, of_extraction(), (1, "7a7715634834")),
             ("PROPOSALS", PROPOSALS, of_proposals(), (1, "1fc6c26217e7")),
         ];
