@@ -28,14 +28,23 @@ const WRITTEN: [(Annotation, &str); 6] = [
 /// The room of the page beside the form, points of the screen.
 const PREVIEW: Vec2 = Vec2::new(470.0, 430.0);
 
+/// What the dialogue shows.
+#[derive(Clone, Copy)]
+pub struct Shows<'a> {
+    /// What was entered.
+    pub form: &'a ExportForm,
+    /// Whether a page is being drawn.
+    pub is_drawing: bool,
+    /// Horizons that were hardly picked.
+    pub sparse: &'a [SparseHorizon],
+}
+
 /// Shows the dialogue; whether its page is to be laid out.
 pub fn show(
     ctx: &Context,
     state: &State,
     session: &Session,
-    form: &ExportForm,
-    is_drawing: bool,
-    sparse: &[SparseHorizon],
+    shows: Shows,
     preview: &mut PagePreview,
     actions: &mut Vec<Action>,
 ) -> bool {
@@ -45,7 +54,7 @@ pub fn show(
         ui.horizontal_top(|ui| {
             ui.vertical(|ui| {
                 ui.set_width(440.0);
-                asks = fields(ui, state, session, form, is_drawing, sparse, actions);
+                asks = fields(ui, state, session, shows, actions);
             });
             if preview.has_page() {
                 ui.vertical(|ui| page(ui, session, preview, actions));
@@ -79,9 +88,7 @@ fn fields(
     ui: &mut Ui,
     state: &State,
     session: &Session,
-    form: &ExportForm,
-    is_drawing: bool,
-    sparse: &[SparseHorizon],
+    Shows { form, is_drawing, sparse }: Shows,
     actions: &mut Vec<Action>,
 ) -> bool {
     let mut asks = false;

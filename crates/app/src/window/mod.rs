@@ -375,8 +375,8 @@ impl Window {
                     let is_drawing = self.work.running.lines().iter().any(|line| line.place == Place::Dialogue);
                     let loaded = self.rocks.as_ref().and_then(|(rocks, _)| rocks.try_read().ok());
                     let sparse = loaded.as_ref().map_or(&[][..], |loaded| &loaded.sparse);
-                    let preview = &mut self.preview;
-                    let asks = export::show(ctx, &self.state, session, form, is_drawing, sparse, preview, actions);
+                    let shows = export::Shows { form, is_drawing, sparse };
+                    let asks = export::show(ctx, &self.state, session, shows, &mut self.preview, actions);
                     // Where the file lies changes nothing on the page.
                     let form = ExportForm { path: String::new(), ..form.clone() };
                     let is_outdated = self.preview.has_page() && !is_drawing && self.previewed.as_ref() != Some(&form);
