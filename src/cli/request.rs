@@ -34,6 +34,7 @@ use ttf::{Colour, ColourMap, DepthInterval, Frequency, ScalarInterval, ScalarTtf
 
 /// A request.
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "a run has one request")]
 pub(super) enum Request {
     /// Make a synthetic survey and pictures of it.
     Demo { out: PathBuf },
@@ -72,7 +73,7 @@ pub(super) enum Request {
     /// Compute i, j, k.
     Parameterize { project: PathBuf, size: Option<[usize; 3]> },
     /// Draw a picture.
-    Render(Box<RenderRequest>),
+    Render(RenderRequest),
     /// Draw an animation.
     Animate(AnimateRequest),
     /// Make all figures of a project, with at most so many bytes of memory for the samples of a volume.
@@ -183,7 +184,7 @@ impl TryFrom<Action> for Request {
                 let size = typed.size.as_deref().map(|size| counts::<3>("--size", size)).transpose()?;
                 Self::Parameterize { project: typed.project, size }
             }
-            Action::Render(typed) => Self::Render(Box::new(render_request(*typed)?)),
+            Action::Render(typed) => Self::Render(render_request(*typed)?),
             Action::Animate(typed) => Self::Animate((*typed).try_into()?),
             Action::Figures(typed) => {
                 let (device, volume_bytes) = drawing(&typed.drawing)?;
