@@ -24,6 +24,22 @@ made=$(mktemp -d)
 trap 'rm -rf "$made"' EXIT
 quietly() { "$petroglyph" "$@" > /dev/null 2>&1; }
 
+# Three wells with tops and one without, whose layers are the model's.
+cp -r "$project" "$made/wells.petro"
+printf 'md_m,inc,azi\n0,0,0\n1240,0,0\n' > "$made/path.csv"
+printf '%s\n' surface,md_m,well Alpha,283,A-1 Bravo,409,A-1 Unconformity,525,A-1 Charlie,870,A-1 Delta,1125,A-1 \
+    Alpha,395,A-2 Bravo,520,A-2 Unconformity,643,A-2 Charlie,868,A-2 Delta,1088,A-2 \
+    Alpha,308,B-1 Bravo,456,B-1 Unconformity,603,B-1 Charlie,636,B-1 Delta,852,B-1 > "$made/tops.csv"
+well() { quietly well add "$made/wells.petro" "$made/path.csv" --name "$1" --head "$2" --kb 25 "${@:3}"; }
+well A-1 430500,6780700 --tops "$made/tops.csv"
+well A-2 431500,6781800 --tops "$made/tops.csv"
+well B-1 432600,6780900 --tops "$made/tops.csv"
+well B-2 433500,6782600
+"$petroglyph" render "$made/wells.petro" "$folder/demo-correlation.png" --correlation --datum Unconformity \
+    --size-cm 17x11 --dpi 150 --legend --scale-bar
+"$petroglyph" render "$made/wells.petro" "$folder/demo-water.png" --cut nearest,0.45,0.45 --blend 0 --water 0 \
+    --annotate all --size-cm 17x11.5 --dpi 150 --samples 4
+
 "$petroglyph" synth "$made/salt" --salt --size 112x112x96 > /dev/null 2>&1
 quietly import "$made/salt/survey.sgy" "$made/salt.petro"
 for fault in "$made"/salt/faults/*.ts; do

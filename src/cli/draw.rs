@@ -1,5 +1,6 @@
 //! `petroglyph render`: draws a picture, and reports the assumptions behind it.
 
+use super::page::PageRequest;
 use super::report::Report;
 use super::request::RenderRequest;
 use super::run::scene_file;
@@ -35,7 +36,9 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     }
     scene::prepare(document, &mut scene, progress)?;
     memory::check("the picture", &scene.size_px.map(|side| side as usize), PIXEL_BYTES)?;
-    if let Some(page) = &request.figure {
+    // Water is drawn by pages.
+    let bare = PageRequest::default();
+    if let Some(page) = request.figure.as_ref().or(scene.water.map(|_| &bare)) {
         return super::page::draw(request, page, &project, &scene, progress);
     }
     let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
@@ -72,18 +75,22 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
 
 /// Makes all figures of a project.
 pub(super) fn figures(
-    project: &Path,
+    root: &Path,
     out: &Path,
     device: Device,
     volume_bytes: Option<u64>,
     progress: &Progress,
 ) -> anyhow::Result<Report> {
     let volume_bytes = volume_bytes.unwrap_or_else(memory_budget::half_of_available);
-    let made = figures::make_all(&Project::open(project)?, out, device, volume_bytes, progress)?;
+    let made = figures::make_all(&Project::open(root)?, out, device, volume_bytes, progress)?;
     let mut report = Report::default();
+    let mut pairs: Vec<NamedConfusion> = Vec::new();
     for figure in &made {
         report.say(written(&figure.file, figure.size_px, figure.dpi));
+        let new: Vec<_> = figure.look_alikes.iter().filter(|pair| !pairs.contains(pair)).cloned().collect();
+        pairs.extend(new);
     }
+    advise(root, pairs, &mut report);
     report.field("figures", made);
     Ok(report)
 }

@@ -8,7 +8,9 @@ use super::request::{RenderRequest, Usage, numbers};
 use anyhow::Context;
 use figure::draw::block::Comparison;
 use figure::draw::section::Zoom;
-use figure::{Annotation, BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionKind, SectionPart};
+use figure::{
+    Annotation, BlockPart, CorrelationPart, FencePart, Figure, MapPart, PageSize, Part, SectionKind, SectionPart,
+};
 use project::figures::{self, FigureSettings, InterpreterView};
 use project::{Project, memory_budget};
 use render::Scene;
@@ -22,6 +24,7 @@ pub(super) struct PageRequest {
     fence: Vec<[f64; 2]>,
     /// A map: its horizon (`None`: the topmost one), and the horizon down to which thickness is measured.
     map: Option<(Option<String>, Option<String>)>,
+    correlation: Option<CorrelationPart>,
     has_block: bool,
     comparison: Comparison,
     is_interpretation: bool,
@@ -39,6 +42,7 @@ pub(super) struct PageRequest {
 impl PageRequest {
     /// Parses the options of the page; `None` where only a picture of the block was asked for.
     pub(super) fn meant(typed: FigureArgs, is_map: bool) -> Result<Option<Self>, Usage> {
+        let correlation = correlation(&typed)?;
         let kinds = [
             (SectionKind::Inline, typed.inline),
             (SectionKind::Slice, typed.slice),
@@ -61,6 +65,7 @@ impl PageRequest {
             sections,
             fence,
             map,
+            correlation,
             has_block: typed.block,
             comparison: comparison(typed.compare.as_deref(), typed.wipe)?,
             is_interpretation: typed.interpretation,
@@ -77,6 +82,7 @@ impl PageRequest {
         let parts = meant.sections.len()
             + usize::from(!meant.fence.is_empty())
             + usize::from(meant.map.is_some())
+            + usize::from(meant.correlation.is_some())
             + usize::from(meant.has_block);
         if parts > 4 {
             return Err(format!("a page holds at most four parts, these are {parts}: leave some out"));
@@ -86,7 +92,8 @@ impl PageRequest {
 
     /// Whether more was asked for than a picture of the block.
     fn is_page(&self) -> bool {
-        let has_parts = !self.sections.is_empty() || !self.fence.is_empty() || self.map.is_some() || self.has_block;
+        let has_lines = !self.sections.is_empty() || !self.fence.is_empty();
+        let has_parts = has_lines || self.map.is_some() || self.correlation.is_some() || self.has_block;
         let has_words = self.title.is_some() || self.caption.is_some() || !self.annotations.is_empty();
         let has_more =
             self.is_interpretation || self.has_legend || self.has_scale_bar || self.has_north_arrow || has_words;
@@ -114,6 +121,7 @@ impl PageRequest {
             let horizon = horizon.clone().or(topmost).context("a map shows a horizon; the project has none")?;
             parts.push(Part::Map(MapPart { horizon, thickness_to: thickness_to.clone() }));
         }
+        parts.extend(self.correlation.clone().map(Part::Correlation));
         if self.has_block || parts.is_empty() {
             let scene = if self.is_interpretation { figures::interpreted(scene) } else { scene.clone() };
             parts.insert(0, BlockPart { scene, comparison: self.comparison }.into());
@@ -133,6 +141,18 @@ impl PageRequest {
             preset: Some(scene.preset),
         })
     }
+}
+
+/// Parses wells side by side; `None` where they were not asked for.
+fn correlation(typed: &FigureArgs) -> Result<Option<CorrelationPart>, Usage> {
+    let Some(wells) = &typed.correlation else { return Ok(None) };
+    let logs = match typed.log.as_slice() {
+        [] => None,
+        [none] if none == "none" => Some(Vec::new()),
+        names => Some(names.to_vec()),
+    };
+    let range = typed.well_range.as_deref().map(|text| numbers::<2>("--well-range", text, ',')).transpose()?;
+    Ok(Some(CorrelationPart { wells: wells.clone(), datum: typed.datum.clone(), logs, range }))
 }
 
 /// Parses what is written on blocks.

@@ -23,6 +23,8 @@ pub(super) struct ViewChanges {
     cuts: Vec<Cut>,
     ground: Option<Option<Ground>>,
     ground_opacity: Option<f32>,
+    /// The level of water, or none.
+    water: Option<Option<f64>>,
     face_data: Option<FaceData>,
     tree_level: Option<u32>,
     outlines: Option<Outlines>,
@@ -70,6 +72,11 @@ impl TryFrom<ViewArgs> for ViewChanges {
             cuts,
             ground: switch("--ground", typed.ground.as_deref(), Some(Ground::default()), None)?,
             ground_opacity: typed.ground_opacity,
+            water: match typed.water.as_deref() {
+                None => None,
+                Some("off") => Some(None),
+                Some(text) => Some(Some(numbers::<1>("--water", text, ',')?[0])),
+            },
             face_data: match typed.show.as_deref() {
                 None => typed.level.map(|_| FaceData::Leaves),
                 Some("rock") => Some(FaceData::Rock),
@@ -129,6 +136,17 @@ impl ViewChanges {
         scene.ground = self.ground.unwrap_or(scene.ground);
         if let (Some(ground), Some(opacity)) = (&mut scene.ground, self.ground_opacity) {
             ground.opacity = opacity;
+        }
+        match self.water {
+            None => {}
+            Some(None) => scene.water = None,
+            Some(Some(level)) => {
+                scene.water = Some(scene.water.unwrap_or_default());
+                scene.ground = scene.ground.or(Some(Ground::default()));
+                let mut block = scene.box_in(geometry);
+                block.min[2] = geometry.vertical.index_of(level);
+                scene.roaming_box = Some(block);
+            }
         }
         scene.face_data = self.face_data.unwrap_or(scene.face_data);
         scene.tree_level = self.tree_level.unwrap_or(scene.tree_level);

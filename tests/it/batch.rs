@@ -67,6 +67,8 @@ fn what_cannot_be_made_is_said_and_nothing_is_half_done() {
     }
     refused("file = 'b.gif'", &["\"b.gif\"", ".svg or .pdf"]);
     refused("file = 'b.png'\nlegends = true", &["legends"]);
+    let sceneless = "file = 'b.png'\nscene = 'front'\n[[figures.parts]]\nsection = { kind = 'inline', at = 120.0 }";
+    refused(sceneless, &["\"b.png\"", "names a scene, but none of its parts is a block"]);
     // Found only when the second is made: the first does not stay alone.
     let outside = "file = 'b.png'\n[[figures.parts]]\nsection = { kind = 'inline', at = 4711.0 }";
     refused(outside, &["\"b.png\"", "inline 4711", "outside the survey"]);

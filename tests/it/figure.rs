@@ -79,6 +79,51 @@ fn what_is_not_there_is_said_with_what_helps() {
     assert_eq!(run_in(at, "render p.petro a.png --compare 0,1 --wipe 2").code, 2);
 }
 
+#[test]
+fn water_fills_the_block_above_the_ground_up_to_its_level_in_every_format() {
+    let folder = project();
+    let at = folder.path();
+    let blue = |image: &RgbImage| image.pixels().filter(|p| i16::from(p.0[2]) > i16::from(p.0[0]) + 25).count();
+    let air = picture(at, "--block --ground on");
+    let water = picture(at, "--block --water 0");
+    assert!(blue(&water) > blue(&air) + 1000, "{} {}", blue(&water), blue(&air));
+    // A picture of the block alone has it too.
+    run_in(at, "render p.petro b.png --water 0 --size 160x120 --samples 1 --device cpu").done();
+    assert!(blue(&image::open(at.join("b.png")).unwrap().to_rgb8()) > 300);
+    run_in(at, &format!("render p.petro a.svg --water 20 --legend {SMALL}")).done();
+    let svg = fs::read_to_string(at.join("a.svg")).unwrap();
+    assert_eq!(svg.matches("inkscape:label=\"Water\"").count(), 2, "the body and its entry in the legend");
+    // Scenes keep it, and it can be switched off.
+    run_in(at, "scene add p.petro sea --water 0").done();
+    assert!(run_in(at, "scene show p.petro sea").done().stdout.contains("[water]"));
+    assert!(blue(&picture(at, "--block --scene sea --water off")) < blue(&water) / 2);
+    run_in(at, "render p.petro a.png --water 90000").failed(&["roaming box"]);
+    assert_eq!(run_in(at, "render p.petro a.png --water high").code, 2);
+}
+
+/// Names that files must escape, letters that the face lacks, and a page without room.
+#[test]
+fn odd_names_and_tiny_pages_make_sensible_figures() {
+    let folder = project();
+    let at = folder.path();
+    let state = at.join("p.petro/project.toml");
+    let plain = fs::read_to_string(&state).unwrap();
+    let patternless = plain.replace("layers = []", "layers = [{ layer = 'Alpha - Bravo', colour = '#c0b090' }]");
+    assert_ne!(patternless, plain);
+    fs::write(&state, patternless).unwrap();
+    for file in ["a.svg", "a.pdf", "a.png"] {
+        let told = run_in(at, &format!("render p.petro {file} --title '<&> Grès' --annotate all {SMALL}")).done();
+        assert!(!told.stderr.contains("boxes"), "{}", told.stderr);
+        let told = run_in(at, &format!("render p.petro {file} --title 石灰岩 --caption حجر --legend {SMALL}")).done();
+        assert!(told.stderr.contains("boxes") && told.stderr.contains("Latin"), "{}", told.stderr);
+        run_in(at, &format!("render p.petro {file} --legend --size-cm 1x1 --dpi 60")).failed(&["no room"]);
+    }
+    run_in(at, &format!("render p.petro a.svg --title '<&>' --inline 120 {SMALL}")).done();
+    assert!(fs::read_to_string(at.join("a.svg")).unwrap().contains("&lt;&amp;&gt;"));
+    // A block alone needs no room for words.
+    run_in(at, "render p.petro a.pdf --size-cm 1x1 --dpi 60 --device cpu").done();
+}
+
 #[cfg(feature = "window")]
 mod window {
     use super::*;

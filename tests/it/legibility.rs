@@ -37,6 +37,14 @@ fn layers_that_look_alike_are_said_and_the_advice_helps() {
     let json = run_in(at, &format!("render p.petro a.png {SMALL} --json")).done().json();
     assert_eq!(json["look_alikes"][0]["layers"][1], "Bravo - Unconformity");
     // The command in it is one that can be given.
+    let state = at.join("p.petro/project.toml");
+    let plain = fs::read_to_string(&state).unwrap();
+    let entry = |file: &str| format!("[[figures]]\nfile = '{file}'\nsize = {{ px = [160, 120] }}\ndpi = 100\n");
+    fs::write(&state, format!("{plain}\n{}{}", entry("a.png"), entry("b.png"))).unwrap();
+    let all = run_in(at, "figures p.petro out --device cpu").done();
+    assert_eq!(all.stderr.matches("note: ").count(), 1, "once for all figures: {}", all.stderr);
+    assert!(all.stderr.contains("Alpha - Bravo and Bravo - Unconformity are neighbours"), "{}", all.stderr);
+    fs::write(&state, plain).unwrap();
     let command = told[0].split("; petroglyph ").nth(1).unwrap().trim_end_matches(" tells them apart");
     let command = command.replace('"', "'");
     assert_eq!(words(&command)[..2], ["layer", "set"]);

@@ -8,6 +8,7 @@ mod batch;
 mod bombs;
 mod chain;
 mod check;
+mod correlation;
 mod create;
 mod cuts;
 mod demo;

@@ -12,6 +12,8 @@ pub enum Annotation {
     Layers,
     /// Names of faults, the throw measured there, and half-arrows that say which side went down.
     Faults,
+    /// Names of wells at their heads, and of their tops, where they are seen.
+    Wells,
     /// A bar that says which values the colours of measured data stand for.
     Colours,
     /// A line that says which program and which project a figure comes from, and whose data it shows.
@@ -20,7 +22,7 @@ pub enum Annotation {
 
 impl Annotation {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Axes, Self::Layers, Self::Faults, Self::Colours, Self::Provenance];
+    pub const ALL: [Self; 6] = [Self::Axes, Self::Layers, Self::Faults, Self::Wells, Self::Colours, Self::Provenance];
 
     /// What people call it.
     pub const fn name(self) -> &'static str {
@@ -28,6 +30,7 @@ impl Annotation {
             Self::Axes => "axes",
             Self::Layers => "layers",
             Self::Faults => "faults",
+            Self::Wells => "wells",
             Self::Colours => "colours",
             Self::Provenance => "provenance",
         }

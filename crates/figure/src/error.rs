@@ -60,6 +60,49 @@ pub enum FigureError {
         /// What was asked for, in words.
         what: String,
     },
+    /// Wells side by side of a project that has none.
+    #[error("a correlation panel shows wells, and the project has none; add them with `petroglyph well add`")]
+    NoWells,
+    /// A well that is not there.
+    #[error("there is no well named \"{well}\"; the wells are {}", known.join(", "))]
+    NoWell {
+        /// The name that was asked for.
+        well: String,
+        /// The names that there are.
+        known: Vec<String>,
+    },
+    /// A well that does not reach the surface which is to be level.
+    #[error(
+        "well \"{well}\" does not meet {datum}, which is to be level; take another datum or leave the well out ({})",
+        if tops.is_empty() { "it has no tops".to_owned() } else { format!("its tops: {}", tops.join(", ")) }
+    )]
+    NoDatum {
+        /// The well.
+        well: String,
+        /// The surface.
+        datum: String,
+        /// The tops of the well.
+        tops: Vec<String>,
+    },
+    /// A curve that no well has.
+    #[error(
+        "no well has a curve named \"{log}\"{}",
+        if known.is_empty() { "; the wells have no curves".to_owned() } else { format!("; there are {}", known.join(", ")) }
+    )]
+    NoLog {
+        /// The curve.
+        log: String,
+        /// The curves that there are.
+        known: Vec<String>,
+    },
+    /// An axis without length.
+    #[error("the axis of a correlation panel runs from a smaller to a larger value, not from {from} to {to}")]
+    NoRange {
+        /// Where it was to begin.
+        from: f64,
+        /// Where it was to end.
+        to: f64,
+    },
     /// An interpreter's view without an interpretation.
     #[error("the figure shows what an interpreter sees, but no interpretation was given")]
     NoInterpretation,

@@ -13,6 +13,7 @@
 //! | [`pdf()`] | a page as a PDF document |
 //! | [`cut`] | sections and fences as data: rasters and lines |
 //! | [`map`] | horizons and thicknesses as data: values, contours, hatching |
+//! | [`correlation`] | wells as columns of layers, to be joined by lines |
 //! | [`interpretation`] | what an interpreter sees, as borrowed data |
 //! | [`draw`] | builders: from such data to groups of items |
 //! | [`spec`], [`make`](mod@make) | what a figure shows, and the one way it is made |
@@ -25,6 +26,8 @@
 pub mod animation;
 mod annotation;
 mod compress;
+mod convex;
+pub mod correlation;
 pub mod cut;
 pub mod draw;
 pub mod error;
@@ -47,5 +50,5 @@ pub use make::{FigureInputs, make};
 pub use pdf::pdf;
 pub use raster::{raster, tiff};
 pub use rect::Rect;
-pub use spec::{BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionPart};
+pub use spec::{BlockPart, CorrelationPart, FencePart, Figure, MapPart, PageSize, Part, SectionPart};
 pub use svg::svg;

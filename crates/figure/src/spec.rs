@@ -132,6 +132,8 @@ pub enum Part {
     Fence(FencePart),
     /// A map.
     Map(MapPart),
+    /// Wells side by side.
+    Correlation(CorrelationPart),
 }
 
 impl From<BlockPart> for Part {
@@ -188,6 +190,24 @@ pub struct MapPart {
     pub thickness_to: Option<String>,
 }
 
+/// Wells side by side, their tops joined by lines.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CorrelationPart {
+    /// The wells from left to right; empty: all of the project, in its order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub wells: Vec<String>,
+    /// The surface that is drawn as a level line; absent: depths or times are as they are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub datum: Option<String>,
+    /// The curves beside each well; absent: the one that most wells have.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub logs: Option<Vec<String>>,
+    /// First and last value of the axis, in the survey's unit, below the datum if there is one; absent: whole wells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub range: Option<[f64; 2]>,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -200,6 +220,7 @@ mod tests {
                 BlockPart { comparison: Comparison::Wipe([0.0, 1.0], 0.4), ..BlockPart::default() }.into(),
                 Part::Fence(FencePart { corners: vec![[1.0, 2.0], [3.0, 4.0]], show: FaceData::Leaves }),
                 Part::Map(MapPart { horizon: "Top".into(), thickness_to: Some("Base".into()) }),
+                Part::Correlation(CorrelationPart { datum: Some("Top".into()), ..CorrelationPart::default() }),
             ],
             legend: true,
             annotate: Annotation::ALL.to_vec(),

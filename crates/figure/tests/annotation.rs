@@ -2,15 +2,17 @@
 
 use figure::cut::SectionSource;
 use figure::draw::NamedColour;
+use figure::draw::moved::movable;
 use figure::list::{DisplayList, Group, Item, Segment, Text};
 use figure::{Annotation, BlockPart, Figure, FigureInputs, PageSize, make};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use model::{ModelSettings, StructuralModel};
-use render::{Inputs, NamedVolume, Projection, Scene, pick};
-use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
+use render::{DrawnWell, Ground, Inputs, LabelChange, NamedVolume, Projection, Scene, VoxelBox, Water, pick};
+use survey::well::{Survey as Station, Top, WellPath};
+use survey::{Progress, SurveyGeometry, VerticalUnit, Volume, Well};
 use synth::closed_form::ClosedForm;
-use ttf::{Colour, ColourMap, LayerStyle, RawColour, RgbaFunction};
+use ttf::{Colour, ColourMap, LayerStyle, RawColour, RgbaFunction, TextureLibrary};
 
 const DPI: f64 = 144.0;
 
@@ -21,6 +23,8 @@ struct Survey {
     model: StructuralModel,
     volume: Volume<f32>,
     layers: Vec<LayerStyle>,
+    wells: Vec<Well>,
+    has_legend: bool,
 }
 
 impl Survey {
@@ -38,7 +42,15 @@ impl Survey {
         );
         let names = closed.stratigraphy.layer_names_bottom_up();
         let layers = (0..names.len()).rev().map(|n| LayerStyle::plain(&format!("Bed {n}"), Colour::WHITE)).collect();
-        Self { volume: Volume::filled(geometry.size(), 1.0f32), model: model.unwrap(), geometry, closed, layers }
+        Self {
+            volume: Volume::filled(geometry.size(), 1.0f32),
+            model: model.unwrap(),
+            geometry,
+            closed,
+            layers,
+            wells: Vec::new(),
+            has_legend: false,
+        }
     }
 
     fn raw() -> RawColour {
@@ -47,13 +59,19 @@ impl Survey {
 
     fn page(&self, scene: &Scene, annotate: &[Annotation]) -> (DisplayList, Scene) {
         let volumes = [NamedVolume::whole("seismic", &self.volume)];
-        let data = Inputs { model: Some(&self.model), ..Inputs::raw(&self.geometry, &volumes) };
+        let paths: Vec<Vec<DVec3>> = self.wells.iter().map(|well| well.path_in_voxels(&self.geometry)).collect();
+        let drawn = self.wells.iter().zip(&paths).map(|(well, path)| DrawnWell { name: &well.name, path, tops: &[] });
+        let wells: Vec<DrawnWell> = drawn.collect();
+        let data = Inputs { model: Some(&self.model), wells: &wells, ..Inputs::raw(&self.geometry, &volumes) };
+        let library = TextureLibrary::builtin().unwrap();
         let inputs = FigureInputs {
             source: SectionSource { data, raw: Some(&Self::raw()) },
             horizons: &[NamedColour { name: "H1".into(), colour: Colour::BLACK }],
+            strata: &self.closed.stratigraphy.horizons,
+            wells: &self.wells,
             faults: &["F1".to_owned()],
             layers: &self.layers,
-            library: None,
+            library: Some(&library),
             interpretation: None,
             provenance: "Petroglyph · survey",
         };
@@ -62,6 +80,7 @@ impl Survey {
             size: PageSize::Cm([16.0, 11.0]),
             dpi: DPI,
             annotate: annotate.to_vec(),
+            legend: self.has_legend,
             credit: Some("nobody".into()),
             ..Figure::of(part.into())
         };
@@ -230,4 +249,162 @@ fn raw_data_have_a_colour_bar_and_a_page_says_where_it_comes_from() {
     assert!(texts(0.0).contains(&"Petroglyph · survey · data: nobody".to_owned()));
     let plain: Vec<Text> = survey.page(&Scene::default(), &[]).0.texts().into_iter().cloned().collect();
     assert!(plain.is_empty(), "nothing is written unasked");
+}
+
+/// A vertical well at a voxel place, 40 samples deep, with a top at sample 18.
+fn well(name: &str, x: f64, y: f64) -> Well {
+    let station = |md_m: f64| Station { md_m, inclination_deg: 0.0, azimuth_deg: 0.0 };
+    let path = WellPath::minimum_curvature(DVec2::new(12.5 * x, 12.5 * y), 0.0, &[station(0.0), station(500.0)]);
+    let tops = vec![Top { name: format!("Top of {name}"), md_m: 225.0 }];
+    Well { tops, ..Well::new(name, path.unwrap()) }
+}
+
+/// The nearest corner is cut away.
+fn cut(survey: &Survey) -> Scene {
+    let mut scene = Scene::default();
+    (scene.camera.azimuth_deg, scene.camera.elevation_deg) = (Some(45.0), 30.0);
+    let size = survey.geometry.size().map(|count| count as f64 - 1.0);
+    scene.cut_outs = vec![VoxelBox { min: [0.0; 3], max: [0.5 * size[0], 0.5 * size[1], 30.0] }];
+    scene
+}
+
+#[test]
+fn wells_have_names_on_top_faces_and_in_cut_outs_and_tops_where_they_are_seen() {
+    let mut survey = Survey::new(|geometry| ClosedForm::flat(geometry, &[14.0, 26.0]));
+    survey.wells = vec![well("in the cut-out", 15.0, 10.0), well("in rock", 50.0, 30.0), well("outside", 90.0, 10.0)];
+    let scene = cut(&survey);
+    let texts = said(&survey.page(&scene, &[Annotation::Wells]).0);
+    let has = |name: &str| texts.iter().any(|text| text == name);
+    assert!(has("in the cut-out") && has("Top of in the cut-out") && has("in rock"), "{texts:?}");
+    assert!(!has("Top of in rock") && !has("outside"), "{texts:?}");
+    // From below the heads are hidden.
+    let mut below = scene.clone();
+    below.camera.elevation_deg = -40.0;
+    assert!(!said(&survey.page(&below, &[Annotation::Wells]).0).contains(&"in rock".to_owned()));
+}
+
+#[test]
+fn a_legend_lists_what_is_seen_and_nothing_else() {
+    let mut survey = Survey::new(|geometry| ClosedForm::flat(geometry, &[14.0, 26.0, 40.0]).with_fault(65.0, 2.0));
+    survey.has_legend = true;
+    survey.closed.stratigraphy.horizons[1].contact = survey::Contact::Erosional;
+    survey.wells = vec![well("in the cut-out", 15.0, 10.0), well("in rock", 50.0, 30.0)];
+    let legend = |scene: &Scene| {
+        let (page, _) = survey.page(scene, &[]);
+        let mut found = Vec::new();
+        groups(&page.items, "legend", &mut found);
+        let entries = found.iter().flat_map(|legend| &legend.items);
+        entries
+            .filter_map(|item| if let Item::Group(entry) = item { Some(entry.name.clone()) } else { None })
+            .collect::<Vec<_>>()
+    };
+    let whole = cut(&survey);
+    // The head of a well on a top face is seen, though the rest of it lies in rock.
+    let wells = ["in the cut-out", "in rock"];
+    assert_eq!(legend(&whole)[..6], ["Bed 3", "Bed 2", "Bed 1", "Bed 0", "H2 (erosional)", "Fault"]);
+    assert_eq!(legend(&whole)[6..], wells);
+    let mut below = whole.clone();
+    below.camera.elevation_deg = -40.0;
+    assert!(!legend(&below).contains(&"in rock".to_owned()));
+    // A block that ends above the deepest layers.
+    let last = survey.geometry.size().map(|count| count as f64 - 1.0);
+    let shallow = VoxelBox { min: [0.0; 3], max: [last[0], last[1], 20.0] };
+    let upper = Scene { roaming_box: Some(shallow), cut_outs: Vec::new(), ..whole.clone() };
+    assert_eq!(legend(&upper), ["Bed 3", "Bed 2", "Fault", wells[0], wells[1]]);
+    // From straight above a flat top is one layer, and a ground the layer below the air.
+    let mut above = Scene { cut_outs: Vec::new(), ..whole.clone() };
+    above.camera.elevation_deg = 90.0;
+    above.wells.radius = 0.0;
+    assert_eq!(legend(&above), ["Bed 3", "Fault"]);
+    let ground = legend(&Scene { ground: Some(Ground::default()), ..above.clone() });
+    assert!(ground.contains(&"Bed 2".to_owned()) && !ground.contains(&"Bed 3".to_owned()), "{ground:?}");
+    assert!(!ground.contains(&"Bed 0".to_owned()), "{ground:?}");
+    // Zoomed in on the cut-out's foot.
+    let mut near = whole.clone();
+    (near.camera.zoom, near.camera.elevation_deg) = (9.0, 30.0);
+    let seen = legend(&near);
+    assert!(seen.len() > 1 && !seen.contains(&"Bed 0".to_owned()) && !seen.contains(&"in rock".to_owned()), "{seen:?}");
+    // Nothing is drawn of faults whose lines have no width.
+    let mut plain = whole.clone();
+    plain.outlines.faults.width_px = 0.0;
+    assert!(!legend(&plain).contains(&"Fault".to_owned()));
+}
+
+#[test]
+fn labels_stand_where_a_scene_moves_them_and_what_marks_a_place_stays() {
+    let mut survey = Survey::new(|geometry| ClosedForm::flat(geometry, &[14.0, 16.0, 30.0]).with_fault(65.0, 6.0));
+    survey.has_legend = true;
+    survey.wells = vec![well("W", 15.0, 10.0)];
+    let wanted = [Annotation::Axes, Annotation::Layers, Annotation::Faults, Annotation::Wells];
+    assert!(said(&survey.page(&cut(&survey), &wanted).0).contains(&"Well".to_owned()), "one entry where all are named");
+    let plain = cut(&survey);
+    let labels = |scene: &Scene| movable(&survey.page(scene, &wanted).0);
+    let before = labels(&plain);
+    let by = DVec2::new(4.0, -3.0);
+    for label in ["Bed 0", "Bed 2", "F1", "W", "W Top of W", "legend", "axes"] {
+        let place =
+            |labels: &[figure::draw::moved::Movable]| labels.iter().find(|known| known.label == label).unwrap().bounds;
+        let moved = LabelChange { label: label.into(), moved_mm: by.to_array(), ..LabelChange::default() };
+        let scene = Scene { labels: vec![moved.clone()], ..plain.clone() };
+        let after = labels(&scene);
+        let off = place(&after).min - place(&before).min;
+        assert!((off - by * 72.0 / 25.4).length() < 1e-6, "{label}: {off}");
+        let others = |all: &[figure::draw::moved::Movable]| {
+            all.iter().filter(|known| known.label != label).cloned().collect::<Vec<_>>()
+        };
+        assert_eq!(others(&before), others(&after), "{label} alone");
+        let hidden = Scene { labels: vec![LabelChange { is_hidden: true, ..moved }], ..plain.clone() };
+        assert!(!labels(&hidden).iter().any(|known| known.label == label));
+    }
+    // Half-arrows stay with their fault.
+    let scene = |labels: Vec<LabelChange>| Scene { labels, ..plain.clone() };
+    let arrows = |scene: &Scene| {
+        let (page, _) = survey.page(scene, &wanted);
+        let mut found = Vec::new();
+        groups(&page.items, "half-arrows", &mut found);
+        found[0].clone()
+    };
+    let far = LabelChange { label: "F1".into(), moved_mm: [9.0, 9.0], size_pt: Some(12.0), ..LabelChange::default() };
+    assert_eq!(arrows(&scene(Vec::new())), arrows(&scene(vec![far.clone()])));
+    let (page, _) = survey.page(&scene(vec![far]), &wanted);
+    assert_eq!(page.texts().into_iter().find(|text| text.text.starts_with("F1")).unwrap().size, 12.0);
+}
+
+/// Flat ground at sample 14: the sides of the water are as high as the air, and its upper face is the block's.
+#[test]
+fn water_lies_between_the_ground_and_the_top_of_the_block_and_not_in_cut_outs() {
+    let survey = Survey::new(|geometry| ClosedForm::flat(geometry, &[14.0, 26.0]).with_fault(65.0, 0.0));
+    let size = survey.geometry.size().map(|count| count as f64 - 1.0);
+    let mut scene = cut(&survey);
+    (scene.ground, scene.water) = (Some(Ground::default()), Some(Water::default()));
+    let drawn = |scene: &Scene| {
+        let (page, asked) = survey.page(scene, &[]);
+        let mut found = Vec::new();
+        groups(&page.items, "Water", &mut found);
+        (found.into_iter().cloned().collect::<Vec<_>>(), asked)
+    };
+    let (water, asked) = drawn(&scene);
+    assert_eq!(water.len(), 1);
+    let view = asked.view(&survey.geometry);
+    let paths = water[0].items.iter().filter_map(|face| match face {
+        Item::Group(face) => face.items.first(),
+        _ => None,
+    });
+    let paths: Vec<&Item> = paths.collect();
+    let bounds = paths.iter().filter_map(|item| if let Item::Path(path) = item { path.path.bounds() } else { None });
+    let bounds = bounds.reduce(|a, b| a.around(b.min).around(b.max)).unwrap();
+    // From the highest corner of the block's top to the lowest one of the ground.
+    let corners = |z: f64| {
+        [[0.0, 0.0], [size[0], 0.0], [0.0, size[1]], [size[0], size[1]]]
+            .map(|[x, y]| view.project(DVec3::new(x, y, z)).y)
+    };
+    let high = corners(0.0).into_iter().fold(f64::INFINITY, f64::min) * 72.0 / DPI;
+    let low = corners(14.0).into_iter().fold(f64::NEG_INFINITY, f64::max) * 72.0 / DPI;
+    assert!(bounds.min.y - high > -1.0 && bounds.max.y - low < 1.0, "{bounds:?} beside {high} and {low}");
+    assert!(bounds.height() > 0.7 * (low - high), "{bounds:?} beside {high} and {low}");
+    // The walls of the cut-out are faces of the water too; without a cut-out there are three.
+    assert!(paths.len() > 3, "{}", paths.len());
+    assert_eq!(drawn(&Scene { cut_outs: Vec::new(), ..scene.clone() }).0[0].items.len(), 3);
+    assert!(drawn(&Scene { ground: None, ..scene.clone() }).0.is_empty(), "no ground, no water");
+    assert!(drawn(&Scene { water: None, ..scene }).0.is_empty());
 }

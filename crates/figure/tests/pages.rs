@@ -63,6 +63,8 @@ fn made_of(
     let inputs = FigureInputs {
         source: SectionSource { data, raw: Some(&raw) },
         horizons: &horizons,
+        strata: &model.stratigraphy().horizons,
+        wells: &[],
         faults: &["Northern boundary fault".to_owned()],
         layers,
         library,

@@ -77,6 +77,8 @@ impl Fold {
         let inputs = FigureInputs {
             source: SectionSource { data: self.inputs(), raw: None },
             horizons: &horizons,
+            strata: &[],
+            wells: &[],
             faults: &["F1".to_owned()],
             layers: &self.layers,
             library: Some(&self.library),

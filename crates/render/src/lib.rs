@@ -55,6 +55,6 @@ pub use media::{
 pub use motion::Motion;
 pub use outline::{Outlines, Stroke, Unpicked};
 pub use pick::{PickedObject, PickedPoint, pick};
-pub use scene::{Background, Ground, Lookup, PatternSize, Scene};
+pub use scene::{Background, Ground, LabelChange, Lookup, PatternSize, Scene, Water};
 pub use survey::block::{Corner, CutShape, Side, VoxelBox};
 pub use wells::{DrawnWell, WellStyle};

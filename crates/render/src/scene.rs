@@ -62,6 +62,9 @@ pub struct Scene {
     /// The ground as relief of the topmost horizon. Absent: the block has a flat top.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ground: Option<Ground>,
+    /// Water over the ground, up to the block's top; figures draw it. Absent: air.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub water: Option<Water>,
     /// The volume that is shown as raw data, and its colours. Absent: those of the transfer functions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub raw: Option<RawColour>,
@@ -81,6 +84,45 @@ pub struct Scene {
     pub wells: WellStyle,
     /// The media: volume rendering in the cut-outs and around them.
     pub media: Media,
+    /// What is changed about the labels of figures that show it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub labels: Vec<LabelChange>,
+}
+
+/// A translucent body of water between the ground and the top of the block.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Water {
+    /// Its colour. Default blue.
+    pub colour: Colour,
+    /// Its opacity, from 0 to 1. Default 0.3.
+    pub opacity: f32,
+}
+
+impl Default for Water {
+    fn default() -> Self {
+        Self { colour: Colour::new(0x3f, 0x8c, 0xc4), opacity: 0.3 }
+    }
+}
+
+/// What is changed about a label of a figure: where it stands and how it looks.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LabelChange {
+    /// What it names: a layer, a fault, a well, a top as `WELL TOP`; or `legend`, `scale bar`, `axes`, `title` and so on.
+    pub label: String,
+    /// How far it is moved to the right and down, mm on paper. Default 0.
+    #[serde(default)]
+    pub moved_mm: [f64; 2],
+    /// Size of its letters, points. Absent: as it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size_pt: Option<f64>,
+    /// Colour of its letters. Absent: as it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub colour: Option<Colour>,
+    /// Whether it is left out. Default not.
+    #[serde(default)]
+    pub is_hidden: bool,
 }
 
 impl Default for Scene {
@@ -99,6 +141,7 @@ impl Default for Scene {
             roaming_box: None,
             camera: Camera::default(),
             ground: None,
+            water: None,
             raw: None,
             outlines: Outlines::default(),
             cut_outs: Vec::new(),
@@ -107,6 +150,7 @@ impl Default for Scene {
             tree_level: 0,
             wells: WellStyle::default(),
             media: Media::default(),
+            labels: Vec::new(),
         }
     }
 }
@@ -240,6 +284,14 @@ impl Scene {
             number("the hill shading", f64::from(ground.hill_shade), 0.0, 1.0)?;
             number("the ground's opacity", f64::from(ground.opacity), 0.0, 1.0)?;
             number("the light's bearing", f64::from(ground.light_deg), -3600.0, 3600.0)?;
+        }
+        if let Some(water) = self.water {
+            number("the water's opacity", f64::from(water.opacity), 0.0, 1.0)?;
+        }
+        for label in &self.labels {
+            let [right, down] = label.moved_mm;
+            number("the way that a label is moved, mm", right.hypot(down), 0.0, 1e4)?;
+            number("the size of a label's letters", label.size_pt.unwrap_or(8.0), 1.0, 200.0)?;
         }
         self.camera.validate()?;
         self.outlines.validate()?;

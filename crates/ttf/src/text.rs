@@ -85,6 +85,16 @@ pub fn draw_text(image: &mut RgbaImage, at_px: [f32; 2], size_px: f32, colour: C
     }
 }
 
+/// Whether the face has a glyph for a character; one that it lacks is drawn as a box.
+///
+/// ```
+/// use ttf::text::is_known;
+/// assert!(is_known('ø') && is_known('Ж') && !is_known('石') && !is_known('ح'));
+/// ```
+pub fn is_known(character: char) -> bool {
+    face().glyph_id(character).0 != 0
+}
+
 /// A piece of a glyph's contour; contours are closed and follow one another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TextCurve {

@@ -7,6 +7,7 @@
 //! - [`histogram`] and [`opacity_curve`]: the values of a volume, and an RGBA function drawn over them;
 //! - [`obstacle`] and [`percent`]: controls that say why they do nothing, and shares shown in percent;
 //! - [`keyboard`]: what Enter and Escape do in every dialogue and field, and names changed in place;
+//! - [`page`]: a figure's page as it will be printed, on which labels are dragged;
 //! - [`raster`]: paints what egui draws into an image, without a display.
 //!
 //! Deliberately absent: the state of the window, projects, files, threads.
@@ -20,6 +21,7 @@ pub mod histogram;
 pub mod keyboard;
 pub mod obstacle;
 pub mod opacity_curve;
+pub mod page;
 pub mod percent;
 pub mod raster;
 pub mod theme;

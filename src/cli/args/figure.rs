@@ -3,7 +3,7 @@
 use clap::Args;
 use std::path::PathBuf;
 
-/// What is on a page, and how large it is. Several sections, a map and `--block` share one page.
+/// What is on a page, and how large it is. Several sections, a map, wells and `--block` share one page.
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Figures")]
 pub(in crate::cli) struct FigureArgs {
@@ -25,6 +25,18 @@ pub(in crate::cli) struct FigureArgs {
     /// Map the thickness from the horizon of --map down to this one instead
     #[arg(long, value_name = "HORIZON", requires = "map")]
     pub(in crate::cli) thickness_to: Option<String>,
+    /// Wells side by side, their tops joined by lines: from left to right, or all wells of the project in its order
+    #[arg(long, value_name = "WELL", num_args = 0..)]
+    pub(in crate::cli) correlation: Option<Vec<String>>,
+    /// Draw the wells of --correlation so that this top or horizon is level
+    #[arg(long, value_name = "NAME", requires = "correlation")]
+    pub(in crate::cli) datum: Option<String>,
+    /// Curve beside each well of --correlation, or none; repeat it for several [default: the one that most wells have]
+    #[arg(long, value_name = "NAME|none", requires = "correlation")]
+    pub(in crate::cli) log: Vec<String>,
+    /// First and last depth or time of --correlation, from --datum if there is one [default: whole wells]
+    #[arg(long, value_name = "FROM,TO", requires = "correlation", allow_hyphen_values = true)]
+    pub(in crate::cli) well_range: Option<String>,
     /// Add the block, beside the sections or the map that were asked for
     #[arg(long)]
     pub(in crate::cli) block: bool,
@@ -48,9 +60,9 @@ pub(in crate::cli) struct FigureArgs {
     #[arg(long)]
     pub(in crate::cli) north_arrow: bool,
     /// Write on the blocks: axes (inlines, crosslines, depth or time along the edges), layers (names along the
-    /// layers), faults (names, measured throw, half-arrows), colours (a bar of the raw data's values), provenance
+    /// layers), faults (names, measured throw, half-arrows), wells (names of wells and tops), colours (a bar of the raw data's values), provenance
     /// (program, project, --credit); all adds the legend, the scale bar and the north arrow
-    #[arg(long, value_name = "all|axes,layers,faults,colours,provenance", value_delimiter = ',')]
+    #[arg(long, value_name = "all|axes,layers,faults,wells,colours,provenance", value_delimiter = ',')]
     pub(in crate::cli) annotate: Vec<String>,
     /// Whose data the figure shows, for the line of provenance
     #[arg(long, value_name = "TEXT")]
@@ -69,7 +81,7 @@ pub(in crate::cli) struct FigureArgs {
         long,
         value_name = "FILE.toml",
         conflicts_with_all = [
-            "inline", "crossline", "slice", "fence", "map", "block", "compare", "size_cm", "interpretation", "legend",
+            "inline", "crossline", "slice", "fence", "map", "correlation", "block", "compare", "size_cm", "interpretation", "legend",
             "scale_bar", "north_arrow", "annotate", "credit", "title", "caption",
         ]
     )]

@@ -112,6 +112,9 @@ pub(in crate::cli) struct ViewArgs {
     /// Opacity of that relief
     #[arg(long, value_name = "0..1")]
     pub(in crate::cli) ground_opacity: Option<f32>,
+    /// Fill what lies above that relief with water, up to this depth or time, where the block then begins; `off`: air
+    #[arg(long, value_name = "LEVEL|off", allow_hyphen_values = true)]
+    pub(in crate::cli) water: Option<String>,
     /// What faces show: the rock, the leaves of horizon candidates in colours, the distance to the nearest
     /// candidate, or how much patterns are distorted (white: not; blue: too dense or narrow; orange: too
     /// sparse or wide), with the shares of area printed. In volume rendering, leaves colour the horizons

@@ -2,107 +2,165 @@
 
 use super::notices;
 use crate::state::{Action, Dialogue, ExportForm, Place, Session, Shown, State};
-use eframe::egui::{Button, Checkbox, Context, DragValue, Grid, Id, Modal, Spinner, TextEdit, Ui};
+use eframe::egui::{Button, Checkbox, Context, DragValue, Grid, Id, Modal, Spinner, TextEdit, Ui, Vec2};
 use figure::Annotation;
 use project::figures::FigureFormat;
 use project::picture::SparseHorizon;
+use render::{LabelChange, Scene};
 use std::path::Path;
 use widgets::keyboard::is_entered;
 use widgets::obstacle::{needs, unless};
+use widgets::page::PagePreview;
 use widgets::theme;
 
 /// Largest side of a picture, pixels.
 const LARGEST: u32 = 16_000;
 
 /// What is written on blocks, and what it is called.
-const WRITTEN: [(Annotation, &str); 5] = [
+const WRITTEN: [(Annotation, &str); 6] = [
     (Annotation::Axes, "Axes along the block's edges"),
     (Annotation::Layers, "Names along the layers"),
     (Annotation::Faults, "Names and throws of faults"),
+    (Annotation::Wells, "Names of wells and tops"),
     (Annotation::Colours, "Colour bar of raw data"),
     (Annotation::Provenance, "Program, project and data credit"),
 ];
 
-/// Shows the dialogue.
+/// The room of the page beside the form, points of the screen.
+const PREVIEW: Vec2 = Vec2::new(470.0, 430.0);
+
+/// What the dialogue shows.
+#[derive(Clone, Copy)]
+pub struct Shows<'a> {
+    /// What was entered.
+    pub form: &'a ExportForm,
+    /// Whether a page is being drawn.
+    pub is_drawing: bool,
+    /// Horizons that were hardly picked.
+    pub sparse: &'a [SparseHorizon],
+}
+
+/// Shows the dialogue; whether its page is to be laid out.
 pub fn show(
     ctx: &Context,
     state: &State,
     session: &Session,
-    form: &ExportForm,
-    is_drawing: bool,
-    sparse: &[SparseHorizon],
+    shows: Shows,
+    preview: &mut PagePreview,
     actions: &mut Vec<Action>,
-) {
+) -> bool {
+    let mut asks = false;
     let modal = Modal::new(Id::unique("export")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
-        ui.set_width(440.0);
         ui.heading("Export the picture");
-        notices::show(ui, state, Place::Dialogue, actions);
-        let mut next = form.clone();
-        Grid::new("export").num_columns(2).spacing([14.0, 10.0]).show(ui, |ui| {
-            let label = ui.label("File");
-            let field = ui.add(TextEdit::singleline(&mut next.path).desired_width(300.0)).labelled_by(label.id);
-            field.on_hover_text("A name that ends in .png or .tif gives pixels, in .svg or .pdf paths and text");
-            ui.end_row();
-            ui.label("Size");
-            ui.horizontal(|ui| {
-                for (index, name) in ["Width", "Height"].into_iter().enumerate() {
-                    let drag = DragValue::new(&mut next.size_cm[index]).speed(0.1).range(1.0..=120.0).max_decimals(2);
-                    ui.name_inputs(name, |ui| ui.add(drag));
-                    ui.label(if index == 0 { "×" } else { "cm" });
-                }
+        ui.horizontal_top(|ui| {
+            ui.vertical(|ui| {
+                ui.set_width(440.0);
+                asks = fields(ui, state, session, shows, actions);
             });
-            ui.end_row();
-            let label = ui.label("Resolution");
-            let drag = DragValue::new(&mut next.dpi).speed(5.0).range(36.0..=1200.0).max_decimals(0).suffix(" dpi");
-            ui.add(drag).labelled_by(label.id);
-            ui.end_row();
-            let words = [("Title", &mut next.title), ("Caption", &mut next.caption), ("Data credit", &mut next.credit)];
-            for (name, words) in words {
-                let label = ui.label(name);
-                ui.add(TextEdit::singleline(words).desired_width(300.0)).labelled_by(label.id);
-                ui.end_row();
-            }
-            ui.label("With");
-            ui.vertical(|ui| choices(ui, !session.document.horizons.is_empty(), &mut next));
-            ui.end_row();
-        });
-        let [width, height] = next.size_px();
-        let is_too_large = width.max(height) > LARGEST;
-        let text = format!("{width} × {height} pixels");
-        if is_too_large {
-            ui.colored_label(
-                ui.visuals().error_fg_color,
-                format!("{text}: too large, lower the size or the resolution"),
-            );
-        } else {
-            ui.weak(text);
-        }
-        let has_format = FigureFormat::of(Path::new(next.path.trim())).is_some();
-        if !has_format {
-            ui.colored_label(ui.visuals().error_fg_color, "The file's name must end in .png, .tif, .svg or .pdf");
-        }
-        let is_accepted = accept(ui, sparse, &mut next);
-        ui.horizontal(|ui| {
-            let can = !is_drawing && !is_too_large && has_format && is_accepted;
-            let button = unless(ui, needs(can, obstacle(is_accepted)), Button::new("Export"));
-            if button.on_hover_text("Enter").clicked() || can && is_entered(ui) {
-                actions.push(Action::Export(Box::new(next.clone())));
-            }
-            if ui.button("Cancel").clicked() {
-                actions.push(Action::Answered);
-            }
-            if is_drawing {
-                ui.add(Spinner::new());
-                ui.label("Drawing…");
+            if preview.has_page() {
+                ui.vertical(|ui| page(ui, session, preview, actions));
             }
         });
-        if next != *form {
-            actions.push(Action::Ask(Box::new(Dialogue::Export(next))));
-        }
     });
     if modal.should_close() {
         actions.push(Action::Answered);
     }
+    asks
+}
+
+/// The page as it will be printed, and what can be done to its labels.
+fn page(ui: &mut Ui, session: &Session, preview: &mut PagePreview, actions: &mut Vec<Action>) {
+    let labels = &session.view.scene.labels;
+    let show = |labels: Vec<LabelChange>| Action::Show(Box::new(Scene { labels, ..session.view.scene.clone() }));
+    if let Some(labels) = preview.show(ui, PREVIEW, labels) {
+        actions.push(show(labels));
+    }
+    ui.horizontal(|ui| {
+        let back = ui.add_enabled(!labels.is_empty(), Button::new("Reset labels"));
+        if back.on_hover_text("All labels where they were placed, as they were").clicked() {
+            actions.push(show(Vec::new()));
+        }
+        ui.weak("Drag labels; a right click leaves one out. Save scene keeps them.");
+    });
+}
+
+/// The fields and buttons; whether the page is to be laid out.
+fn fields(
+    ui: &mut Ui,
+    state: &State,
+    session: &Session,
+    Shows { form, is_drawing, sparse }: Shows,
+    actions: &mut Vec<Action>,
+) -> bool {
+    let mut asks = false;
+    notices::show(ui, state, Place::Dialogue, actions);
+    let mut next = form.clone();
+    Grid::new("export").num_columns(2).spacing([14.0, 10.0]).show(ui, |ui| {
+        let label = ui.label("File");
+        let field = ui.add(TextEdit::singleline(&mut next.path).desired_width(300.0)).labelled_by(label.id);
+        field.on_hover_text("A name that ends in .png or .tif gives pixels, in .svg or .pdf paths and text");
+        ui.end_row();
+        ui.label("Size");
+        ui.horizontal(|ui| {
+            for (index, name) in ["Width", "Height"].into_iter().enumerate() {
+                let drag = DragValue::new(&mut next.size_cm[index]).speed(0.1).range(1.0..=120.0).max_decimals(2);
+                ui.name_inputs(name, |ui| ui.add(drag));
+                ui.label(if index == 0 { "×" } else { "cm" });
+            }
+        });
+        ui.end_row();
+        let label = ui.label("Resolution");
+        let drag = DragValue::new(&mut next.dpi).speed(5.0).range(36.0..=1200.0).max_decimals(0).suffix(" dpi");
+        ui.add(drag).labelled_by(label.id);
+        ui.end_row();
+        let words = [("Title", &mut next.title), ("Caption", &mut next.caption), ("Data credit", &mut next.credit)];
+        for (name, words) in words {
+            let label = ui.label(name);
+            ui.add(TextEdit::singleline(words).desired_width(300.0)).labelled_by(label.id);
+            ui.end_row();
+        }
+        ui.label("With");
+        ui.vertical(|ui| choices(ui, !session.document.horizons.is_empty(), &mut next));
+        ui.end_row();
+    });
+    let [width, height] = next.size_px();
+    let is_too_large = width.max(height) > LARGEST;
+    let text = format!("{width} × {height} pixels");
+    if is_too_large {
+        ui.colored_label(ui.visuals().error_fg_color, format!("{text}: too large, lower the size or the resolution"));
+    } else {
+        ui.weak(text);
+    }
+    let has_format = FigureFormat::of(Path::new(next.path.trim())).is_some();
+    if !has_format {
+        ui.colored_label(ui.visuals().error_fg_color, "The file's name must end in .png, .tif, .svg or .pdf");
+    }
+    let is_accepted = accept(ui, sparse, &mut next);
+    ui.horizontal(|ui| {
+        let can = !is_drawing && !is_too_large && has_format && is_accepted;
+        let button = unless(ui, needs(can, obstacle(is_accepted)), Button::new("Export"));
+        if button.on_hover_text("Enter").clicked() || can && is_entered(ui) {
+            actions.push(Action::Export(Box::new(next.clone())));
+        }
+        if ui
+            .add_enabled(!is_drawing, Button::new("Preview"))
+            .on_hover_text("Show the page as it will be printed")
+            .clicked()
+        {
+            asks = true;
+        }
+        if ui.button("Cancel").clicked() {
+            actions.push(Action::Answered);
+        }
+        if is_drawing {
+            ui.add(Spinner::new());
+            ui.label("Drawing…");
+        }
+    });
+    if next != *form {
+        actions.push(Action::Ask(Box::new(Dialogue::Export(next))));
+    }
+    asks
 }
 
 /// What is written on the picture and beside it.

@@ -8,6 +8,7 @@ use super::sections::Sections;
 use crate::state::picking::place_of;
 use crate::state::{Compare, ExportForm, Layout, Panel, SectionKind, Session, Shown, State, showing};
 use crate::work::compute;
+use figure::DisplayList;
 use figure::cut::value_at;
 use figure::draw::block::Comparison;
 use figure::map::Mapped;
@@ -19,7 +20,8 @@ use project::{Project, ProjectError, memory_budget};
 use render::{Background, FaceData, Scene};
 use std::path::{Path, PathBuf};
 use survey::{Progress, SurveyGeometry};
-use ttf::Colour;
+use ttf::{Colour, Preset};
+use widgets::page::PREVIEW_DPI;
 
 /// Samples a pixel along each axis.
 const SAMPLES: u32 = 3;
@@ -64,6 +66,26 @@ impl Page {
     /// What the page shows.
     pub fn figure(&self) -> &Figure {
         &self.figure
+    }
+
+    /// Lays the page out to be looked at, without changes to its labels; at a coarser resolution than it is written, so
+    /// that it is there soon.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub fn preview(&self, progress: &Progress) -> Result<(DisplayList, Preset), ProjectError> {
+        let project = Project::open(&self.root)?;
+        let mut figure = Figure { dpi: PREVIEW_DPI, ..self.figure.clone() };
+        for part in &mut figure.parts {
+            if let Part::Block(block) = part {
+                block.scene.labels.clear();
+                block.scene.samples = 2;
+            }
+        }
+        let volume_bytes = memory_budget::half_of_available();
+        let settings = FigureSettings { device: Device::Auto, volume_bytes, has_vectors: false };
+        let made = compute(|| figures::make(&project, &figure, &self.view, &settings, progress))?;
+        Ok((made.page, figure.printed_in()))
     }
 
     /// Makes the page and writes it.

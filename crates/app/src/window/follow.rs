@@ -93,6 +93,7 @@ impl Window {
                     self.act(Action::Answered);
                     self.act(Action::Tell(Notice::note(Place::Foot, format!("Written: {}", path.display()))));
                 }
+                Event::Previewed(page, preset) => self.preview.set(page, preset),
                 Event::Told(notice) => self.act(Action::Tell(notice)),
             }
         }

@@ -26,6 +26,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use widgets::event_order::EventOrder;
 use widgets::keyboard::Listener;
+use widgets::page::PagePreview;
 use widgets::theme;
 
 /// Interval at which the view is saved.
@@ -105,6 +106,9 @@ pub struct Window {
     /// The project that the window's title names.
     titled: Option<String>,
     controls: Controls,
+    preview: PagePreview,
+    /// What the page that is shown was laid out for.
+    previewed: Option<ExportForm>,
     pointed: Option<Pointed>,
     rocks: Option<(Rocks, u64)>,
     needs: Option<Needs>,
@@ -155,6 +159,8 @@ impl Window {
             listener: Listener::default(),
             titled: None,
             controls: Controls::default(),
+            preview: PagePreview::default(),
+            previewed: None,
             pointed: None,
             rocks: None,
             needs: None,
@@ -225,15 +231,30 @@ impl Window {
 
     /// Draws the page to a file.
     fn export(&self, form: ExportForm) {
-        let Some(session) = self.state.session.clone() else { return };
-        let mapped = self.map.mapped(&session);
-        let Some(page) = Page::of(&session, &self.overlay, &self.sections, mapped, &form) else { return };
+        let Some(page) = self.page(&form) else { return };
         self.work.background("Drawing the picture", Place::Dialogue, move |progress, outbox| {
             let path = form.path.clone().into();
             page.write(progress).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
             outbox.send(Event::Exported(path));
             Ok(())
         });
+    }
+
+    /// Lays the page out to be looked at.
+    fn look_at(&mut self, form: ExportForm) {
+        let Some(page) = self.page(&form) else { return };
+        self.previewed = Some(form);
+        self.work.background("Laying out the page", Place::Dialogue, move |progress, outbox| {
+            let (page, preset) = page.preview(progress).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
+            outbox.send(Event::Previewed(Arc::new(page), preset));
+            Ok(())
+        });
+    }
+
+    /// What is on the screen as a page.
+    fn page(&self, form: &ExportForm) -> Option<Page> {
+        let session = self.state.session.as_ref()?;
+        Page::of(session, &self.overlay, &self.sections, self.map.mapped(session), form)
     }
 
     /// Drops everything that was made for a project.
@@ -245,6 +266,7 @@ impl Window {
         (self.fence, self.map) = (FenceView::default(), MapView::default());
         self.overlay = Overlay::default();
         self.picking = PickingPanel::default();
+        self.preview = PagePreview::default();
     }
 
     /// Where a failure of the task is shown.
@@ -379,11 +401,19 @@ impl Window {
                     let is_drawing = self.work.running.lines().iter().any(|line| line.place == Place::Dialogue);
                     let loaded = self.rocks.as_ref().and_then(|(rocks, _)| rocks.try_read().ok());
                     let sparse = loaded.as_ref().map_or(&[][..], |loaded| &loaded.sparse);
-                    export::show(ctx, &self.state, session, form, is_drawing, sparse, actions);
+                    let shows = export::Shows { form, is_drawing, sparse };
+                    let asks = export::show(ctx, &self.state, session, shows, &mut self.preview, actions);
+                    // Where the file lies changes nothing on the page.
+                    let form = ExportForm { path: String::new(), ..form.clone() };
+                    let is_outdated = self.preview.has_page() && !is_drawing && self.previewed.as_ref() != Some(&form);
+                    drop(loaded);
+                    if asks || is_outdated {
+                        self.look_at(form);
+                    }
                 }
             }
             Some(Dialogue::Surface(form)) => surface::dialogue(ctx, &self.state, form, actions),
-            None => {}
+            None => self.preview = PagePreview::default(),
         }
     }
 }

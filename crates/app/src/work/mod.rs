@@ -31,6 +31,7 @@ pub use slice::{SliceRequest, Slices};
 pub use swatches::Swatches;
 
 use super::state::{Notice, PickingStep, Place, Snapshot, Task};
+use figure::DisplayList;
 use figure::cut::{FenceCut, SectionCut};
 use figure::map::HorizonMap;
 use project::command::PickNode;
@@ -40,6 +41,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, OnceLock};
 use survey::Progress;
 use threads::{keep_working, spawn, spawn_quietly};
+use ttf::Preset;
 
 /// A result.
 pub enum Event {
@@ -92,6 +94,8 @@ pub enum Event {
     },
     /// A picture was written.
     Exported(PathBuf),
+    /// The page that a picture will be written from, and the preset it is printed in.
+    Previewed(Arc<DisplayList>, Preset),
     /// A message.
     Told(Notice),
 }

@@ -7,6 +7,7 @@ mod dropped;
 mod hands;
 mod horizon;
 mod keyboard;
+mod page;
 mod panel;
 mod picking;
 mod tree;

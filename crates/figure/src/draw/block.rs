@@ -1,10 +1,12 @@
 //! The block on a page: one picture or two compared, surfaces and sticks before them, and which is which.
 
 use super::annotation::BlockAnnotation;
+use super::moved::BLOCK;
 use super::north;
 use super::overlay;
 use super::surfaces::{self, Cells, OPACITY};
 use super::vector_block::{self, BlockNames};
+use super::water;
 use crate::Rect;
 use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
@@ -12,6 +14,7 @@ use crate::list::{Across, Group, GroupKind, Item, POINTS_PER_INCH, Path, PathIte
 use crate::style::{ACCENT, FRAME_PT, INK, RULE_INK, TEXT_PT};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
+use model::StructuralModel;
 use render::vector::VectorBlock;
 use render::{Outlines, RenderError, Scene, View};
 use serde::{Deserialize, Serialize};
@@ -124,6 +127,8 @@ pub struct BlockPanel<'a> {
     pub has_surfaces: bool,
     /// Dots an inch that pictures are drawn at.
     pub dpi: f64,
+    /// The model, for the water above its ground.
+    pub model: Option<&'a StructuralModel>,
     /// What is written on it.
     pub annotation: Option<BlockAnnotation<'a>>,
     /// What its paths are called.
@@ -147,7 +152,7 @@ impl BlockPanel<'_> {
     /// # Errors
     /// What the painter says.
     pub fn drawn(&self, room: Rect, painter: &mut dyn BlockPainter) -> Result<DrawnBlock, FigureError> {
-        let mut group = Group::new(GroupKind::Panel, "block");
+        let mut group = Group::new(GroupKind::Panel, BLOCK);
         let (mut points_per_m, mut compass) = (0.0, [DVec2::ZERO; 2]);
         let blends = self.comparison.blends();
         let beside = |room: Rect| self.annotation.map_or(room, |annotation| annotation.pane(room, self.scene));
@@ -176,6 +181,9 @@ impl BlockPanel<'_> {
                 None => shown.push(Picture::in_rect(painter.paint(&scene)?, pane)),
             }
             let view = scene.view(self.geometry);
+            let on_page = |px: DVec2| pane.min + px * POINTS_PER_INCH / self.dpi;
+            let water = self.model.and_then(|model| water::drawn(&scene, self.geometry, model, &on_page));
+            water.into_iter().for_each(|water| shown.push(water));
             if let Some(interpretation) = self.interpretation {
                 self.lay_over(&mut shown, &scene, &view, interpretation, pane);
             }
@@ -290,6 +298,7 @@ mod tests {
             interpretation: None,
             has_surfaces: true,
             dpi: 144.0,
+            model: None,
             annotation: None,
             names: BlockNames::default(),
         };

@@ -3,7 +3,7 @@
 use super::{NamedColour, swatch};
 use crate::Rect;
 use crate::error::FigureError;
-use crate::list::{Across, Group, GroupKind, POINTS_PER_MM, Path, PathItem, Picture, Stroke, Text, Upright, width_of};
+use crate::list::{Across, Group, GroupKind, Path, PathItem, Stroke, Text, Upright, width_of};
 use crate::style::{FRAME_PT, HORIZON_PT, INK, TEXT_PT};
 use glam::DVec2;
 use ttf::{LayerStyle, TextureLibrary};
@@ -129,15 +129,7 @@ fn layer(
     dpi: f64,
 ) -> Result<Group, FigureError> {
     let rect = Rect::sized(place.min, DVec2::new(SWATCH_PT[0], SWATCH_PT[1].min(0.8 * place.height())));
-    let swatch = match swatch::items(style, library, rect)? {
-        Some(items) => items,
-        None => {
-            let px_per_pt = dpi / crate::list::POINTS_PER_INCH;
-            let size_px = [rect.width(), rect.height()].map(|side| (side * px_per_pt).round().max(2.0) as u32);
-            let drawn = swatch::draw(style, library, size_px, (px_per_pt * POINTS_PER_MM) as f32)?;
-            vec![Picture::in_rect(drawn, rect).into()]
-        }
-    };
+    let swatch = swatch::shown(style, library, rect, dpi)?;
     let middle = DVec2::new(rect.max.x, rect.centre().y);
     Ok(Group::new(GroupKind::Layer, &style.layer).with(swatch).with([
         PathItem::stroked(Path::rect(rect), Stroke::new(FRAME_PT, INK)).into(),

@@ -166,6 +166,12 @@ impl OverlayLines {
         }
     }
 
+    /// The names of the horizons that have lines here.
+    pub fn seen_horizons(&self) -> impl Iterator<Item = &str> {
+        let all = [&self.horizons, &self.filled, &self.bridges].into_iter().flatten();
+        all.filter(|horizon| !horizon.lines.is_empty()).map(|horizon| horizon.name.as_str())
+    }
+
     /// The lines on a page, rims under all of them.
     pub fn drawn(&self, page: impl Fn(DVec2) -> DVec2) -> Vec<Group> {
         let path = |lines: &[Line]| {

@@ -1,7 +1,9 @@
-//! A piece of a layer as it is drawn: colour and pattern, for legends ([`items`]) and lists ([`draw`]).
+//! A piece of a layer as it is drawn: colour and pattern, for legends and wells ([`shown`]) and lists ([`draw`]).
 
 use crate::Rect;
-use crate::list::{Cap, Group, GroupKind, Ink, Item, POINTS_PER_MM, Path, PathItem, Rule, Segment, Stroke};
+use crate::list::{
+    Cap, Group, GroupKind, Ink, Item, POINTS_PER_INCH, POINTS_PER_MM, Path, PathItem, Picture, Rule, Segment, Stroke,
+};
 use glam::DVec2;
 use image::{Rgba, RgbaImage};
 use ttf::drawing::{TileDrawing, TilePaint, TileSegment, TileShape};
@@ -31,6 +33,20 @@ pub fn items(style: &LayerStyle, library: &TextureLibrary, rect: Rect) -> Result
         items.push(group.with(ground.into_iter().chain(pattern)).into());
     }
     Ok(Some(items))
+}
+
+/// A layer's style over a rectangle, as paths where its patterns have drawings and as an image at `dpi` where not.
+///
+/// # Errors
+/// A pattern that does not draw.
+pub fn shown(style: &LayerStyle, library: &TextureLibrary, rect: Rect, dpi: f64) -> Result<Vec<Item>, ttf::TtfError> {
+    if let Some(items) = items(style, library, rect)? {
+        return Ok(items);
+    }
+    let px_per_pt = dpi / POINTS_PER_INCH;
+    let size_px = [rect.width(), rect.height()].map(|side| (side * px_per_pt).round().max(2.0) as u32);
+    let drawn = draw(style, library, size_px, (px_per_pt * POINTS_PER_MM) as f32)?;
+    Ok(vec![Picture::in_rect(drawn, rect).into()])
 }
 
 /// A tile over a band, repeated from an origin to the right and upwards: an item for each of its shapes.

@@ -99,6 +99,17 @@ impl Path {
         self.segments.extend(places.map(Segment::Line));
     }
 
+    /// Moves it.
+    pub(crate) fn shift(&mut self, by: DVec2) {
+        for segment in &mut self.segments {
+            match segment {
+                Segment::Move(p) | Segment::Line(p) => *p += by,
+                Segment::Cubic(a, b, c) => [a, b, c].into_iter().for_each(|p| *p += by),
+                Segment::Close => {}
+            }
+        }
+    }
+
     /// The smallest rectangle around all places and control points; `None` of an empty path.
     pub fn bounds(&self) -> Option<Rect> {
         let mut found: Option<Rect> = None;

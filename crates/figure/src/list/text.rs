@@ -136,6 +136,21 @@ impl Text {
         self
     }
 
+    /// Moves it.
+    pub(crate) fn shift(&mut self, by: DVec2) {
+        self.at += by;
+        self.letters.iter_mut().for_each(|letter| letter.at += by);
+    }
+
+    /// Gives it another size; a bent line grows about its middle.
+    pub(crate) fn resize(&mut self, size: f64) {
+        let (share, bounds) = (size / self.size, self.bounds());
+        for letter in &mut self.letters {
+            letter.at = bounds.centre() + (letter.at - bounds.centre()) * share;
+        }
+        self.size = size;
+    }
+
     /// The same bent along a curve from left to right: half of the capitals' height lies on it, and the text's middle
     /// this far along it. Before and after the curve it goes on straight.
     #[must_use]

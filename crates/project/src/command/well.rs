@@ -8,7 +8,7 @@ use formats::well::{self, WellFiles, WellOptions, WellReport};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
-use survey::well::{LogSet, TopPlace, WellPlacement};
+use survey::well::{LogSet, TopPlace, WellPlacement, is_same_surface};
 use survey::{Horizon, Progress, Well};
 
 /// Reads a well into the project.
@@ -106,7 +106,7 @@ impl WellAdded {
         let mut tops = Vec::with_capacity(well.tops.len());
         for top in &well.tops {
             let Some(place) = well.place_at_md(top.md_m, geometry) else { continue };
-            let entry = document.horizons.iter().find(|entry| same_name(&entry.name, &top.name));
+            let entry = document.horizons.iter().find(|entry| is_same_surface(&entry.name, &top.name));
             let below_horizon = match entry {
                 Some(entry) => below(&place, &content::read_horizon(root, entry, progress)?),
                 None => None,
@@ -124,12 +124,6 @@ impl WellAdded {
             report,
         })
     }
-}
-
-/// Compares names regardless of case, blanks and punctuation.
-fn same_name(a: &str, b: &str) -> bool {
-    let plain = |name: &str| name.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
-    plain(a) == plain(b)
 }
 
 /// How much deeper a place is than the nearest sheet of a horizon there.

@@ -3,7 +3,7 @@
 //! What can be refused is refused before the first is made, and none has its name before all are made: a figure that
 //! cannot be made leaves the folder as it was.
 
-use super::{FigureFormat, FigureSettings, InterpreterView, interpreted, make, title, write};
+use super::{FigureFormat, FigureSettings, InterpreterView, NamedConfusion, interpreted, make, title, write};
 use crate::document::{Document, FigureEntry};
 use crate::error::ProjectError;
 use crate::folder::refuse_inside_project;
@@ -27,6 +27,8 @@ pub struct WrittenFigure {
     pub dpi: f64,
     /// The device that drew its blocks; `None` if it has none.
     pub device: Option<String>,
+    /// The neighbouring layers of its blocks that cannot be told apart.
+    pub look_alikes: Vec<NamedConfusion>,
 }
 
 /// Makes every figure that the project lists, and writes them to the folder `out`, which is created. `volume_bytes` is
@@ -74,7 +76,8 @@ fn stage(
         let replacement = Replacement::of(&path)?;
         write(&made.page, *format, replacement.path(), figure.dpi, &title(project))?;
         let size_px = figure.size_px();
-        staged.push((replacement, WrittenFigure { file: path, size_px, dpi: figure.dpi, device: made.device }));
+        let (dpi, device, look_alikes) = (figure.dpi, made.device, made.confusions);
+        staged.push((replacement, WrittenFigure { file: path, size_px, dpi, device, look_alikes }));
     }
     let mut written = Vec::new();
     for (replacement, figure) in staged {
@@ -104,6 +107,12 @@ fn check<'a>(document: &'a Document, progress: &Progress) -> Result<Vec<Meant<'a
         }
         let format = FigureFormat::of(file.as_ref())
             .ok_or_else(|| bad("its name must end in .png, .tif, .svg or .pdf".to_owned()))?;
+        let has_block = entry.figure.parts.iter().any(|part| matches!(part, Part::Block(_)));
+        if entry.scene.is_some() && !has_block && !entry.figure.parts.is_empty() {
+            let fact =
+                "it names a scene, but none of its parts is a block; leave the scene out, or add the part block = {}";
+            return Err(bad(fact.to_owned()));
+        }
         let figure = page(document, entry, progress).map_err(of_figure(file))?;
         meant.push((file, format, figure));
     }

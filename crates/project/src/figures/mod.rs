@@ -14,7 +14,8 @@ pub use confusion::{NamedConfusion, confusions};
 pub use interpreter::{InterpreterView, borrowed};
 pub use output::{FigureFormat, title, write};
 
-use crate::document::Document;
+use crate::content;
+use crate::document::{Document, WellEntry};
 use crate::error::ProjectError;
 use crate::picture::load::{self, Loaded, Stage};
 use crate::picture::{Device, Painter};
@@ -31,7 +32,7 @@ use model::StructuralModel;
 use render::vector::{VectorBlock, vectors};
 use render::{FaceData, Faces, Media, RenderError, Scene};
 use std::time::Instant;
-use survey::{Progress, memory};
+use survey::{Progress, Well, memory};
 use ttf::{LayerStyle, LayerTtf, Preset, TextureLibrary};
 
 /// The page of a figure, and how it was made.
@@ -79,7 +80,9 @@ pub fn make(
     let picks = if figure.interpretation { Some(InterpreterPicks::read(project, view, progress)?) } else { None };
     let shown = picks.as_ref().map(InterpreterPicks::borrowed);
     let names_layers = figure.annotate.contains(&Annotation::Layers);
-    let needs_library = figure.legend || names_layers || settings.has_vectors;
+    let has_wells = figure.parts.iter().any(|part| matches!(part, Part::Correlation(_)));
+    let names_wells = figure.annotate.contains(&Annotation::Wells);
+    let needs_library = figure.legend || names_layers || settings.has_vectors || has_wells;
     let library = if needs_library { Some(styles::pattern_library(project.root(), document)?) } else { None };
     let mut layers = library.as_ref().map(|library| layer_styles(document, library)).unwrap_or_default();
     layers.iter_mut().for_each(|style| *style = figure.printed_in().layer(style));
@@ -91,6 +94,8 @@ pub fn make(
     let inputs = FigureInputs {
         source: SectionSource { data, raw: loaded.raw.as_ref() },
         horizons: &horizons(document),
+        strata: &document.stratigraphy().horizons,
+        wells: &if has_wells || names_wells { wells_of(project)? } else { Vec::new() },
         faults: &document.faults.iter().map(|entry| entry.name.clone()).collect::<Vec<_>>(),
         layers: &layers,
         library: library.as_ref(),
@@ -101,11 +106,28 @@ pub fn make(
     let (device, preset) = (settings.device, figure.printed_in());
     let mut painter = FigurePainter { painter: None, device, loaded: &loaded, library, preset, stages, progress };
     let page = figure::make(figure, &inputs, &mut painter)?;
+    warn_of_boxes(&page, progress);
     let device = painter.painter.map(|painter| painter.device().to_owned());
     let stages = painter.stages;
     let scene = Scene { preset, ..needs(figure) };
     let confusions = confusions(project.root(), document, loaded.rock.as_ref(), &scene)?;
     Ok(MadeFigure { page, device, stages, confusions })
+}
+
+/// Says which texts have letters that the face lacks.
+fn warn_of_boxes(page: &DisplayList, progress: &Progress) {
+    let is_box = |c: char| !c.is_whitespace() && !ttf::text::is_known(c);
+    let mut texts: Vec<&str> = page.texts().into_iter().map(|text| text.text.as_str()).collect();
+    texts.retain(|text| text.chars().any(is_box));
+    texts.sort_unstable();
+    texts.dedup();
+    if let Some(first) = texts.first() {
+        let more = if texts.len() > 1 { format!(" and {} more", texts.len() - 1) } else { String::new() };
+        progress.warn(format!(
+            "\"{first}\"{more} has letters that the figures' face lacks, and they are drawn as boxes; the face has Latin, \
+             Greek and Cyrillic letters: write the name in one of these, or set the text in a program that edits SVG"
+        ));
+    }
 }
 
 /// Draws and traces the blocks of a figure; a device is looked for when the first picture is asked for.
@@ -189,7 +211,7 @@ fn needs(figure: &Figure) -> Scene {
             }
             Part::Section(section) => (is_raw, shown) = (true, section.show),
             Part::Fence(fence) => (is_raw, shown) = (true, fence.show),
-            Part::Map(_) => {}
+            Part::Map(_) | Part::Correlation(_) => {}
         }
     }
     if scene.face_data == FaceData::Rock {
@@ -207,6 +229,12 @@ pub fn interpreted(scene: &Scene) -> Scene {
     let is_through = scene.media.faces == Faces::None;
     let media = if is_through { scene.media.clone() } else { Media::default() };
     Scene { blend: 1.0, ground: None, media, ..scene.clone() }
+}
+
+/// The wells of a project under the names that they have in it.
+fn wells_of(project: &Project) -> Result<Vec<Well>, ProjectError> {
+    let read = |entry: &WellEntry| Ok(Well { name: entry.name.clone(), ..content::read_well(project.root(), entry)? });
+    project.document().wells.iter().map(read).collect()
 }
 
 /// The horizons of a project with the colours that figures and the window draw them in.

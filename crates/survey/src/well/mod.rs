@@ -62,6 +62,18 @@ pub struct Top {
     pub md_m: f64,
 }
 
+/// Whether two names mean one surface: files of wells and of horizons write them in different cases, with other blanks
+/// and punctuation.
+///
+/// ```
+/// assert!(survey::well::is_same_surface("Top Chalk", "TOP_CHALK"));
+/// assert!(!survey::well::is_same_surface("Top Chalk", "Base Chalk"));
+/// ```
+pub fn is_same_surface(a: &str, b: &str) -> bool {
+    let plain = |name: &str| name.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
+    plain(a) == plain(b)
+}
+
 impl Well {
     /// A well without tops and logs.
     pub fn new(name: impl Into<String>, path: WellPath) -> Self {

@@ -4,7 +4,8 @@
 //! line from the horizon's sheets in the two blocks beside it; the throw is the difference of their depths or times,
 //! taken at the horizon whose cut-offs lie nearest to the middle of what is seen of the fault.
 
-use super::room::{LabelRoom, holds, meet, outlines};
+use super::room::{LabelRoom, outlines};
+use crate::convex::{holds, meet};
 use crate::cut::value_at;
 use crate::list::{Across, Group, GroupKind, Ink, Path, PathItem, Segment, Stroke, Text, Upright};
 use crate::style::{INK, NUMBER_PT};

@@ -1,26 +1,30 @@
 //! What is written on and around a block: axes on its edges, names of layers along the layers, names and throws of
-//! faults.
+//! faults, wells and their tops.
 //!
 //! All labels share one `LabelRoom`: none lies over another or leaves the panel. Axes come first and the picture
-//! shrinks until they stand beside it; then half-arrows, names on the faces, and at last leaders to names that found no
+//! shrinks until they stand beside it; then wells, half-arrows, names on the faces, and at last leaders to names that found no
 //! place on their layer.
 
 mod edges;
 mod faults;
 mod names;
 mod room;
+mod wells;
 
+use super::moved::ON_BLOCK;
+use super::seen::Sight;
 use super::vector_block::BlockNames;
 use crate::Rect;
 use crate::annotation::Annotation;
+use crate::convex::meet;
 use crate::list::{Across, Group, GroupKind, Ink, Item, POINTS_PER_INCH, Path, PathItem, Stroke, Text, Upright};
 use crate::style::{FRAME_PT, INK, QUIET_INK, TEXT_PT};
 use glam::{DVec2, DVec3};
 use model::StructuralModel;
 use render::vector::{SeenSection, seen_sections};
 use render::{FaceData, Faces, Scene, View};
-use room::{LabelRoom, meet};
-use survey::SurveyGeometry;
+use room::LabelRoom;
+use survey::{SurveyGeometry, Well};
 use ttf::Colour;
 
 /// Most of its width and height that a picture gives up for labels beside it.
@@ -53,6 +57,8 @@ pub struct BlockAnnotation<'a> {
     pub model: Option<&'a StructuralModel>,
     /// What they are called.
     pub names: BlockNames<'a>,
+    /// The wells of the project.
+    pub wells: &'a [Well],
 }
 
 /// A name that found no place on the block: where its leader may end, the best place first, and what it says.
@@ -119,7 +125,7 @@ impl BlockAnnotation<'_> {
         let view = scene.view(self.geometry);
         let placed = Placed { scene, view, pane, points_per_px: POINTS_PER_INCH / dpi };
         let mut free = LabelRoom::new(room);
-        let mut group = Group::new(GroupKind::Annotation, "labels");
+        let mut group = Group::new(GroupKind::Annotation, ON_BLOCK);
         if self.wants(Annotation::Axes) {
             group.push(self.axes(&placed, &mut free));
         }
@@ -129,6 +135,12 @@ impl BlockAnnotation<'_> {
             let has_faults = self.wants(Annotation::Faults);
             let faces = if has_names || has_faults { seen_sections(scene, self.geometry, model) } else { Vec::new() };
             let (mut on_faces, mut beside) = (Vec::new(), Vec::new());
+            if self.wants(Annotation::Wells) && scene.wells.radius > 0.0 {
+                let sight = Sight::new(scene, self.geometry, model);
+                let frame = (self.geometry, &model.stratigraphy().horizons[..]);
+                let named = wells::drawn(self.wells, frame, &sight, &placed, &mut free);
+                on_faces.extend(named.into_iter().map(Item::from));
+            }
             if has_faults {
                 self.faults(model, &placed, &faces, &mut free, &mut on_faces, &mut beside);
             }

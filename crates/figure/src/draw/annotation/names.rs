@@ -5,7 +5,8 @@
 //! to end: every letter has to lie within the piece (so within the layer and its fault block) and within the part of
 //! the face that is seen. A name that fits nowhere in a readable size stands beside the block, with a leader.
 
-use super::room::{LabelRoom, meet};
+use super::room::LabelRoom;
+use crate::convex::{holds, meet};
 use crate::list::Text;
 use glam::DVec2;
 use render::vector::SeenSection;
@@ -135,7 +136,7 @@ impl LayerPiece {
         let line = |run: &Vec<(DVec2, f64)>| {
             let place = |at: DVec2| {
                 let near = run.iter().min_by(|a, b| a.0.distance_squared(at).total_cmp(&b.0.distance_squared(at)));
-                let is_seen = seen.iter().any(|piece| super::room::holds(piece, at));
+                let is_seen = seen.iter().any(|piece| holds(piece, at));
                 LinePlace { at, thick: near.map_or(0.0, |(_, thick)| *thick), is_seen }
             };
             smooth(run).into_iter().map(place).collect()
@@ -205,7 +206,7 @@ impl LayerPiece {
     }
 
     fn is_seen(&self, place: DVec2) -> bool {
-        self.seen.iter().any(|piece| super::room::holds(piece, place))
+        self.seen.iter().any(|piece| holds(piece, place))
     }
 
     /// The place of the piece where it is seen thickest, and that thickness, points.

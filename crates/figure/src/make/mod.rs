@@ -1,28 +1,29 @@
 //! From what a figure shows to its page: the one way that figures are made.
 
+mod legend;
+mod prepared;
+
 use crate::Rect;
 use crate::annotation::Annotation;
-use crate::cut::{FenceCut, SectionCut, SectionKind, SectionSource, length_m, stations, value_at};
+use crate::correlation::{self, Column};
+use crate::cut::{SectionKind, SectionSource, value_at};
 use crate::draw::annotation::BlockAnnotation;
 use crate::draw::axes::Axis;
 use crate::draw::block::{BlockPainter, BlockPanel, Comparison};
-use crate::draw::legend::{Legend, LegendLine};
+use crate::draw::correlation::CorrelationPanel;
 use crate::draw::map::{MapPanel, title};
-use crate::draw::overlay::{OverlayLines, SeenOn};
-use crate::draw::section::{Marks, SectionContents, SectionPanel, Zoom};
+use crate::draw::section::Marks;
 use crate::draw::vector_block::BlockNames;
-use crate::draw::{NamedColour, colour_bar, north, scale, words};
+use crate::draw::{NamedColour, colour_bar, moved, north, scale, words};
 use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
-use crate::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH, Stroke};
+use crate::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH};
 use crate::map::{HorizonMap, MapSource, Mapped};
-use crate::spec::{BlockPart, FencePart, Figure, MapPart, Part, SectionPart};
-use crate::style::{FAULT_PT, HORIZON_PT};
+use crate::spec::{BlockPart, CorrelationPart, FencePart, Figure, MapPart, Part};
 use glam::DVec2;
-use render::distortion::{self, Stretch};
+use prepared::Prepared;
 use render::{Background, FaceData, Faces, Scene};
-use std::sync::{Arc, OnceLock};
-use survey::{Contact, SurveyGeometry, VerticalUnit};
+use survey::{StratigraphicHorizon, SurveyGeometry, VerticalUnit, Well};
 use ttf::{Colour, LayerStyle, RawColour, TextureLibrary};
 
 /// Room around a page whose parts have text at their edges, points.
@@ -45,12 +46,16 @@ pub struct FigureInputs<'a> {
     pub source: SectionSource<'a>,
     /// Horizons with their colours, youngest first.
     pub horizons: &'a [NamedColour],
+    /// The same with what happens at each.
+    pub strata: &'a [StratigraphicHorizon],
     /// Names of the faults.
     pub faults: &'a [String],
     /// The layers as they are drawn, youngest first.
     pub layers: &'a [LayerStyle],
     /// Patterns of the layers.
     pub library: Option<&'a TextureLibrary>,
+    /// Wells, for correlation panels.
+    pub wells: &'a [Well],
     /// What an interpreter sees.
     pub interpretation: Option<&'a DrawnInterpretation<'a>>,
     /// The program and the project, for the line of provenance.
@@ -75,8 +80,9 @@ pub fn make(
     crate::raster::size_px(&list, figure.dpi)?;
     list.paper = paper(figure);
     let maker = Maker { figure, inputs, geometry: inputs.source.data.geometry };
-    let lines = maker.legend_lines();
-    let legend = maker.legend(&lines);
+    let prepared = figure.parts.iter().map(|part| maker.prepared(part)).collect::<Result<Vec<_>, _>>()?;
+    let listed = maker.listed(&prepared, rooms(figure.parts.len(), list.bounds())[0].size());
+    let legend = listed.legend(&maker);
     let mut room = list.bounds();
     // A block alone fills its page to the rim: it has its own margin.
     let provenance = maker.provenance();
@@ -121,9 +127,14 @@ pub fn make(
     }
     let rooms = rooms(figure.parts.len(), room);
     let mut panels: Vec<Item> = Vec::new();
-    for (part, room) in figure.parts.iter().zip(rooms) {
-        panels.push(maker.part(part, room, painter)?.into());
+    for ((part, prepared), room) in figure.parts.iter().zip(prepared).zip(rooms) {
+        panels.push(maker.part(part, prepared, room, painter)?.into());
     }
+    let labels = figure.parts.iter().find_map(|part| match part {
+        Part::Block(block) => Some(&block.scene.labels[..]),
+        _ => None,
+    });
+    moved::change(&mut list.items, labels.unwrap_or_default());
     // The legend explains what is drawn before it.
     panels.append(&mut list.items);
     list.items = panels;
@@ -167,26 +178,6 @@ fn rooms(count: usize, room: Rect) -> Vec<Rect> {
         2 => down(room, FIRST).to_vec(),
         _ => down(room, 0.5).into_iter().flat_map(|row| across(row, 0.5)).collect(),
     }
-}
-
-/// The colours of a picture of distortion, densest on top.
-fn distortion_classes() -> &'static [LayerStyle] {
-    static CLASSES: OnceLock<Vec<LayerStyle>> = OnceLock::new();
-    CLASSES.get_or_init(|| {
-        let classes = [
-            (4.0, "4 × too dense"),
-            (2.0, "2 × too dense"),
-            (1.0, "undistorted"),
-            (0.5, "2 × too sparse"),
-            (0.25, "4 × too sparse"),
-        ];
-        let class = |(area, name): (f32, &str)| {
-            let side = area.sqrt();
-            let colour = distortion::tone(Stretch { densest: side, sparsest: side });
-            LayerStyle::plain(name, Colour::from_unit(colour.to_array()))
-        };
-        classes.map(class).to_vec()
-    })
 }
 
 /// A figure being made.
@@ -233,83 +224,25 @@ impl<'a> Maker<'a> {
                 own.filter(|_| is_raw && block.scene.face_data == FaceData::Rock)
             }
             Part::Section(_) | Part::Fence(_) => self.inputs.source.raw,
-            Part::Map(_) => None,
+            Part::Map(_) | Part::Correlation(_) => None,
         };
         self.figure.parts.iter().find_map(shows).filter(|_| self.wants(Annotation::Colours))
     }
 
-    /// Layers where blocks show them, or the colours of distortion; horizons where sections show their lines.
-    fn legend<'b>(&'b self, lines: &'b [LegendLine]) -> Option<Legend<'b>> {
-        let parts = &self.figure.parts;
-        let is_illustrated = |block: &BlockPart| match block.comparison {
-            Comparison::None => block.scene.blend < 1.0,
-            Comparison::SideBySide(blends) | Comparison::Wipe(blends, _) => blends.iter().any(|blend| *blend < 1.0),
-        };
-        let has_layers = !self.figure.interpretation
-            && parts.iter().any(|part| matches!(part, Part::Block(block) if is_illustrated(block)));
-        let is_measured =
-            |part: &Part| matches!(part, Part::Block(block) if block.scene.face_data == FaceData::Distortion);
-        let swatches = if parts.iter().any(is_measured) { distortion_classes() } else { self.seen_layers() };
-        let layers = self.inputs.library.filter(|_| has_layers).map(|library| (swatches, library));
-        let has_lines = parts.iter().any(|part| matches!(part, Part::Section(_) | Part::Fence(_)));
-        let horizons = if has_lines || layers.is_none() { self.inputs.horizons } else { &[] };
-        let legend = Legend { layers, horizons, lines, dpi: self.figure.dpi };
-        (self.figure.legend && !legend.is_empty()).then_some(legend)
-    }
-
-    /// The layers without the one that is left out as air wherever a ground is shown.
-    fn seen_layers(&self) -> &'a [LayerStyle] {
-        let layers = self.inputs.layers;
-        let has_ground = |part: &Part| matches!(part, Part::Block(block) if block.scene.ground.is_some());
-        let is_air = self.inputs.source.data.model.is_some_and(|model| model.layer_count() == layers.len())
-            && self.figure.parts.iter().all(has_ground);
-        if is_air { layers.get(1..).unwrap_or_default() } else { layers }
-    }
-
-    /// Faults, contacts and wells that blocks of the model show.
-    fn legend_lines(&self) -> Vec<LegendLine> {
-        let blocks = self.figure.parts.iter().find_map(|part| match part {
-            Part::Block(block) => Some(&block.scene),
-            _ => None,
-        });
-        let data = &self.inputs.source.data;
-        let (Some(scene), Some(model), false) = (blocks, data.model, self.figure.interpretation) else {
-            return Vec::new();
-        };
-        let mut lines = Vec::new();
-        let mut add = |name: String, kind: GroupKind, width: f64, colour: Colour| {
-            lines.push(LegendLine { name, kind, stroke: Stroke::new(width, colour) });
-        };
-        let outlines = scene.outlines;
-        if outlines.horizons.width_px > 0.0 && scene.media.faces == Faces::All {
-            for horizon in &model.stratigraphy().horizons {
-                let contact = match horizon.contact {
-                    Contact::Conformable => continue,
-                    Contact::Erosional => "erosional",
-                    Contact::Onlap => "onlap",
-                    Contact::Intrusive => "intrusive",
-                };
-                let name = format!("{} ({contact})", horizon.name);
-                add(name, GroupKind::Horizon, 0.7 * HORIZON_PT, outlines.horizons.colour);
-            }
-        }
-        if outlines.faults.width_px > 0.0 && scene.media.faces == Faces::All && !self.inputs.faults.is_empty() {
-            add("Fault".into(), GroupKind::Fault, FAULT_PT, outlines.faults.colour);
-        }
-        if scene.wells.radius > 0.0 {
-            for well in data.wells {
-                add(well.name.to_owned(), GroupKind::Well, 2.0 * HORIZON_PT, scene.wells.colour);
-            }
-        }
-        lines
-    }
-
-    fn part(&self, part: &Part, room: Rect, painter: &mut dyn BlockPainter) -> Result<Group, FigureError> {
-        match part {
-            Part::Block(part) => self.block(part, room, painter),
-            Part::Section(part) => self.section(part, room),
-            Part::Fence(part) => self.fence(part, room),
-            Part::Map(part) => self.map(part, room),
+    fn part(
+        &self,
+        part: &Part,
+        prepared: Prepared,
+        room: Rect,
+        painter: &mut dyn BlockPainter,
+    ) -> Result<Group, FigureError> {
+        match (part, prepared) {
+            (Part::Block(part), _) => self.block(part, room, painter),
+            (Part::Map(part), _) => self.map(part, room),
+            (_, Prepared::Section(section)) => self.panel(*section, room),
+            (Part::Correlation(part), Prepared::Wells(columns, range)) => self.correlation(part, &columns, range, room),
+            // Every other part is prepared.
+            _ => Err(self.no_room()),
         }
     }
 
@@ -332,11 +265,13 @@ impl<'a> Maker<'a> {
             interpretation: self.interpretation()?,
             has_surfaces: is_opaque(&part.scene),
             dpi: self.figure.dpi,
+            model: self.inputs.source.data.model.filter(|_| !self.figure.interpretation),
             annotation: (!self.figure.annotate.is_empty()).then_some(BlockAnnotation {
                 wanted: &self.figure.annotate,
                 geometry: self.geometry,
                 model: self.inputs.source.data.model.filter(|_| !self.figure.interpretation),
                 names,
+                wells: self.inputs.wells,
             }),
             names,
         };
@@ -352,86 +287,8 @@ impl<'a> Maker<'a> {
             let caption = scale::block_caption(&part.scene, self.geometry);
             drawn.group.push(scale::drawn(below, Some(drawn.points_per_m), &caption));
         }
+        moved::change(&mut drawn.group.items, &part.scene.labels);
         Ok(drawn.group)
-    }
-
-    fn section(&self, part: &SectionPart, room: Rect) -> Result<Group, FigureError> {
-        let (kind, at) = (part.kind, self.voxel_at(part.kind, part.at)?);
-        let cut = SectionCut::new(&self.inputs.source, kind, at, part.show);
-        let unit = if kind == SectionKind::Slice { self.geometry.vertical.unit.symbol() } else { "" };
-        let title = format!("{} {} {unit}", kind.name(), part.at).trim_end().to_owned();
-        let extent = kind.extent(self.geometry.size());
-        let vectors =
-            [self.geometry.inline_vector.length(), self.geometry.crossline_vector.length(), self.geometry.sample_m()];
-        let [s, t] = kind.axes();
-        let panel = Panel {
-            title,
-            extent,
-            extent_m: extent * DVec2::new(vectors[s], vectors[t]),
-            axes: [self.axis(s, extent.x), self.axis(t, extent.y)],
-            zoom: part.zoom,
-            is_plan: kind == SectionKind::Slice,
-            marks: self.marks_on(kind)?,
-            on: SeenOn::Section(kind, at),
-        };
-        self.panel(panel, &Arc::new(cut.image), &cut.lines, room)
-    }
-
-    fn fence(&self, part: &FencePart, room: Rect) -> Result<Group, FigureError> {
-        let corners = self.fence_corners(part)?;
-        let cut = FenceCut::new(&self.inputs.source, &corners, part.show);
-        let along = stations(&corners);
-        let depth = self.geometry.size()[2].saturating_sub(1).max(1) as f64;
-        let extent = DVec2::new(along.last().copied().unwrap_or(1.0), depth);
-        let length_m = length_m(self.geometry, &corners);
-        let ground = Axis { name: "distance (m)".into(), ends: [0.0, length_m], at: [0.0; 2], least_step: 0.0 };
-        let panel = Panel {
-            title: "Fence".into(),
-            extent,
-            extent_m: DVec2::new(length_m, depth * self.geometry.sample_m()),
-            axes: [ground, self.axis(2, depth)],
-            zoom: Zoom::default(),
-            is_plan: false,
-            // Where it turns.
-            marks: Marks { down: along[1..along.len() - 1].to_vec(), ..Marks::default() },
-            on: SeenOn::Fence(&corners),
-        };
-        self.panel(panel, &Arc::new(cut.image), &cut.lines, room)
-    }
-
-    fn panel(
-        &self,
-        panel: Panel,
-        image: &Arc<image::RgbaImage>,
-        lines: &[crate::cut::CutLine],
-        room: Rect,
-    ) -> Result<Group, FigureError> {
-        let [nx, ny, _] = self.geometry.size();
-        let shown = self.interpretation()?;
-        let cut = shown.map(|shown| OverlayLines::new(shown, [nx, ny], panel.on));
-        let caption: Box<dyn Fn(f64) -> String> = Box::new(|factor| scale::exaggeration(factor, self.geometry));
-        let drawn = SectionPanel {
-            title: panel.title,
-            contents: SectionContents {
-                image,
-                extent: panel.extent,
-                lines,
-                horizons: self.inputs.horizons,
-                faults: self.inputs.faults,
-                interpretation: shown.zip(cut.as_ref()).map(|(shown, cut)| (shown, cut, panel.on)),
-                marks: panel.marks,
-            },
-            axes: panel.axes,
-            zoom: panel.zoom,
-            extent_m: panel.extent_m,
-            is_plan: panel.is_plan,
-            caption: self.figure.scale_bar.then_some(caption),
-        }
-        .drawn(room);
-        if drawn.items.is_empty() {
-            return Err(self.no_room());
-        }
-        Ok(drawn)
     }
 
     fn map(&self, part: &MapPart, room: Rect) -> Result<Group, FigureError> {
@@ -463,6 +320,27 @@ impl<'a> Maker<'a> {
         };
         let group = panel.drawn(room);
         if group.items.is_empty() { Err(self.no_room()) } else { Ok(Group { kind: GroupKind::Panel, ..group }) }
+    }
+
+    fn correlation(
+        &self,
+        part: &CorrelationPart,
+        columns: &[Column],
+        range: [f64; 2],
+        room: Rect,
+    ) -> Result<Group, FigureError> {
+        let panel = CorrelationPanel {
+            columns,
+            layers: self.inputs.layers,
+            library: self.inputs.library,
+            horizons: self.inputs.horizons,
+            axis: correlation::axis_name(&self.axis(2, 1.0).name, part, columns),
+            range,
+            caption: self.figure.scale_bar.then(|| correlation::caption(columns, self.geometry)),
+            dpi: self.figure.dpi,
+        };
+        let drawn = panel.drawn(room)?;
+        if drawn.items.is_empty() { Err(self.no_room()) } else { Ok(drawn) }
     }
 
     /// An axis of the survey from index 0 to `last`.
@@ -551,18 +429,6 @@ impl<'a> Maker<'a> {
         }
         Ok(lines)
     }
-}
-
-/// What a section or a fence brings to its panel.
-struct Panel<'a> {
-    title: String,
-    extent: DVec2,
-    extent_m: DVec2,
-    axes: [Axis; 2],
-    zoom: Zoom,
-    is_plan: bool,
-    marks: Marks,
-    on: SeenOn<'a>,
 }
 
 /// Decimals as people type them mean the sample they name.

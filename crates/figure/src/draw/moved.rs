@@ -1,0 +1,193 @@
+//! Labels that stand elsewhere or look otherwise than they were placed, as a scene says ([`LabelChange`]).
+//!
+//! A change is made to the finished page, so whoever drags a label sees at once what will be printed. What marks a place
+//! stays where it is: the sign of a well, the half-arrows of a fault, the foot of a leader.
+
+use crate::Rect;
+use crate::list::{DisplayList, Group, GroupKind, Item, POINTS_PER_MM, Path, Segment, Text};
+use glam::DVec2;
+pub use render::LabelChange;
+use ttf::Preset;
+
+/// What the groups of leaders are called before the name.
+const LEADER: &str = "leader to ";
+/// The panel of a block, and the group in it of what is written on the block.
+pub(crate) const BLOCK: &str = "block";
+pub(crate) const ON_BLOCK: &str = "labels";
+
+/// A label that can be moved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Movable {
+    /// What a [`LabelChange`] calls it.
+    pub label: String,
+    /// The room that it takes.
+    pub bounds: Rect,
+}
+
+/// The labels of a page, in the order of drawing.
+pub fn movable(list: &DisplayList) -> Vec<Movable> {
+    let mut found = Vec::new();
+    for group in list.items.iter().filter_map(as_group) {
+        match group.kind {
+            GroupKind::Panel if group.name != BLOCK => {}
+            GroupKind::Panel => {
+                for part in group.items.iter().filter_map(as_group).filter(|part| part.kind == GroupKind::Annotation) {
+                    match part.name == ON_BLOCK {
+                        true => part.items.iter().filter_map(as_group).for_each(|label| gather(label, &mut found)),
+                        false => gather(part, &mut found),
+                    }
+                }
+            }
+            _ => gather(group, &mut found),
+        }
+    }
+    found
+}
+
+/// A page with the labels of its blocks and of itself changed, in the colours of a preset. The page must have been made
+/// without changes.
+pub fn changed(list: &DisplayList, changes: &[LabelChange], preset: Preset) -> DisplayList {
+    let mut list = list.clone();
+    for item in &mut list.items {
+        if let Item::Group(panel) = item
+            && panel.kind == GroupKind::Panel
+            && panel.name == BLOCK
+        {
+            change(&mut panel.items, changes);
+        }
+    }
+    change(&mut list.items, changes);
+    list.print(preset);
+    list
+}
+
+fn gather(group: &Group, found: &mut Vec<Movable>) {
+    let label = called(group);
+    let places = match is_pinned(group) {
+        true => group.items.iter().filter_map(as_text).map(Text::bounds).collect(),
+        false => bounds_of(&group.items),
+    };
+    if let Some(bounds) = places.into_iter().reduce(|a, b| a.around(b.min).around(b.max)) {
+        found.push(Movable { label: label.to_owned(), bounds });
+    }
+    if group.kind == GroupKind::Well {
+        group.items.iter().filter_map(as_group).for_each(|top| gather(top, found));
+    }
+}
+
+fn bounds_of(items: &[Item]) -> Vec<Rect> {
+    let of = |item: &Item| match item {
+        Item::Path(path) => path.path.bounds().into_iter().collect(),
+        Item::Text(text) => vec![text.bounds()],
+        Item::Picture(picture) => Path::polygon(&picture.corners()).bounds().into_iter().collect(),
+        Item::Group(group) => match group.clip.as_ref().and_then(Path::bounds) {
+            Some(clip) => vec![clip],
+            None => bounds_of(&group.items),
+        },
+    };
+    items.iter().flat_map(of).collect()
+}
+
+/// Makes changes to those of `items` that are labels: on the page all but its panels, in a panel all but its picture.
+pub(crate) fn change(items: &mut Vec<Item>, changes: &[LabelChange]) {
+    if changes.is_empty() {
+        return;
+    }
+    let is_left = |item: &Item| {
+        let hidden = |group: &Group| changes.iter().any(|change| change.is_hidden && change.label == called(group));
+        !as_group(item).is_some_and(|group| is_label(group) && hidden(group))
+    };
+    items.retain(is_left);
+    for item in items {
+        let Item::Group(group) = item else { continue };
+        if !is_label(group) {
+            continue;
+        }
+        if group.name == ON_BLOCK || group.kind == GroupKind::Well {
+            change(&mut group.items, changes);
+        }
+        let name = called(group).to_owned();
+        for change in changes.iter().filter(|change| change.label == name) {
+            apply(group, change);
+        }
+    }
+}
+
+fn apply(group: &mut Group, change: &LabelChange) {
+    let by = DVec2::from_array(change.moved_mm) * POINTS_PER_MM;
+    match is_pinned(group) {
+        true => {
+            for item in &mut group.items {
+                match item {
+                    Item::Text(text) => text.shift(by),
+                    // The end at the name of a line to it.
+                    Item::Path(path) => {
+                        if let [Segment::Move(_), Segment::Line(end)] = &mut path.path.segments[..] {
+                            *end += by;
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        }
+        false => shift(&mut group.items, by),
+    }
+    restyle(&mut group.items, change);
+}
+
+/// Whether a group on a page or in a panel is written on what it shows.
+fn is_label(group: &Group) -> bool {
+    !matches!(group.kind, GroupKind::Panel | GroupKind::Data)
+}
+
+/// Whether only the letters of a group move.
+fn is_pinned(group: &Group) -> bool {
+    matches!(group.kind, GroupKind::Well | GroupKind::Fault) || group.name.starts_with(LEADER)
+}
+
+fn called(group: &Group) -> &str {
+    group.name.strip_prefix(LEADER).unwrap_or(&group.name)
+}
+
+fn as_group(item: &Item) -> Option<&Group> {
+    match item {
+        Item::Group(group) => Some(group),
+        _ => None,
+    }
+}
+
+fn as_text(item: &Item) -> Option<&Text> {
+    match item {
+        Item::Text(text) => Some(text),
+        _ => None,
+    }
+}
+
+fn shift(items: &mut [Item], by: DVec2) {
+    for item in items {
+        match item {
+            Item::Path(path) => path.path.shift(by),
+            Item::Text(text) => text.shift(by),
+            Item::Picture(picture) => picture.corner += by,
+            Item::Group(group) => {
+                group.clip.iter_mut().for_each(|clip| clip.shift(by));
+                shift(&mut group.items, by);
+            }
+        }
+    }
+}
+
+fn restyle(items: &mut [Item], change: &LabelChange) {
+    for item in items {
+        match item {
+            Item::Text(text) => {
+                text.ink.colour = change.colour.unwrap_or(text.ink.colour);
+                if let Some(size) = change.size_pt {
+                    text.resize(size);
+                }
+            }
+            Item::Group(group) => restyle(&mut group.items, change),
+            _ => {}
+        }
+    }
+}

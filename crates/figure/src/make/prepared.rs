@@ -1,0 +1,161 @@
+//! What parts show, found before the page is laid out: the legend lists what is on them.
+
+use super::Maker;
+use crate::Rect;
+use crate::correlation::{self, Column, ColumnSource};
+use crate::cut::{CutLine, FenceCut, SectionCut, SectionKind, length_m, stations};
+use crate::draw::axes::Axis;
+use crate::draw::overlay::{OverlayLines, SeenOn};
+use crate::draw::scale;
+use crate::draw::section::{Marks, SectionContents, SectionPanel, Zoom};
+use crate::error::FigureError;
+use crate::list::Group;
+use crate::spec::{FencePart, Part, SectionPart};
+use glam::DVec2;
+use image::RgbaImage;
+use std::sync::Arc;
+
+/// What a part shows.
+pub(super) enum Prepared {
+    /// A block or a map, which nothing else needs to know of.
+    Later,
+    /// A section or a fence.
+    Section(Box<PreparedSection>),
+    /// Wells, and the range of their axis.
+    Wells(Vec<Column>, [f64; 2]),
+}
+
+/// A section or a fence.
+pub(super) struct PreparedSection {
+    title: String,
+    /// Largest s and t.
+    pub extent: DVec2,
+    extent_m: DVec2,
+    axes: [Axis; 2],
+    /// Which part of it is seen.
+    pub zoom: Zoom,
+    is_plan: bool,
+    marks: Marks,
+    on: Place,
+    image: Arc<RgbaImage>,
+    /// Lines of the model.
+    pub lines: Vec<CutLine>,
+    /// What an interpreter sees over it.
+    pub overlay: Option<OverlayLines>,
+}
+
+/// Where a section lies.
+enum Place {
+    Section(SectionKind, f64),
+    Fence(Vec<DVec2>),
+}
+
+impl Place {
+    fn seen_on(&self) -> SeenOn<'_> {
+        match self {
+            Self::Section(kind, at) => SeenOn::Section(*kind, *at),
+            Self::Fence(corners) => SeenOn::Fence(corners),
+        }
+    }
+}
+
+impl Maker<'_> {
+    /// Cuts sections and fences, and makes columns of wells.
+    pub(super) fn prepared(&self, part: &Part) -> Result<Prepared, FigureError> {
+        let mut section = match part {
+            Part::Block(_) | Part::Map(_) => return Ok(Prepared::Later),
+            Part::Section(part) => self.section(part)?,
+            Part::Fence(part) => self.fence(part)?,
+            Part::Correlation(part) => {
+                let model = self.inputs.source.data.model.filter(|_| !self.figure.interpretation);
+                let (wells, horizons) = (self.inputs.wells, self.inputs.strata);
+                let source = ColumnSource { wells, geometry: self.geometry, horizons, model };
+                let columns = correlation::columns(part, &source)?;
+                let range = correlation::range(part, &columns)?;
+                return Ok(Prepared::Wells(columns, range));
+            }
+        };
+        let [nx, ny, _] = self.geometry.size();
+        let shown = self.interpretation()?;
+        section.overlay = shown.map(|shown| OverlayLines::new(shown, [nx, ny], section.on.seen_on()));
+        Ok(Prepared::Section(Box::new(section)))
+    }
+
+    fn section(&self, part: &SectionPart) -> Result<PreparedSection, FigureError> {
+        let (kind, at) = (part.kind, self.voxel_at(part.kind, part.at)?);
+        let cut = SectionCut::new(&self.inputs.source, kind, at, part.show);
+        let unit = if kind == SectionKind::Slice { self.geometry.vertical.unit.symbol() } else { "" };
+        let title = format!("{} {} {unit}", kind.name(), part.at).trim_end().to_owned();
+        let extent = kind.extent(self.geometry.size());
+        let vectors =
+            [self.geometry.inline_vector.length(), self.geometry.crossline_vector.length(), self.geometry.sample_m()];
+        let [s, t] = kind.axes();
+        Ok(PreparedSection {
+            title,
+            extent,
+            extent_m: extent * DVec2::new(vectors[s], vectors[t]),
+            axes: [self.axis(s, extent.x), self.axis(t, extent.y)],
+            zoom: part.zoom,
+            is_plan: kind == SectionKind::Slice,
+            marks: self.marks_on(kind)?,
+            on: Place::Section(kind, at),
+            image: Arc::new(cut.image),
+            lines: cut.lines,
+            overlay: None,
+        })
+    }
+
+    fn fence(&self, part: &FencePart) -> Result<PreparedSection, FigureError> {
+        let corners = self.fence_corners(part)?;
+        let cut = FenceCut::new(&self.inputs.source, &corners, part.show);
+        let along = stations(&corners);
+        let depth = self.geometry.size()[2].saturating_sub(1).max(1) as f64;
+        let extent = DVec2::new(along.last().copied().unwrap_or(1.0), depth);
+        let length_m = length_m(self.geometry, &corners);
+        let ground = Axis { name: "distance (m)".into(), ends: [0.0, length_m], at: [0.0; 2], least_step: 0.0 };
+        Ok(PreparedSection {
+            title: "Fence".into(),
+            extent,
+            extent_m: DVec2::new(length_m, depth * self.geometry.sample_m()),
+            axes: [ground, self.axis(2, depth)],
+            zoom: Zoom::default(),
+            is_plan: false,
+            // Where it turns.
+            marks: Marks { down: along[1..along.len() - 1].to_vec(), ..Marks::default() },
+            on: Place::Fence(corners),
+            image: Arc::new(cut.image),
+            lines: cut.lines,
+            overlay: None,
+        })
+    }
+
+    /// The panel of a section or a fence.
+    pub(super) fn panel(&self, section: PreparedSection, room: Rect) -> Result<Group, FigureError> {
+        let shown = self.interpretation()?;
+        let caption: Box<dyn Fn(f64) -> String> = Box::new(|factor| scale::exaggeration(factor, self.geometry));
+        let drawn = SectionPanel {
+            title: section.title,
+            contents: SectionContents {
+                image: &section.image,
+                extent: section.extent,
+                lines: &section.lines,
+                horizons: self.inputs.horizons,
+                faults: self.inputs.faults,
+                interpretation: shown
+                    .zip(section.overlay.as_ref())
+                    .map(|(shown, overlay)| (shown, overlay, section.on.seen_on())),
+                marks: section.marks,
+            },
+            axes: section.axes,
+            zoom: section.zoom,
+            extent_m: section.extent_m,
+            is_plan: section.is_plan,
+            caption: self.figure.scale_bar.then_some(caption),
+        }
+        .drawn(room);
+        if drawn.items.is_empty() {
+            return Err(self.no_room());
+        }
+        Ok(drawn)
+    }
+}
