@@ -4,12 +4,12 @@ use super::page::PageRequest;
 use super::report::Report;
 use super::request::RenderRequest;
 use super::run::scene_file;
-use project::figures::NamedConfusion;
+use pictures::figures::NamedConfusion;
+use pictures::{Device, Painter, figures};
+use pictures::{load, scene};
+use project::Project;
 use project::folder::refuse_inside_project;
 use project::memory_budget;
-use project::picture::{self, Device, Painter};
-use project::picture::{load, scene};
-use project::{Project, figures};
 use render::{FaceData, Scene};
 use std::path::Path;
 use survey::{Progress, VerticalUnit, memory};
@@ -45,7 +45,7 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     let loaded = load::load_within(&project, &scene, volume_bytes, progress)?;
     let mut painter = Painter::new(request.device, progress)?;
     let (image, stage) = painter.draw(&scene, &loaded, progress)?;
-    picture::write_png(&request.out, &image, request.dpi)?;
+    pictures::write_png(&request.out, &image, request.dpi)?;
 
     let distortion = match scene.face_data {
         FaceData::Distortion => loaded.distortion(&scene, progress)?,

@@ -3,9 +3,9 @@
 use super::report::Report;
 use super::{info_interpretation, option};
 use formats::ImportOptions;
+use pictures::{load, scene};
 use project::Project;
 use project::error::Noun;
-use project::picture::{load, scene};
 use render::{FaceData, Scene};
 use segy::{SegyFile, SegyOptions};
 use serde_json::json;

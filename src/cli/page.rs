@@ -11,7 +11,7 @@ use figure::draw::section::Zoom;
 use figure::{
     Annotation, BlockPart, CorrelationPart, FencePart, Figure, MapPart, PageSize, Part, SectionKind, SectionPart,
 };
-use project::figures::{self, FigureSettings, InterpreterView};
+use pictures::figures::{self, FigureSettings, InterpreterView};
 use project::{Project, memory_budget};
 use render::Scene;
 use std::path::PathBuf;

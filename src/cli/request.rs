@@ -16,14 +16,14 @@ use formats::{ExportOptions, Format, ImportOptions, SurfaceKind};
 use interp::ExtractSettings;
 use interp::faults::ProposeSettings;
 use param::KDefinition;
+use pictures::Device;
+use pictures::figures::FigureFormat;
+use pictures::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use project::command::{
     AddTexture, Command, ImportVolume, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer, SetLayer,
     SetParameterization, SetScalar, SetVelocity,
 };
-use project::figures::FigureFormat;
 use project::memory_budget;
-use project::picture::Device;
-use project::picture::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use render::{IsosurfaceSource, Scope};
 use segy::{SegyOptions, WriteFormat};
 use std::path::PathBuf;

@@ -9,13 +9,13 @@ use anyhow::Context;
 use chains::demo::{self, survey_files};
 use chains::illustrate;
 use formats::{ExportOptions, Format, SurfaceKind};
+use pictures::load::Stage;
+use pictures::{load, scene};
 use project::Project;
 use project::ProjectError;
 use project::command::{AddScene, Command, Effect, Extract, ImportVolume, ProposeFaults, SetParameterization, SetRaw};
 use project::folder::refuse_inside_project;
 use project::interpretation::extraction;
-use project::picture::load::Stage;
-use project::picture::{self, load, scene};
 use project::{derived, segy_export, styles, surface_export};
 use render::Scene;
 use std::path::{Path, PathBuf};
@@ -293,7 +293,7 @@ fn patterns(out: &Path, project: Option<&Path>) -> anyhow::Result<Report> {
         }
         None => TextureLibrary::builtin()?,
     };
-    picture::write_png(out, &contact_sheet(&library)?, SHEET_DPI)?;
+    pictures::write_png(out, &contact_sheet(&library)?, SHEET_DPI)?;
     let names: Vec<&str> = library.patterns().map(|pattern| pattern.name.as_str()).collect();
     let mut report = Report::line(format!("{} patterns drawn in {}", names.len(), out.display()));
     report.field("file", out).field("patterns", names);

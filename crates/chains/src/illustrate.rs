@@ -6,14 +6,14 @@
 
 use figure::{Annotation, BlockPart, Figure, PageSize};
 use interp::ExtractSettings;
+use pictures::Device;
+use pictures::figures::{self, FigureFormat, FigureSettings, InterpreterView};
+use pictures::scene;
 use project::Project;
 use project::command::{Command, ComputeTime, Extract, ImportVolume, PickByTime, SetLayer, TimeLevel, read_time};
 use project::document::Polarity;
 use project::error::ProjectError;
-use project::figures::{self, FigureFormat, FigureSettings, InterpreterView};
 use project::folder::refuse_inside_project;
-use project::picture::Device;
-use project::picture::scene;
 use segy::SegyOptions;
 use serde::Serialize;
 use std::fmt;

@@ -278,7 +278,7 @@ fn wells_have_names_on_top_faces_and_in_cut_outs_and_tops_where_they_are_seen() 
     assert!(has("in the cut-out") && has("Top of in the cut-out") && has("in rock"), "{texts:?}");
     assert!(!has("Top of in rock") && !has("outside"), "{texts:?}");
     // From below the heads are hidden.
-    let mut below = scene.clone();
+    let mut below = scene;
     below.camera.elevation_deg = -40.0;
     assert!(!said(&survey.page(&below, &[Annotation::Wells]).0).contains(&"in rock".to_owned()));
 }
@@ -316,7 +316,7 @@ fn a_legend_lists_what_is_seen_and_nothing_else() {
     above.camera.elevation_deg = 90.0;
     above.wells.radius = 0.0;
     assert_eq!(legend(&above), ["Bed 3", "Fault"]);
-    let ground = legend(&Scene { ground: Some(Ground::default()), ..above.clone() });
+    let ground = legend(&Scene { ground: Some(Ground::default()), ..above });
     assert!(ground.contains(&"Bed 2".to_owned()) && !ground.contains(&"Bed 3".to_owned()), "{ground:?}");
     assert!(!ground.contains(&"Bed 0".to_owned()), "{ground:?}");
     // Zoomed in on the cut-out's foot.
@@ -325,7 +325,7 @@ fn a_legend_lists_what_is_seen_and_nothing_else() {
     let seen = legend(&near);
     assert!(seen.len() > 1 && !seen.contains(&"Bed 0".to_owned()) && !seen.contains(&"in rock".to_owned()), "{seen:?}");
     // Nothing is drawn of faults whose lines have no width.
-    let mut plain = whole.clone();
+    let mut plain = whole;
     plain.outlines.faults.width_px = 0.0;
     assert!(!legend(&plain).contains(&"Fault".to_owned()));
 }

@@ -14,11 +14,9 @@
 //! | [`content`], [`styles`] | volumes, horizons, faults, wells and patterns read by the names of a project |
 //! | [`derived`] | what was computed, kept by key |
 //! | [`interpretation`] | from a volume to candidates, from picks to a horizon, from horizons to proposed faults |
-//! | [`picture`] | what a scene needs, loaded once for every renderer, and drawn |
 //! | [`check`] | a project verified and repaired |
 //! | [`command`] | every change, as data |
 //! | [`Project`] | applies commands; undo and redo |
-//! | [`figures`] | what a figure needs, loaded, and its page made |
 //! | [`segy_export`] | a volume written as SEG-Y |
 //! | [`surface_export`] | a horizon or fault written for other programs |
 //!
@@ -32,11 +30,9 @@ pub mod content;
 pub mod derived;
 pub mod document;
 pub mod error;
-pub mod figures;
 pub mod folder;
 pub mod interpretation;
 pub mod memory_budget;
-pub mod picture;
 pub mod placement;
 mod project;
 pub mod segy_export;

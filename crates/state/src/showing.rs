@@ -3,7 +3,7 @@
 
 use super::picking::Look;
 use super::{Panel, Session};
-use project::picture::scene::{Technique, VolumeRendering};
+use pictures::scene::{Technique, VolumeRendering};
 use render::{FaceData, Media, PickedHorizon, Scene, Scope};
 use ttf::Colour;
 

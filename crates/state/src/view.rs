@@ -4,8 +4,8 @@ pub use figure::SectionKind;
 
 use super::picking::Picking;
 use formats::SurfaceKind;
+use pictures::scene;
 use project::document::Document;
-use project::picture::scene;
 use render::{Scene, Unpicked, VoxelBox};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;

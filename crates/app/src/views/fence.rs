@@ -106,7 +106,7 @@ impl FenceView {
             image: &shown.image,
             extent,
             lines: if is_interpreting { &[] } else { &shown.lines },
-            horizons: &project::figures::horizons(&session.document),
+            horizons: &pictures::figures::horizons(&session.document),
             faults: &[],
             interpretation: None,
             // Lines at the corners of the fence.

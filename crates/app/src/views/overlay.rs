@@ -15,7 +15,7 @@ use figure::draw::surfaces::{Cells, OPACITY};
 use figure::interpretation::{DrawnInterpretation, DrawnSelection, Stick};
 use formats::SurfaceKind;
 use glam::DVec2;
-use project::figures::InterpreterView;
+use pictures::figures::InterpreterView;
 use std::collections::HashMap;
 use std::sync::Arc;
 use ttf::Colour;

@@ -2,7 +2,7 @@
 
 use crate::state::camera;
 use glam::{DVec2, DVec3, Vec3};
-use project::picture::load::Loaded;
+use pictures::load::Loaded;
 use render::visible::Ray;
 use render::{NamedVolume, Scene};
 

@@ -1,6 +1,6 @@
 //! What is on the screen as a figure: for the preview of the page and for the exported file.
 //!
-//! The page itself is made by [`project::figures::make`], as for `petroglyph render`.
+//! The page itself is made by [`pictures::figures::make`], as for `petroglyph render`.
 
 use super::block::{self, BEHIND_VOLUMES};
 use super::overlay::{Overlay, interpreter_view};
@@ -14,8 +14,8 @@ use figure::draw::block::Comparison;
 use figure::map::Mapped;
 use figure::{BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionPart};
 use glam::DVec3;
-use project::figures::{self, FigureFormat, FigureSettings, InterpreterView};
-use project::picture::Device;
+use pictures::Device;
+use pictures::figures::{self, FigureFormat, FigureSettings, InterpreterView};
 use project::{Project, ProjectError, memory_budget};
 use render::{Background, FaceData, Scene};
 use std::path::{Path, PathBuf};

@@ -8,11 +8,11 @@ use super::running::Running;
 use super::{Event, Outbox};
 use crate::state::{Notice, Place};
 use model::ModelSettings;
+use pictures::load::{self, Loaded};
 use project::Project;
 use project::document::{Document, WellEntry};
 use project::error::ProjectError;
 use project::interpretation::solid;
-use project::picture::load::{self, Loaded};
 use project::{derived, styles};
 use render::media::{LayerOpacity, MediumColour, white_ramp};
 use render::{FaceData, Medium, PickedHorizon, Scene};
@@ -63,7 +63,7 @@ pub struct Seen {
 impl Seen {
     /// What a scene renders within the block.
     pub fn of(scene: &Scene) -> Self {
-        let mut volumes: Vec<String> = load::volumes_within(scene).map(str::to_owned).collect();
+        let mut volumes: Vec<String> = project::document::volumes_within(scene).map(str::to_owned).collect();
         let mut horizons: Vec<String> =
             scene.media.horizons.iter().filter_map(|horizon| horizon.name.clone()).collect();
         for names in [&mut volumes, &mut horizons] {

@@ -10,7 +10,7 @@ use super::{Event, Outbox, Rocks};
 use crate::state::{How, Notice, PickingStep, Place};
 use glam::DVec2;
 use image::RgbaImage;
-use project::picture::{Device, Painter};
+use pictures::{Device, Painter};
 use render::{Media, RenderError, Scene, Shading};
 use std::path::PathBuf;
 use std::sync::PoisonError;

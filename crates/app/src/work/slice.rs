@@ -5,7 +5,7 @@ use super::latest_value::{Inbox, LatestValueWorker};
 use super::{Event, Outbox, Rocks};
 use crate::state::SectionKind;
 use figure::cut::{SectionCut, SectionSource};
-use project::picture::load::Loaded;
+use pictures::load::Loaded;
 use render::{DrawnWell, FaceData, NamedVolume};
 use std::collections::HashMap;
 use std::sync::PoisonError;

@@ -11,6 +11,8 @@ use interp::ExtractSettings;
 use interp::assembly::Operation;
 use interp::evaluate::Parts;
 use interp::holes::FillSettings;
+use pictures::load::{self, Stage};
+use pictures::{Device, Painter};
 use project::Project;
 use project::command::{
     AddFault, AddScene, Climb, Command, Effect, Extract, FillHorizon, ImportVolume, PickNode, SetContact, SetLayer,
@@ -20,8 +22,6 @@ use project::document::Polarity;
 use project::error::{Noun, ProjectError};
 use project::interpretation::assembly::blocks;
 use project::interpretation::candidates::Candidates;
-use project::picture::load::{self, Stage};
-use project::picture::{self, Device, Painter};
 use render::Scene;
 use segy::SegyOptions;
 use serde::{Deserialize, Serialize};
@@ -123,7 +123,7 @@ pub fn run(out: &Path, progress: &Progress) -> Result<Demonstration, ProjectErro
     for (name, blend) in PICTURES {
         let (image, drawn) = painter.draw(&Scene { blend, ..scene.clone() }, &loaded, progress)?;
         let path = out.join(format!("{name}.png"));
-        picture::write_png(&path, &image, DPI)?;
+        pictures::write_png(&path, &image, DPI)?;
         done.stages.push(drawn);
         done.pictures.push(path);
     }

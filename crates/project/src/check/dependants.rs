@@ -1,8 +1,7 @@
 //! What is made of a data file, or shows it: what is lost while it is damaged.
 
 use super::objects::Entry;
-use crate::document::{Document, HorizonEntry};
-use crate::picture::load::volumes_within;
+use crate::document::{Document, HorizonEntry, volumes_within};
 
 /// What of a state depends on one of its data files.
 pub(super) fn of(document: &Document, entry: &Entry) -> Vec<String> {

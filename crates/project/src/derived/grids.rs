@@ -293,7 +293,7 @@ pub fn write_volumes(
 }
 
 /// Arrays that were read, as the sampled parameterization.
-pub(crate) fn voxels_of(volumes: ParameterizationVolumes) -> VoxelParameterization {
+pub fn voxels_of(volumes: ParameterizationVolumes) -> VoxelParameterization {
     let ParameterizationVolumes { i, j, k, layer, block } = volumes;
     VoxelParameterization { size: i.size(), i, j, k, layer, block }
 }

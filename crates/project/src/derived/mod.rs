@@ -20,9 +20,8 @@ pub mod revision;
 mod scratch;
 
 pub use blocks::{blocks_key, keep_blocks, load_blocks};
-pub use grids::{keep_grids, load_grids, load_volumes, parameterization_key, volumes_path, write_volumes};
+pub use grids::{keep_grids, load_grids, load_volumes, parameterization_key, volumes_path, voxels_of, write_volumes};
 
-pub(crate) use grids::voxels_of;
 pub(crate) use kept::verify_kept;
 pub(crate) use scratch::{Scratch, abandoned, remove_leftovers};
 

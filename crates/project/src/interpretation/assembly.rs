@@ -249,7 +249,7 @@ pub fn selection(name: &str, log: &Assembly, candidates: &Candidates) -> Result<
 ///
 /// # Errors
 /// A pick lies above the root of its tree.
-pub(crate) fn picked_selection(log: &Assembly, forest: &Forest) -> Result<Selection, AssemblyError> {
+pub fn picked_selection(log: &Assembly, forest: &Forest) -> Result<Selection, AssemblyError> {
     let mut nodes = Vec::with_capacity(log.picks.len());
     for pick in &log.picks {
         nodes.push((node_above(forest, pick.leaf, pick.up)?, pick.operation));

@@ -24,13 +24,13 @@ pub fn param_settings(document: &Document) -> ParamSettings {
 }
 
 /// Metres of rock for a printed millimetre, when the block's longer side has its usual width on paper.
-pub(crate) fn metres_per_mm(geometry: &SurveyGeometry) -> f64 {
+pub fn metres_per_mm(geometry: &SurveyGeometry) -> f64 {
     let [x_m, y_m] = extent_m(geometry);
     x_m.max(y_m) / PRINTED_MM
 }
 
 /// Lengths of the block along x and y, m.
-pub(crate) fn extent_m(geometry: &SurveyGeometry) -> [f64; 2] {
+pub fn extent_m(geometry: &SurveyGeometry) -> [f64; 2] {
     let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1).max(1) as f64);
     [geometry.inline_vector.length() * nx, geometry.crossline_vector.length() * ny]
 }

@@ -19,7 +19,7 @@ use compare::fitted;
 use eframe::egui::{Color32, ColorImage, Pos2, Rect, Role, Sense, Stroke, TextureHandle, Ui, Vec2, WidgetInfo, pos2};
 use glam::DVec2;
 use hand::Hand;
-use project::picture::load::Loaded;
+use pictures::load::Loaded;
 use render::{Background, Faces, Media, Scene};
 use widgets::theme;
 

@@ -209,7 +209,7 @@ impl Pane {
         let (on_page, seen) = (canvas::page_rect(image), canvas::page_rect(body));
         if let (Some((pixels, lines)), Some(texture)) = (&self.shown, &self.texture) {
             let lines = if is_interpreting { Cow::Borrowed(&[][..]) } else { lines::visible(session, lines) };
-            let horizons = project::figures::horizons(&session.document);
+            let horizons = pictures::figures::horizons(&session.document);
             let contents = contents(pixels, &lines, &horizons, extent, session, kind);
             canvas::paint(&painter, &contents.drawn(seen, on_page), Some(texture.id()));
         }

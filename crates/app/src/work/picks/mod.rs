@@ -90,7 +90,7 @@ pub struct Interpreted {
 
 /// A sheet in the form that figures take.
 pub fn sheet(sheet: &VoxelSheet) -> TraceSheet<'_> {
-    project::figures::borrowed(sheet)
+    pictures::figures::borrowed(sheet)
 }
 
 impl Interpreted {

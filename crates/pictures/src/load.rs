@@ -2,16 +2,16 @@
 //! Each step does only what is needed, and earlier results are taken from `derived/`.
 
 use super::SparseHorizon;
-use crate::Project;
-use crate::document::Document;
-use crate::error::ProjectError;
-use crate::interpretation::solid;
-use crate::picture::shown_candidates::ShownCandidates;
-use crate::placement;
-use crate::{content, derived, memory_budget, styles};
+use crate::shown_candidates::ShownCandidates;
 use glam::{DVec3, Vec3};
 use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, Parameterization, VoxelParameterization};
+use project::Project;
+use project::document::{Document, volumes_within};
+use project::error::ProjectError;
+use project::interpretation::solid;
+use project::placement;
+use project::{content, derived, memory_budget, styles};
 use render::distortion::{self, LayerDistortion};
 use render::{DrawnWell, Inputs, Lookup, Media, NamedVolume, RenderError, Scene, VoxelBox};
 use std::path::Path;
@@ -290,18 +290,6 @@ pub fn load_within(
         tables,
         version: new_version(),
     })
-}
-
-/// The volumes that a scene shows within the block: those of media and isosurfaces, and those painted on horizons.
-/// Every loader asks here.
-pub fn volumes_within(scene: &Scene) -> impl Iterator<Item = &str> {
-    let media = &scene.media;
-    let painted = media.horizons.iter().filter_map(|horizon| Some(horizon.paint.as_ref()?.volume.as_str()));
-    media
-        .all()
-        .map(|medium| medium.volume.as_str())
-        .chain(media.isosurface_volumes().map(String::as_str))
-        .chain(painted)
 }
 
 /// What a scene shows beyond what is loaded.

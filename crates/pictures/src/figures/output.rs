@@ -1,10 +1,10 @@
 //! Files that pages are written to.
 
-use crate::error::ProjectError;
-use crate::folder;
-use crate::picture::write_png;
-use crate::project::Project;
+use crate::write_png;
 use figure::list::DisplayList;
+use project::Project;
+use project::error::ProjectError;
+use project::folder;
 use std::fs::File;
 use std::io::Write;
 use std::path::Path;
@@ -27,7 +27,7 @@ impl FigureFormat {
     /// The format that the ending of a file's name says; `None` of an ending that figures have no format for.
     ///
     /// ```
-    /// use project::figures::FigureFormat;
+    /// use pictures::figures::FigureFormat;
     /// assert_eq!(FigureFormat::of("north.SVG".as_ref()), Some(FigureFormat::Svg));
     /// assert_eq!(FigureFormat::of("north.gif".as_ref()), None);
     /// ```

@@ -9,16 +9,16 @@
 //!
 //! In memory: five bytes a voxel, and the trees without their triangles.
 
-use crate::Project;
-use crate::document::Document;
-use crate::document::PickEntry;
-use crate::error::{Noun, ProjectError};
-use crate::interpretation::assembly::picked_selection;
-use crate::interpretation::extraction;
-use crate::picture::horizon_distance::{self, FARTHEST};
+use crate::horizon_distance::{self, FARTHEST};
 use interp::Forest;
 use interp::assembly::selected_leaves;
 use model::StructuralModel;
+use project::Project;
+use project::document::Document;
+use project::document::PickEntry;
+use project::error::{Noun, ProjectError};
+use project::interpretation::assembly::picked_selection;
+use project::interpretation::extraction;
 use render::media::Colouring;
 use render::{CandidateVolume, FaceData, Scene};
 use std::collections::BTreeMap;

@@ -1,10 +1,10 @@
 //! Layers of a picture that are neighbours and cannot be told apart, by name.
 
 use super::layer_styles;
-use crate::document::Document;
-use crate::error::ProjectError;
-use crate::picture::load::Rock;
-use crate::styles;
+use crate::load::Rock;
+use project::document::Document;
+use project::error::ProjectError;
+use project::styles;
 use render::{FaceData, Faces, Scene};
 use serde::Serialize;
 use std::path::Path;

@@ -4,12 +4,12 @@
 //! cannot be made leaves the folder as it was.
 
 use super::{FigureFormat, FigureSettings, InterpreterView, NamedConfusion, interpreted, make, title, write};
-use crate::document::{Document, FigureEntry};
-use crate::error::ProjectError;
-use crate::folder::refuse_inside_project;
-use crate::picture::{Device, scene};
-use crate::project::Project;
+use crate::{Device, scene};
 use figure::{BlockPart, Figure, Part};
+use project::Project;
+use project::document::{Document, FigureEntry};
+use project::error::ProjectError;
+use project::folder::refuse_inside_project;
 use serde::Serialize;
 use std::fs;
 use std::path::{Component, Path, PathBuf};

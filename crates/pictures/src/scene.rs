@@ -1,9 +1,9 @@
 //! The default view of a project, and the techniques of drawing.
 
-use crate::document::Document;
-use crate::error::{Noun, ProjectError};
-use crate::styles;
 use figure::style::horizon_colour;
+use project::document::Document;
+use project::error::{Noun, ProjectError};
+use project::styles;
 use render::media::{Colouring, LayerOpacity, MediumColour, white_ramp};
 use render::{
     Background, FaceData, Faces, Ground, Interleaved, Isosurface, IsosurfaceSource, Medium, Occlusion, Outlines, Phong,

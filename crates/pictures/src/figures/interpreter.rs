@@ -1,9 +1,5 @@
 //! The interpreter's view: what is read from a project, together with what only the view knows.
 
-use crate::content;
-use crate::error::ProjectError;
-use crate::interpretation::{assembly, proposals};
-use crate::project::Project;
 use figure::interpretation::{
     DrawnInterpretation, DrawnSelection, FaultMesh, PickedSheets, SheetHole, Stick, TraceSheet,
 };
@@ -11,6 +7,10 @@ use glam::DVec3;
 use interp::faults::Proposal;
 use interp::holes::{Hole, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon};
+use project::Project;
+use project::content;
+use project::error::ProjectError;
+use project::interpretation::{assembly, proposals};
 use survey::{Progress, SurveyGeometry};
 use ttf::Colour;
 

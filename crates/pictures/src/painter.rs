@@ -1,9 +1,9 @@
 //! Draws pictures of a project, and writes PNG files with their printed size.
 
-use crate::error::ProjectError;
-use crate::folder;
-use crate::picture::load::{Loaded, Stage};
+use crate::load::{Loaded, Stage};
 use image::RgbaImage;
+use project::error::ProjectError;
+use project::folder;
 use render::reference::CpuRenderer;
 use render::{RenderError, Renderer, Scene};
 use std::fs::File;

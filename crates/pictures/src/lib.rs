@@ -1,0 +1,23 @@
+//! Pictures and figures of a project: what a scene needs is loaded in one way ([`load`]) and drawn in one way
+//! ([`Painter`]); a figure is a page around such a picture ([`figures`]).
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`load`] | what a scene needs, read once for every renderer |
+//! | [`scene`] | the scenes of a project, and scenes by default |
+//! | [`Painter`] | the renderer that the device allows |
+//! | [`figures`] | what a figure needs, loaded, and its page made |
+//!
+//! Deliberately absent: any change of a project, which is a `project::Command`.
+
+mod certainty;
+pub mod figures;
+mod horizon_distance;
+pub mod load;
+mod painter;
+pub mod scene;
+mod shown_candidates;
+
+pub use certainty::SparseHorizon;
+pub use painter::{Device, Painter, write_png};
+pub use shown_candidates::ShownCandidates;
