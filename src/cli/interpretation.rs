@@ -230,8 +230,9 @@ pub(super) fn export(typed: ExportArgs) -> Result<Request, Usage> {
         Some(name) => format(name)?,
         None => {
             let extension = typed.out.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-            let mut writable = Format::all().filter(|format| format.writes(surface.0));
-            let found = writable.find(|format| format.extension().eq_ignore_ascii_case(extension));
+            // One that cannot be written is found last, so that it is refused by its name.
+            let writable = Format::all().filter(|format| format.writes(surface.0));
+            let found = writable.chain(Format::all()).find(|format| format.extension().eq_ignore_ascii_case(extension));
             found.ok_or_else(|| {
                 format!("{}: the extension names no format; give --format, one of {}", typed.out.display(), formats())
             })?

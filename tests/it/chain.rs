@@ -100,6 +100,24 @@ fn undo_and_redo_restore_the_project_and_its_data() {
 }
 
 #[test]
+fn a_fault_is_written_and_read_back_as_the_same_triangles() {
+    let folder = project();
+    let at = folder.path();
+    let told = run_in(at, "export p.petro dying.ts --fault 'Dying fault' --json").done().json();
+    assert_eq!(told["fault"], "Dying fault", "{told}");
+    run_in(at, "fault add p.petro dying.ts --name again").done();
+    let state: toml::Value = toml::from_str(&fs::read_to_string(at.join("p.petro/project.toml")).unwrap()).unwrap();
+    let hash = |name: &str| {
+        let faults = state["faults"].as_array().unwrap();
+        faults.iter().find(|fault| fault["name"].as_str() == Some(name)).unwrap()["hash"].clone()
+    };
+    assert_eq!(hash("again"), hash("Dying fault"));
+    run_in(at, "export p.petro x.ts --fault Other").failed(&["Other"]);
+    run_in(at, "export p.petro x.irap --fault 'Dying fault'").failed(&["cannot be written", "tsurf"]);
+    assert!(!at.join("x.ts").exists() && !at.join("x.irap").exists());
+}
+
+#[test]
 fn parameterizing_is_done_once_and_again_when_something_changed() {
     let folder = project();
     let at = folder.path();
