@@ -65,6 +65,8 @@ impl Window {
         let Some(session) = &self.state.session else { return };
         ui.add_space(6.0);
         ui.horizontal(|ui| {
+            // All tabs in one row: one that reached beyond the panel would push what lies at its right edge out of sight.
+            (ui.spacing_mut().item_spacing.x, ui.spacing_mut().button_padding.x) = (4.0, 6.0);
             for (side, name, hint) in [
                 (Side::Layers, "Layers", "The stratigraphic column (L)"),
                 (Side::Data, "Data", "Volumes, horizons, faults and wells (D)"),

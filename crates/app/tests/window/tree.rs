@@ -63,6 +63,19 @@ fn a_horizon_is_hidden_and_shown_again() {
     assert!(!is_hidden(&harness));
 }
 
+/// A row of tabs wider than the panel pushed the buttons at its right edge out of sight.
+#[test]
+fn tabs_and_the_buttons_of_rows_lie_inside_the_panel() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    click(&mut harness, "Data");
+    let tab = harness.get_by_label("Interpret").rect().right();
+    let rows: Vec<f32> = harness.query_all_by_label("Remove").map(|button| button.rect().right()).collect();
+    // As wide as the panel is when a window opens.
+    let panel = 316.0;
+    assert!(tab < panel && rows.len() > 2 && rows.iter().all(|right| *right < panel), "{tab} {rows:?}");
+}
+
 /// While a picture is drawn the foot says so, until it is sharp.
 #[test]
 fn a_picture_that_is_being_drawn_is_said_to_be() {
