@@ -92,7 +92,7 @@ pub(in crate::cli) struct ParameterizeArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
     /// Take i, j, k from a Zarr v3 group that another program wrote, instead of computing them: arrays i, j, k (float32,
-    /// NaN outside), layer (0 = deepest) and block (uint8 or uint16), [inline][crossline][sample] over the whole survey
+    /// NaN outside), layer (0 = deepest) and block (uint8 or uint16), by inline, crossline and sample over the whole survey
     #[arg(long, value_name = "FILE.zarr", conflicts_with = "computed")]
     pub(in crate::cli) from: Option<PathBuf>,
     /// Compute i, j, k here again, after --from
