@@ -324,9 +324,6 @@ impl System<'_> {
                 .for_each(|(p, (r, d))| *p = r / d + keep * *p);
             size = next;
             steps += 1;
-            if std::env::var("TRACE").is_ok() {
-                eprintln!("{steps} {:.5}", size.sqrt() / at_rest);
-            }
         }
         Ok(steps)
     }
