@@ -1,4 +1,6 @@
-//! Measures isochrons for `docs/time.md`: `cargo run -p petroglyph-time --example isochrons [SIDE]`.
+//! Measures isochrons for `docs/time.md`: `cargo run -p petroglyph-time --example isochrons [SIDE] [SNR SEED]`.
+//!
+//! With a signal-to-noise ratio and a seed, that survey alone, with its faults drawn and found.
 //!
 //! An isochron from one trace of each horizon of synthetic surveys is compared with the truth on all traces.
 
@@ -9,7 +11,7 @@ use std::error::Error;
 use std::time::Instant;
 use survey::{Progress, Volume};
 use synth::{SynthSettings, Synthetic};
-use time::{Cut, TimeSettings, find_cuts, geologic_time};
+use time::{Cut, Event, Node, Reflections, Seed, TimeSettings, find_cuts, geologic_time};
 
 /// Error that stands for no crossing, samples.
 const NO_CROSSING: f64 = 99.0;
@@ -42,6 +44,8 @@ const NOTES: &str = "
 struct Errors {
     same: Vec<f64>,
     other: Vec<f64>,
+    /// The same two for events.
+    event: [Vec<f64>; 2],
 }
 
 /// Median / 95 % / share within one sample.
@@ -67,13 +71,21 @@ fn error_at(trace: &[f32], time: f32, z: f64) -> f64 {
     least
 }
 
+/// The distance of the node of an event on a trace that is closest to `z`.
+fn event_error(event: &Event, x: usize, y: usize, z: f64) -> f64 {
+    let at = |node: &Node| (usize::from(node.x), usize::from(node.y));
+    let from = event.nodes.partition_point(|node| at(node) < (x, y));
+    let own = event.nodes[from..].iter().take_while(|node| at(node) == (x, y));
+    own.map(|node| (f64::from(node.z) - z).abs()).fold(NO_CROSSING, f64::min)
+}
+
 fn value(trace: &[f32], z: f64) -> f32 {
     let low = (z as usize).min(trace.len() - 2);
     trace[low] + (z - low as f64) as f32 * (trace[low + 1] - trace[low])
 }
 
 /// Errors of the isochrons of each horizon.
-fn measure(survey: &Synthetic, tau: &Volume<f32>) -> Vec<Errors> {
+fn measure(survey: &Synthetic, tau: &Volume<f32>, reflections: &Reflections, cuts: &[Cut]) -> Vec<Errors> {
     let truth = &survey.truth;
     let [nx, ny, _] = truth.size;
     let blocks = truth.block_count() as u16;
@@ -98,7 +110,10 @@ fn measure(survey: &Synthetic, tau: &Volume<f32>) -> Vec<Errors> {
                 if !time.is_finite() {
                     continue;
                 }
+                let seed = Seed { trace: [sx, sy], z: z as f32 };
+                let Some(event) = reflections.event(tau, &[seed], cuts) else { continue };
                 for &(x, y, block, z) in nodes.iter().step_by(7) {
+                    errors.event[usize::from(block != home)].push(event_error(&event, x, y, z));
                     let error = error_at(tau.trace(x, y), time, z);
                     if block == home { errors.same.push(error) } else { errors.other.push(error) }
                 }
@@ -115,6 +130,21 @@ const SEEDS: [u64; 3] = [1, 2, 3];
 /// Seeds that were not looked at.
 const HELD_OUT: [u64; 2] = [4, 5];
 
+/// Distance of a found fault from a true one up to which they are the same, traces.
+const SAME_FAULT: f32 = 3.0;
+
+/// The share of a fault that found ones cover, and the part of the best of them that reaches beyond it, as a share too.
+fn covered(truth: &Cut, found: &[Cut]) -> [f64; 2] {
+    let there = truth.place.iter().filter(|place| place.is_finite()).count().max(1) as f64;
+    let shares = found.iter().filter(|cut| cut.across == truth.across).map(|cut| {
+        let near = |(a, b): &(&f32, &f32)| (**a - **b).abs() < SAME_FAULT;
+        let both = truth.place.iter().zip(&cut.place).filter(near).count() as f64;
+        let beyond = truth.place.iter().zip(&cut.place).filter(|(a, b)| a.is_nan() && b.is_finite()).count() as f64;
+        [both / there, beyond / there]
+    });
+    shares.fold([0.0; 2], |best, next| if next[0] > best[0] { next } else { best })
+}
+
 /// Where the faults come from.
 #[derive(Clone, Copy, PartialEq)]
 enum Faults {
@@ -129,6 +159,8 @@ struct Case {
     all: Errors,
     horizons: Vec<(String, Errors)>,
     not_monotone: f64,
+    /// Of each true fault, the shares that were found, and found beyond it.
+    coverage: Vec<[f64; 2]>,
     extraction_s: f64,
     time_s: f64,
 }
@@ -142,24 +174,58 @@ fn case(side: usize, snr: f64, seed: u64, faults: Faults) -> Result<Case, Box<dy
     let extraction_s = start.elapsed().as_secs_f64();
     let network = FaultNetwork::build(&survey.geometry, &survey.faults, &progress)?;
     let mut cuts = Cut::of_network(&network, surfaces.size);
+    let mut coverage = Vec::new();
     if faults == Faults::Found {
-        cuts = find_cuts(&surfaces, TimeSettings::default().fewest_vertices, &progress)?;
+        let found = find_cuts(&survey.seismic, &surfaces, TimeSettings::default().fewest_vertices, &progress)?;
+        coverage = cuts.iter().map(|truth| covered(truth, &found)).collect();
+        cuts = found;
     }
     let start = Instant::now();
     let found = geologic_time(&survey.seismic, &surfaces, &cuts, &TimeSettings::default(), &progress)?;
     let time_s = start.elapsed().as_secs_f64();
     let names = survey.truth.horizons.iter().map(|horizon| horizon.name.clone());
-    let horizons: Vec<(String, Errors)> = names.zip(measure(&survey, &found.tau)).collect();
+    let horizons: Vec<(String, Errors)> =
+        names.zip(measure(&survey, &found.tau, &Reflections::new(&surfaces, &cuts), &cuts)).collect();
     let mut all = Errors::default();
     for (_, errors) in &horizons {
         all.same.extend(&errors.same);
         all.other.extend(&errors.other);
+        all.event[0].extend(&errors.event[0]);
+        all.event[1].extend(&errors.event[1]);
     }
-    Ok(Case { snr, seed, all, horizons, not_monotone: found.not_monotone, extraction_s, time_s })
+    Ok(Case { snr, seed, all, horizons, not_monotone: found.not_monotone, coverage, extraction_s, time_s })
+}
+
+/// Prints the figures of one survey.
+fn one(side: usize, snr: f64, seed: u64) -> Result<(), Box<dyn Error>> {
+    for (faults, note) in [(Faults::Drawn, "drawn"), (Faults::Found, "found")] {
+        let mut case = case(side, snr, seed, faults)?;
+        println!(
+            "faults {note}: same block {}, other blocks {}; {:.1} % not monotone before the last step; {:.1} + {:.1} s",
+            figures(&mut case.all.same),
+            figures(&mut case.all.other),
+            case.not_monotone * 100.0,
+            case.extraction_s,
+            case.time_s
+        );
+        let coverage = case.coverage.iter().map(|[found, beyond]| format!("{found:.2} (+{beyond:.2})"));
+        println!("  coverage: {}", coverage.collect::<Vec<_>>().join(", "));
+        let [same, other] = &mut case.all.event;
+        println!("  events: {}, {}", figures(same), figures(other));
+        for (name, errors) in &mut case.horizons {
+            let [same, other] = &mut errors.event;
+            let events = [figures(same), figures(other)].join(", ");
+            println!("  {name}: {}, {}; events {events}", figures(&mut errors.same), figures(&mut errors.other));
+        }
+    }
+    Ok(())
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
     let side: usize = std::env::args().nth(1).map_or(Ok(128), |side| side.parse())?;
+    if let (Some(snr), Some(seed)) = (std::env::args().nth(2), std::env::args().nth(3)) {
+        return one(side, snr.parse()?, seed.parse()?);
+    }
     println!("# Geologic time\n");
     println!(
         "Written by `make time`, from synthetic surveys of {side}³ samples\n\

@@ -5,14 +5,18 @@
 //!
 //! `across = a + b u + c v + d u² + e v²`,  u along its lines and v down, both from −1 to 1,
 //!
-//! with the most evidence in a band along it: planes of all places, strikes and dips are scanned, the best is bent, cut
-//! to where its evidence is, and what it explains is taken away before the next one. Space: voxels.
+//! with the most evidence in a band along it: planes of all places, strikes and dips are scanned, the best is bent, its
+//! throw found where it is certain, its [`extent`] from both, and what it explains is taken away before the next one.
+//! Space: voxels.
 
 use crate::cut::{Across, Cut};
+use crate::extent::{Misfits, extent};
 use crate::hubs::Hubs;
+use crate::links::Links;
+use crate::throws::throw_of;
 use interp::Surfaces;
 use rayon::prelude::*;
-use survey::{Cancelled, Progress};
+use survey::{Cancelled, Progress, Volume};
 
 /// Lines and samples of a cell.
 const CELL: [usize; 2] = [4, 4];
@@ -24,9 +28,8 @@ const STRIKE: (f32, i32) = (0.5, 8);
 const DIP: (f32, i32) = (0.5, 10);
 /// Least share of the lines and samples that a fault reaches over.
 const LEAST_SHARE: f32 = 0.12;
-/// Least mean evidence of a cell of a fault: where there is more it is certain, and around that it goes on with less.
+/// Least mean evidence of a cell in which a fault is certain.
 const CERTAIN: f32 = 0.35;
-const LEAST_MEAN: f32 = 0.0;
 /// Most faults across either axis.
 const MOST: usize = 6;
 /// Traces beside a fault in which evidence is its own.
@@ -137,14 +140,30 @@ impl Evidence {
         (terms, sum)
     }
 
-    /// The cells of a fault whose surroundings along it have enough evidence.
-    fn extent(&self, terms: &[f32; 5], least: f32) -> Vec<bool> {
-        let value = |along: usize, down: usize| {
+    /// The evidence of each cell along a fault.
+    fn along(&self, terms: &[f32; 5]) -> Vec<f32> {
+        let value = |n: usize| {
+            let (along, down) = (n / self.cells[1], n % self.cells[1]);
             let [u, v] = self.scaled(along, down);
             self.at(along, down, quadratic(terms, u, v))
         };
-        let all: Vec<f32> =
-            (0..self.cells[0] * self.cells[1]).map(|n| value(n / self.cells[1], n % self.cells[1])).collect();
+        (0..self.cells[0] * self.cells[1]).map(value).collect()
+    }
+
+    /// The fault as a cut, where `is_there` of its cell.
+    fn cut(&self, across: Across, terms: &[f32; 5], is_there: impl Fn(usize) -> bool) -> Cut {
+        let scaled = |n: usize, count: usize| 2.0 * (n as f32 + 0.5) / count as f32 - 1.0;
+        Cut::new(across, self.lines, self.samples, |line, z| {
+            let place = quadratic(terms, scaled(line, self.lines), scaled(z, self.samples));
+            let count = self.width as f32;
+            let is_there = is_there((line / CELL[0]) * self.cells[1] + z / CELL[1]);
+            if is_there && place > -count && place < 2.0 * count { place } else { f32::NAN }
+        })
+    }
+
+    /// The cells of a fault whose surroundings along it have enough evidence.
+    fn extent(&self, terms: &[f32; 5], least: f32) -> Vec<bool> {
+        let all = self.along(terms);
         (0..all.len())
             .map(|n| {
                 let (along, down) = (n / self.cells[1], n % self.cells[1]);
@@ -183,16 +202,22 @@ fn quadratic(t: &[f32; 5], u: f32, v: f32) -> f32 {
     t[0] + t[1] * u + t[2] * v + t[3] * u * u + t[4] * v * v
 }
 
-/// Finds faults from the ends of patches.
+/// Finds the faults of a volume from the ends of patches, and how far they reach from what lies beside them.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn find_cuts(surfaces: &Surfaces, fewest: usize, progress: &Progress) -> Result<Vec<Cut>, Cancelled> {
+pub fn find_cuts(
+    volume: &Volume<f32>,
+    surfaces: &Surfaces,
+    fewest: usize,
+    progress: &Progress,
+) -> Result<Vec<Cut>, Cancelled> {
     let [nx, ny, nz] = surfaces.size;
     if nx.min(ny) < 16 || nz < 16 {
         return Ok(Vec::new());
     }
     let hubs = Hubs::new(surfaces, &[], fewest, 1.0);
+    let links = Links::new(&hubs, &[]);
     let mut cuts = Vec::new();
     for across in [Across::Inlines, Across::Crosslines] {
         let mut evidence = Evidence::new(&hubs, across);
@@ -205,14 +230,16 @@ pub fn find_cuts(surfaces: &Surfaces, fewest: usize, progress: &Progress) -> Res
             if share < LEAST_SHARE {
                 break;
             }
-            let extent = evidence.extent(&terms, LEAST_MEAN);
-            let (count, down) = (evidence.width as f32, evidence.cells[1]);
-            cuts.push(Cut::new(across, evidence.lines, nz, |line, z| {
-                let scaled = |n: usize, count: usize| 2.0 * (n as f32 + 0.5) / count as f32 - 1.0;
-                let place = quadratic(&terms, scaled(line, evidence.lines), scaled(z, nz));
-                let is_there = extent[(line / CELL[0]) * down + z / CELL[1]];
-                if is_there && place > -count && place < 2.0 * count { place } else { f32::NAN }
-            }));
+            let sure = evidence.cut(across, &terms, |cell| certain[cell]);
+            let extent = match throw_of(volume, &links, &sure) {
+                Some(throw) => {
+                    let whole = evidence.cut(across, &terms, |_| true);
+                    let misfits = Misfits::new(volume, &links, &whole, &throw, CELL);
+                    extent(&misfits.gain(EXTENT), &evidence.along(&terms), evidence.cells, EXTENT)
+                }
+                None => evidence.extent(&terms, 0.0),
+            };
+            cuts.push(evidence.cut(across, &terms, |cell| extent[cell]));
             evidence.explain(&terms);
         }
     }

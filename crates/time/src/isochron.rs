@@ -3,6 +3,7 @@
 //! On a trace τ does not decrease but at faults, where older rock may lie on younger (a reverse fault), so an isochron
 //! crosses a trace at most once between two faults. Space: voxels.
 
+use crate::event::crossings;
 use rayon::prelude::*;
 use survey::Volume;
 
@@ -42,15 +43,8 @@ pub fn isochron(tau: &Volume<f32>, time: f32) -> Isochron {
     let [nx, ny, _] = tau.size();
     let crossings = (0..nx)
         .into_par_iter()
-        .flat_map_iter(|x| (0..ny).flat_map(move |y| on_trace(tau.trace(x, y), time).map(move |z| (x, y, z))))
+        .flat_map_iter(|x| (0..ny).flat_map(move |y| crossings(tau.trace(x, y), time).map(move |z| (x, y, z))))
         .map(|(x, y, z)| Crossing { x: x as u16, y: y as u16, z })
         .collect();
     Isochron { time, crossings }
-}
-
-/// The depths at which a trace of τ rises through `time`.
-fn on_trace(trace: &[f32], time: f32) -> impl Iterator<Item = f32> + '_ {
-    // NaN compares as false.
-    let crossed = trace.windows(2).enumerate().filter(move |(_, pair)| pair[0] <= time && pair[1] > time);
-    crossed.map(move |(z, pair)| z as f32 + (time - pair[0]) / (pair[1] - pair[0]))
 }

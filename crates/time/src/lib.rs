@@ -25,7 +25,7 @@
 //! | monotone traces, and what is not known | [`isotonic`], `known` |
 //! | throws, then what matches across faults | `throws`, `logs`, `matches` |
 //! | patches of one event become one | `merge` |
-//! | one level of τ, and the reflections beside it | [`isochron()`], [`Reflections`] |
+//! | one level of τ, and the event that it is with the reflections along it | [`isochron()`], [`Reflections`] |
 //! | levels that stand out | [`strongest_levels`], [`characters`] |
 //!
 //! Space: voxels, x = inline index, y = crossline index, z = sample index, z down.
@@ -35,6 +35,8 @@
 mod compute;
 mod cut;
 mod error;
+mod event;
+mod extent;
 mod find;
 mod hubs;
 mod isochron;
@@ -56,6 +58,7 @@ mod tests;
 pub use compute::{GeologicTime, TimeSettings, geologic_time};
 pub use cut::{Across, Cut};
 pub use error::TimeError;
+pub use event::{Event, Node, Seed, Support};
 pub use find::find_cuts;
 pub use isochron::{Crossing, Isochron, isochron};
 pub use levels::{Character, Level, characters, strongest_levels};

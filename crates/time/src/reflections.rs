@@ -1,5 +1,6 @@
 //! The reflections beside an isochron: the vertices of all candidates, found by trace.
 
+use crate::cut::Cut;
 use crate::hubs::Hubs;
 use interp::{Extremum, Surfaces};
 
@@ -16,9 +17,13 @@ pub struct Reflection {
 }
 
 impl Reflections {
-    /// Sorts the vertices of candidates.
-    pub fn new(surfaces: &Surfaces) -> Self {
-        Self(Hubs::new(surfaces, &[], 1, 1.0))
+    /// Sorts the vertices of candidates; patches are cut at faults.
+    pub fn new(surfaces: &Surfaces, cuts: &[Cut]) -> Self {
+        Self(Hubs::new(surfaces, cuts, 1, 1.0))
+    }
+
+    pub(crate) fn hubs(&self) -> &Hubs {
+        &self.0
     }
 
     /// The reflection on trace (x, y) that is closest to sample `z` within `reach` samples, of one kind or of any.
@@ -30,7 +35,7 @@ impl Reflections {
     /// let vertices = vec![Vertex { x: 0, y: 0, z: 4.2 }, Vertex { x: 0, y: 1, z: 4.4 }, Vertex { x: 1, y: 0, z: 4.6 }];
     /// let surface = Surface { extremum: Extremum::Peak, vertices: 0..3, triangles: 0..1 };
     /// let surfaces = Surfaces { size: [2, 2, 9], vertices, triangles: vec![[0, 1, 2]], surfaces: vec![surface] };
-    /// let reflections = Reflections::new(&surfaces);
+    /// let reflections = Reflections::new(&surfaces, &[]);
     /// assert_eq!(reflections.nearest([0, 1], 5.0, None, 1.0).map(|at| at.z), Some(4.4));
     /// assert_eq!(reflections.nearest([0, 1], 5.0, Some(Extremum::Trough), 1.0), None);
     /// assert_eq!(reflections.nearest([0, 1], 6.0, None, 1.0), None);

@@ -81,6 +81,11 @@ fn panel(volume: &Volume<f32>, links: &Links, cut: &Cut, side: Side) -> Vec<f32>
     all
 }
 
+/// Stacked amplitudes on the lower and on the upper side.
+pub fn sides(volume: &Volume<f32>, links: &Links, cut: &Cut) -> [Vec<f32>; 2] {
+    [Side::Lower, Side::Upper].map(|side| panel(volume, links, cut, side))
+}
+
 /// Brings the amplitudes of a trace to one level.
 fn level(trace: &mut [f32]) {
     let power: Vec<f32> = trace.iter().map(|a| if a.is_finite() { a * a } else { 0.0 }).collect();
@@ -188,7 +193,7 @@ const REFINED: usize = 6;
 
 /// Finds the throw of a fault; `None` where one of its sides is nowhere inside the volume.
 pub fn throw_of(volume: &Volume<f32>, links: &Links, cut: &Cut) -> Option<Throw> {
-    let sides = [Side::Lower, Side::Upper].map(|side| panel(volume, links, cut, side));
+    let sides = sides(volume, links, cut);
     if sides.iter().any(|side| side.iter().all(|a| a.is_nan())) {
         return None;
     }

@@ -1,0 +1,230 @@
+//! Events: a level of τ together with the reflections that it runs along.
+//!
+//! A level of τ alone is as exact as τ. Where a patch of a reflection lies along most of the level, the event goes
+//! through all of the patch, also where τ is a few samples off; beside other reflections of its kind it goes to them;
+//! elsewhere it is the level. With more than one seed the level varies from place to place: it is the mean of the
+//! seeds' times with weights 1/d⁴, and a fault between a seed and a place makes their distance [`BEYOND_FAULT`] times as
+//! long. So a second seed corrects what the first got wrong around it, and nothing is solved for again. Space: voxels.
+
+use crate::cut::Cut;
+use crate::reflections::Reflections;
+use interp::Extremum;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use survey::Volume;
+
+/// What holds a node of an event.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Support {
+    /// A patch of a reflection that lies along the level, or that a seed lies on.
+    Tracked,
+    /// A reflection of the same kind within [`SNAP_REACH`] of the level.
+    Snapped,
+    /// The level of τ alone.
+    Between,
+}
+
+/// A node of an event.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Node {
+    /// Inline index.
+    pub x: u16,
+    /// Crossline index.
+    pub y: u16,
+    /// Fractional sample.
+    pub z: f32,
+    /// What holds it.
+    pub support: Support,
+}
+
+/// A place that an event is to go through.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seed {
+    /// Inline and crossline index.
+    pub trace: [usize; 2],
+    /// Fractional sample.
+    pub z: f32,
+}
+
+/// An event: nodes ordered by (x, y, z). Between two faults a trace has one at most.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    /// τ at the first seed, samples.
+    pub time: f32,
+    /// What it follows; `None` where nothing reflects along it.
+    pub kind: Option<Extremum>,
+    /// Its nodes.
+    pub nodes: Vec<Node>,
+}
+
+/// Distance from the level within which an event goes to a reflection, samples.
+pub const SNAP_REACH: f32 = 1.5;
+/// Distance from a seed within which it goes to a reflection, samples.
+const SEED_REACH: f32 = 3.0;
+/// Distance from the level within which a vertex of a patch speaks for the patch, samples.
+const ALONG: f32 = 2.0;
+/// Distance from the level beyond which a vertex speaks against its patch, and is left where it is, samples.
+const OFF: f32 = 6.0;
+/// Least share of the vertices of a patch that lie along the level.
+const LEAST_SHARE: f64 = 0.6;
+/// Traces around a seed within which its patch tells its time.
+const SEED_AROUND: usize = 32;
+/// Distances across a fault count so many times.
+pub const BEYOND_FAULT: f32 = 4.0;
+
+/// A seed that was looked at.
+struct Placed {
+    seed: Seed,
+    hub: Option<u32>,
+    time: f32,
+}
+
+impl Reflections {
+    /// The event through seeds in τ, a volume that is NaN where time is not known; the first seed says what it follows.
+    /// `None` where time is not known at a seed, and without seeds.
+    ///
+    /// Cost: one pass over τ and the vertices of all candidates.
+    pub fn event(&self, tau: &Volume<f32>, seeds: &[Seed], cuts: &[Cut]) -> Option<Event> {
+        let first = self.nearest(seeds.first()?.trace, seeds.first()?.z, None, SEED_REACH).map(|found| found.kind);
+        let placed: Vec<Placed> = seeds.iter().map(|seed| self.place(tau, seed, first)).collect::<Option<_>>()?;
+        let level = |x: usize, y: usize| level_at(&placed, [x, y], cuts);
+        let own: Vec<u32> = placed.iter().filter_map(|seed| seed.hub).collect();
+        Some(self.along(tau, level, placed[0].time, first, &own))
+    }
+
+    /// The event at a level of τ.
+    pub fn level(&self, tau: &Volume<f32>, time: f32) -> Event {
+        let kind = self.kind_along(tau, time);
+        self.along(tau, |_, _| time, time, kind, &[])
+    }
+
+    /// The time of a seed: the median over its patch around it.
+    fn place(&self, tau: &Volume<f32>, seed: &Seed, kind: Option<Extremum>) -> Option<Placed> {
+        let hubs = self.hubs();
+        let [nx, ny, nz] = hubs.size;
+        let own = hubs.on_trace(seed.trace[0] * ny + seed.trace[1]);
+        let near = own
+            .filter(|&v| (hubs.z[v] - seed.z).abs() <= SEED_REACH && kind == Some(hubs.kind[hubs.hub[v] as usize]))
+            .min_by(|&v, &w| (hubs.z[v] - seed.z).abs().total_cmp(&(hubs.z[w] - seed.z).abs()));
+        let value = |x: usize, y: usize, z: f32| {
+            let (trace, low) = (tau.trace(x, y), (z as usize).min(nz.saturating_sub(2)));
+            trace[low] + (z - low as f32) * (trace[(low + 1).min(nz - 1)] - trace[low])
+        };
+        let z = near.map_or(seed.z, |v| hubs.z[v]).clamp(0.0, (nz - 1) as f32);
+        let mut time = value(seed.trace[0], seed.trace[1], z);
+        let hub = near.map(|v| hubs.hub[v]);
+        if let Some(hub) = hub {
+            let range = |at: usize, count: usize| at.saturating_sub(SEED_AROUND)..(at + SEED_AROUND + 1).min(count);
+            let traces = range(seed.trace[0], nx).flat_map(|x| range(seed.trace[1], ny).map(move |y| (x, y)));
+            let mut times: Vec<f32> = traces
+                .flat_map(|(x, y)| hubs.on_trace(x * ny + y).map(move |v| (x, y, v)))
+                .filter(|&(_, _, v)| hubs.hub[v] == hub)
+                .map(|(x, y, v)| value(x, y, hubs.z[v]))
+                .filter(|time| time.is_finite())
+                .collect();
+            times.sort_by(f32::total_cmp);
+            time = times.get(times.len() / 2).copied().unwrap_or(time);
+        }
+        time.is_finite().then_some(Placed { seed: Seed { z, ..*seed }, hub, time })
+    }
+
+    /// The event along a level that may vary from trace to trace.
+    fn along(
+        &self,
+        tau: &Volume<f32>,
+        level: impl Fn(usize, usize) -> f32 + Sync,
+        time: f32,
+        kind: Option<Extremum>,
+        own: &[u32],
+    ) -> Event {
+        let hubs = self.hubs();
+        let [nx, ny, _] = hubs.size;
+        let crossings: Vec<Vec<f32>> = (0..nx * ny)
+            .into_par_iter()
+            .map(|trace| crossings(tau.trace(trace / ny, trace % ny), level(trace / ny, trace % ny)).collect())
+            .collect();
+        let off = |trace: usize, z: f32| {
+            crossings[trace].iter().map(|at| (at - z).abs()).min_by(f32::total_cmp).unwrap_or(f32::INFINITY)
+        };
+        let of_kind = |v: usize| kind == Some(hubs.kind[hubs.hub[v] as usize]);
+        // For each patch, how many of its vertices lie along the level, and how many have a level on their trace at all.
+        let mut counts = vec![[0u32; 2]; hubs.len()];
+        for trace in 0..nx * ny {
+            for v in hubs.on_trace(trace).filter(|&v| of_kind(v)) {
+                let off = off(trace, hubs.z[v]);
+                let count = &mut counts[hubs.hub[v] as usize];
+                count[0] += u32::from(off <= ALONG);
+                count[1] += u32::from(off.is_finite());
+            }
+        }
+        let belongs = |hub: u32| {
+            let [along, there] = counts[hub as usize];
+            along > 0 && (own.contains(&hub) || f64::from(along) >= LEAST_SHARE * f64::from(there))
+        };
+        let nodes = (0..nx * ny)
+            .into_par_iter()
+            .flat_map_iter(|trace| {
+                let nearest = |at: f32, reach: f32, patch: bool| {
+                    hubs.on_trace(trace)
+                        .filter(|&v| of_kind(v) && (hubs.z[v] - at).abs() <= reach)
+                        .filter(|&v| !patch || belongs(hubs.hub[v]))
+                        .min_by(|&v, &w| (hubs.z[v] - at).abs().total_cmp(&(hubs.z[w] - at).abs()))
+                        .map(|v| hubs.z[v])
+                };
+                let mut nodes: Vec<Node> = crossings[trace]
+                    .iter()
+                    .map(|&at| {
+                        let tracked = nearest(at, OFF, true).map(|z| (z, Support::Tracked));
+                        let snapped = || nearest(at, SNAP_REACH, false).map(|z| (z, Support::Snapped));
+                        let (z, support) = tracked.or_else(snapped).unwrap_or((at, Support::Between));
+                        Node { x: (trace / ny) as u16, y: (trace % ny) as u16, z, support }
+                    })
+                    .collect();
+                nodes.dedup_by(|b, a| a.z >= b.z);
+                nodes
+            })
+            .collect();
+        Event { time, kind, nodes }
+    }
+
+    /// What a level follows at most traces; `None` where nothing reflects along it.
+    fn kind_along(&self, tau: &Volume<f32>, time: f32) -> Option<Extremum> {
+        let [nx, ny, _] = tau.size();
+        let mut counts = std::collections::BTreeMap::<Extremum, usize>::new();
+        for trace in (0..nx * ny).step_by(KIND_STEP) {
+            for at in crossings(tau.trace(trace / ny, trace % ny), time) {
+                if let Some(found) = self.nearest([trace / ny, trace % ny], at, None, SNAP_REACH) {
+                    *counts.entry(found.kind).or_default() += 1;
+                }
+            }
+        }
+        counts.into_iter().max_by_key(|(kind, count)| (*count, std::cmp::Reverse(*kind))).map(|(kind, _)| kind)
+    }
+}
+
+/// Traces between those at which it is asked what a level follows.
+const KIND_STEP: usize = 37;
+
+/// The level at a trace.
+fn level_at(seeds: &[Placed], trace: [usize; 2], cuts: &[Cut]) -> f32 {
+    if let [only] = seeds {
+        return only.time;
+    }
+    let (mut sum, mut weights) = (0.0f32, 0.0f32);
+    for Placed { seed, time, .. } in seeds {
+        let [dx, dy] = [0, 1].map(|axis| trace[axis] as f32 - seed.trace[axis] as f32);
+        let beyond = cuts.iter().any(|cut| cut.separates(seed.trace, seed.z, trace, seed.z));
+        let distance = dx.hypot(dy).max(0.1) * if beyond { BEYOND_FAULT } else { 1.0 };
+        let weight = distance.powi(-4);
+        sum += weight * time;
+        weights += weight;
+    }
+    sum / weights
+}
+
+/// The depths at which a trace of τ rises through `time`.
+pub fn crossings(trace: &[f32], time: f32) -> impl Iterator<Item = f32> + '_ {
+    // NaN compares as false.
+    let crossed = trace.windows(2).enumerate().filter(move |(_, pair)| pair[0] <= time && pair[1] > time);
+    crossed.map(move |(z, pair)| z as f32 + (time - pair[0]) / (pair[1] - pair[0]))
+}
