@@ -11,7 +11,7 @@ use std::error::Error;
 use std::time::Instant;
 use survey::{Progress, Volume};
 use synth::{SynthSettings, Synthetic};
-use time::{Cut, Event, Node, Reflections, Seed, TimeSettings, find_cuts, geologic_time};
+use time::{Cut, Event, Node, Reflections, Seed, TimeSettings, find_faults, geologic_time};
 
 /// Error that stands for no crossing, samples.
 const NO_CROSSING: f64 = 99.0;
@@ -176,7 +176,8 @@ fn case(side: usize, snr: f64, seed: u64, faults: Faults) -> Result<Case, Box<dy
     let mut cuts = Cut::of_network(&network, surfaces.size);
     let mut coverage = Vec::new();
     if faults == Faults::Found {
-        let found = find_cuts(&survey.seismic, &surfaces, TimeSettings::default().fewest_vertices, &progress)?;
+        let found = find_faults(&survey.seismic, &surfaces, TimeSettings::default().fewest_vertices, &progress)?;
+        let found: Vec<Cut> = found.into_iter().map(|fault| fault.cut).collect();
         coverage = cuts.iter().map(|truth| covered(truth, &found)).collect();
         cuts = found;
     }

@@ -68,7 +68,7 @@ const OFF: f32 = 6.0;
 /// Least share of the vertices of a patch that lie along the level.
 const LEAST_SHARE: f64 = 0.6;
 /// Traces around a seed within which its patch tells its time.
-const SEED_AROUND: usize = 32;
+const SEED_AROUND: usize = 8;
 /// Distances across a fault count so many times.
 pub const BEYOND_FAULT: f32 = 4.0;
 

@@ -13,7 +13,7 @@ use crate::cut::{Across, Cut};
 use crate::extent::{Misfits, extent};
 use crate::hubs::Hubs;
 use crate::links::Links;
-use crate::throws::throw_of;
+use crate::throws::{Throw, throw_of};
 use interp::Surfaces;
 use rayon::prelude::*;
 use survey::{Cancelled, Progress, Volume};
@@ -202,23 +202,36 @@ fn quadratic(t: &[f32; 5], u: f32, v: f32) -> f32 {
     t[0] + t[1] * u + t[2] * v + t[3] * u * u + t[4] * v * v
 }
 
+/// A fault that was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoundFault {
+    /// Where it runs.
+    pub cut: Cut,
+    /// Its throw; `None` where one of its sides lies outside the volume.
+    pub throw: Option<Throw>,
+    /// Count of patches that end at it, more than go on.
+    pub ends: usize,
+}
+
 /// Finds the faults of a volume from the ends of patches, and how far they reach from what lies beside them.
+///
+/// Patches of fewer than `fewest` vertices do not count.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn find_cuts(
+pub fn find_faults(
     volume: &Volume<f32>,
     surfaces: &Surfaces,
     fewest: usize,
     progress: &Progress,
-) -> Result<Vec<Cut>, Cancelled> {
+) -> Result<Vec<FoundFault>, Cancelled> {
     let [nx, ny, nz] = surfaces.size;
     if nx.min(ny) < 16 || nz < 16 {
         return Ok(Vec::new());
     }
     let hubs = Hubs::new(surfaces, &[], fewest, 1.0);
     let links = Links::new(&hubs, &[]);
-    let mut cuts = Vec::new();
+    let mut found = Vec::new();
     for across in [Across::Inlines, Across::Crosslines] {
         let mut evidence = Evidence::new(&hubs, across);
         progress.begin("looking for faults", MOST as u64);
@@ -231,17 +244,22 @@ pub fn find_cuts(
                 break;
             }
             let sure = evidence.cut(across, &terms, |cell| certain[cell]);
-            let extent = match throw_of(volume, &links, &sure) {
+            let throw = throw_of(volume, &links, &sure);
+            let ends = evidence.along(&terms);
+            let extent = match &throw {
                 Some(throw) => {
                     let whole = evidence.cut(across, &terms, |_| true);
-                    let misfits = Misfits::new(volume, &links, &whole, &throw, CELL);
-                    extent(&misfits.gain(EXTENT), &evidence.along(&terms), evidence.cells, EXTENT)
+                    let misfits = Misfits::new(volume, &links, &whole, throw, CELL);
+                    extent(&misfits.gain(EXTENT), &ends, evidence.cells, EXTENT)
                 }
                 None => evidence.extent(&terms, 0.0),
             };
-            cuts.push(evidence.cut(across, &terms, |cell| extent[cell]));
+            let cut = evidence.cut(across, &terms, |cell| extent[cell]);
+            let ends =
+                ends.iter().zip(&extent).filter(|(_, is_there)| **is_there).map(|(ends, _)| ends.max(0.0)).sum::<f32>();
+            found.push(FoundFault { cut, throw, ends: ends as usize });
             evidence.explain(&terms);
         }
     }
-    Ok(cuts)
+    Ok(found)
 }

@@ -17,7 +17,7 @@
 //!
 //! | step | where |
 //! |---|---|
-//! | faults as cuts | [`Cut`] |
+//! | faults as cuts, and finding them where none is drawn | [`Cut`], [`find_faults`], `extent`, [`proposals`] |
 //! | patches cut at faults: hubs | `hubs` |
 //! | links and dips | `links` |
 //! | where it starts | `start` |
@@ -47,6 +47,7 @@ mod links;
 mod logs;
 mod matches;
 mod merge;
+mod proposal;
 mod reflections;
 mod solve;
 mod start;
@@ -59,7 +60,9 @@ pub use compute::{GeologicTime, TimeSettings, geologic_time};
 pub use cut::{Across, Cut};
 pub use error::TimeError;
 pub use event::{Event, Node, Seed, Support};
-pub use find::find_cuts;
+pub use find::{FoundFault, find_faults};
 pub use isochron::{Crossing, Isochron, isochron};
 pub use levels::{Character, Level, characters, strongest_levels};
+pub use proposal::proposals;
 pub use reflections::{Reflection, Reflections};
+pub use throws::Throw;

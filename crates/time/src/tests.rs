@@ -1,8 +1,11 @@
 //! Geologic time of volumes whose layering is a closed form.
 
-use crate::{Across, Cut, GeologicTime, TimeError, TimeSettings, find_cuts, geologic_time, isochron};
+use crate::{
+    Across, Cut, GeologicTime, Reflections, Seed, Support, TimeError, TimeSettings, find_faults, geologic_time,
+    isochron, proposals,
+};
 use interp::{GrowSettings, grow_surfaces};
-use survey::{Progress, Volume};
+use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 
 /// Reflectivity of made-up beds at a stratigraphic depth: nothing repeats over a few beds.
 fn beds(t: f32) -> f32 {
@@ -130,20 +133,68 @@ fn a_fault_is_found_where_patches_end_and_none_where_they_go_on() {
     let fault = |y: f32, z: f32| 22.0 + 0.3 * (z - 48.0) + 0.2 * (y - 20.0);
     let strat = |x: f32, y: f32, z: f32| z - 0.2 * y - if x > fault(y, z) { 5.0 } else { 0.0 };
     let found = |strat: &dyn Fn(f32, f32, f32) -> f32| {
-        let surfaces =
-            grow_surfaces(&volume([48, 40, 96], strat), &GrowSettings::default(), &Progress::silent()).unwrap();
-        find_cuts(&surfaces, 30, &Progress::silent()).unwrap()
+        let volume = volume([48, 40, 96], strat);
+        let surfaces = grow_surfaces(&volume, &GrowSettings::default(), &Progress::silent()).unwrap();
+        find_faults(&volume, &surfaces, 30, &Progress::silent()).unwrap()
     };
-    let cuts = found(&strat);
-    assert_eq!(cuts.len(), 1);
-    assert_eq!(cuts[0].across, Across::Inlines);
-    let off = |line: usize, z: usize| (cuts[0].at(line, z as f32) - fault(line as f32, z as f32)).abs();
+    let faults = found(&strat);
+    assert_eq!(faults.len(), 1);
+    let cut = &faults[0].cut;
+    assert_eq!(cut.across, Across::Inlines);
+    let off = |line: usize, z: usize| (cut.at(line, z as f32) - fault(line as f32, z as f32)).abs();
     let known: Vec<f32> = (0..40)
         .flat_map(|line| (10..86).map(move |z| (line, z)))
         .map(|(l, z)| off(l, z))
         .filter(|d| !d.is_nan())
         .collect();
     let mean = known.iter().sum::<f32>() / known.len() as f32;
-    assert!(mean < 1.0 && known.len() > 40 * 76 / 2, "{mean} of {}", known.len());
+    assert!(mean < 1.0 && known.len() > 40 * 76 * 9 / 10, "{mean} of {}", known.len());
+    let throw = faults[0].throw.as_ref().unwrap();
+    assert!((throw.at(20, 48.0) - 5.0).abs() < 0.6, "{}", throw.at(20, 48.0));
+    // The proposal: bins of 25 m, samples of 10 m. The fault goes 0.3 bins a sample and 0.2 bins a line.
+    let geometry = SurveyGeometry::regular([48, 40, 96], 25.0, 10.0, VerticalUnit::Metres);
+    let proposal = &proposals(&faults, &geometry, 3)[0];
+    assert_eq!((proposal.id, proposal.is_minor, proposal.reverse), (3, false, false));
+    assert!((proposal.throw[0] - 50.0).abs() < 6.0, "{:?}", proposal.throw);
+    let dip = (1.04f64.sqrt() / (0.3 * 25.0 / 10.0)).atan().to_degrees();
+    assert!((proposal.dip_deg - dip).abs() < 3.0, "{} for {dip}", proposal.dip_deg);
+    assert!(proposal.mesh.triangles.len() > 100);
     assert!(found(&|x, y, z| z - 0.2 * y + 0.3 * x).is_empty());
+}
+
+#[test]
+fn an_event_goes_through_its_patch_where_time_is_off_and_a_second_seed_corrects_it() {
+    let strat = |x: f32, y: f32, z: f32| z - 0.6 * x + 0.35 * y;
+    let volume = volume([40, 32, 80], strat);
+    let surfaces = grow_surfaces(&volume, &GrowSettings::default(), &Progress::silent()).unwrap();
+    let mut tau = geologic_time(&volume, &surfaces, &[], &TimeSettings::default(), &Progress::silent()).unwrap().tau;
+    let reflections = Reflections::new(&surfaces, &[]);
+    let seed = reflections.nearest([8, 16], 40.0, None, 6.0).unwrap();
+    let wanted = strat(8.0, 16.0, seed.z);
+    let worst = |seeds: &[Seed], tau: &Volume<f32>| {
+        let event = reflections.event(tau, seeds, &[]).unwrap();
+        let inside = event.nodes.iter().filter(|node| node.z > 8.0 && node.z < 72.0);
+        let off = inside.map(|node| (strat(f32::from(node.x), f32::from(node.y), node.z) - wanted).abs());
+        (off.fold(0.0, f32::max), event)
+    };
+    let first = Seed { trace: [8, 16], z: seed.z };
+    let (exact, event) = worst(&[first], &tau);
+    assert!(exact < 0.1, "{exact}");
+    assert!(event.nodes.iter().filter(|node| node.support == Support::Tracked).count() > 1200);
+    // Where time is four samples off in a corner, the patch says where the event is.
+    let spoil = |tau: &mut Volume<f32>, by: f32, from: usize| {
+        for (n, tau) in tau.samples_mut().iter_mut().enumerate() {
+            *tau += if n / 80 / 32 >= from { by } else { 0.0 };
+        }
+    };
+    spoil(&mut tau, 4.0, 34);
+    assert!(worst(&[first], &tau).0 < 0.1);
+    // Half a survey on another bed is corrected by a seed there.
+    spoil(&mut tau, 15.0, 20);
+    assert!(worst(&[first], &tau).0 > 3.0);
+    let second = Seed { trace: [30, 16], z: seed.z + 0.6 * 22.0 };
+    let (off, event) = worst(&[first, second], &tau);
+    let right =
+        event.nodes.iter().filter(|n| (strat(f32::from(n.x), f32::from(n.y), n.z) - wanted).abs() < 0.2).count();
+    assert!(right as f32 > 0.8 * event.nodes.len() as f32, "{right} of {}, {off}", event.nodes.len());
 }
