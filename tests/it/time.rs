@@ -60,9 +60,37 @@ fn one_pick_by_time_is_a_horizon_in_all_blocks_with_its_quality() {
     let nodes: Vec<bool> = truth.iter().flat_map(|(place, z)| z.iter().map(move |z| near(place, *z))).collect();
     let share = nodes.iter().filter(|near| **near).count() as f64 / nodes.len() as f64;
     assert!(share > 0.9, "{share} of the nodes within a sample");
+    assert!(picked["snapped"].as_u64().is_some() && picked["seeds"] == 1, "{picked}");
+    // A second place corrects the horizon; one that is no horizon by time cannot be corrected.
+    let (&(inline, crossline), z) = truth.iter().rfind(|((i, c), _)| *i <= 180 && *c <= 560).unwrap();
+    let line = format!("pick p.petro --at {inline},{crossline},{} --horizon Bravo --by-time", z[0]);
+    assert!(run_in(at, &line).done().stdout.contains("through 2 places"));
+    assert!(fs::read_to_string(at.join("p.petro/project.toml")).unwrap().contains("seeds"));
+    run_in(at, "undo p.petro").done();
     run_in(at, "pick p.petro --at 1,1,1 --horizon Out --by-time").failed(&["outside the survey"]);
     run_in(at, "undo p.petro").done();
     assert!(!run_in(at, "horizon list p.petro").done().stdout.contains("Bravo"));
+}
+
+#[test]
+fn faults_are_proposed_before_there_is_a_horizon() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    run_in(at, "synth s --size 96x72x96 --seed 2 --snr 8").done();
+    run_in(at, "import s/survey.sgy p.petro").done();
+    run_in(at, "fault propose p.petro").failed(&["neither horizons", "petroglyph extract"]);
+    run_in(at, "extract p.petro").done();
+    let told = run_in(at, "fault propose p.petro --json").done().json();
+    let proposals = told["proposals"].as_array().unwrap();
+    assert!((2..=4).contains(&proposals.len()), "three faults: {told}");
+    assert!(proposals.iter().all(|p| p["horizons"].as_array().unwrap().is_empty() && p["support"].as_u64() > Some(20)));
+    assert!(run_in(at, "fault propose p.petro").done().stdout.contains("reflections end at it"));
+    run_in(at, "fault accept p.petro 1 --name West").done();
+    assert!(run_in(at, "fault list p.petro").done().stdout.contains("West"));
+    // The drawn ones cut geologic time, and what is accepted is not proposed again.
+    assert_eq!(run_in(at, "time p.petro --json").done().json()["faults"], 1);
+    let again = run_in(at, "fault propose p.petro --json").done().json();
+    assert_eq!(again["proposals"].as_array().unwrap().len(), proposals.len() - 1, "{again}");
 }
 
 #[test]

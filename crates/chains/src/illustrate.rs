@@ -1,6 +1,6 @@
 //! `petroglyph illustrate`: a block diagram of a survey that nobody has interpreted.
 //!
-//! SEG-Y → import → candidates → geologic time → layers between its strongest, most continuous levels → patterns by the
+//! SEG-Y → import → candidates → faults where they end → geologic time → layers between its strongest, most continuous levels → patterns by the
 //! character of the reflections → a block with a legend. The project is kept, to go on from. A pattern does not claim a
 //! rock: the legend says how the reflections look, and the title says that nothing was interpreted.
 
@@ -10,10 +10,13 @@ use pictures::Device;
 use pictures::figures::{self, FigureFormat, FigureSettings, InterpreterView};
 use pictures::scene;
 use project::Project;
-use project::command::{Command, ComputeTime, Extract, ImportVolume, PickByTime, SetLayer, TimeLevel, read_time};
+use project::command::{
+    AcceptFault, Command, ComputeTime, Extract, ImportVolume, PickByTime, ProposeFaults, SetLayer, TimeLevel, read_time,
+};
 use project::document::Polarity;
 use project::error::ProjectError;
 use project::folder::refuse_inside_project;
+use project::interpretation::proposals;
 use segy::SegyOptions;
 use serde::Serialize;
 use std::fmt;
@@ -146,6 +149,7 @@ fn build(
     };
     project.apply(&Command::Import(import), progress)?;
     project.apply(&Command::Extract(Extract { volume: None, settings: ExtractSettings::default() }), progress)?;
+    accept_faults(project, progress)?;
     let time = ComputeTime { name: "time".to_owned(), settings: TimeSettings::default() };
     project.apply(&Command::Time(time), progress)?;
     let (tau, volume) = read_time(project.root(), project.document(), progress)?;
@@ -175,6 +179,16 @@ fn build(
         names.push(name);
     }
     Ok(names)
+}
+
+/// Adds the faults that the ends of reflections tell, but for minor ones.
+fn accept_faults(project: &mut Project, progress: &Progress) -> Result<(), ProjectError> {
+    project.apply(&Command::ProposeFaults(ProposeFaults::default()), progress)?;
+    for proposal in proposals::open(project.root(), project.document()).iter().filter(|proposal| !proposal.is_minor) {
+        let accept = AcceptFault { id: proposal.id, name: proposal.name.clone() };
+        project.apply(&Command::AcceptFault(accept), progress)?;
+    }
+    Ok(())
 }
 
 /// Continuity above which reflections count as continuous, and below which as chaotic.

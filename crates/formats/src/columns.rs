@@ -10,12 +10,13 @@ use survey::geometry::SurveyGeometry;
 use survey::horizon::Quality;
 
 /// The qualities and their words in a table.
-const QUALITIES: [(Quality, &str); 5] = [
+const QUALITIES: [(Quality, &str); 6] = [
     (Quality::Hole, "hole"),
     (Quality::Picked, "picked"),
     (Quality::Tracked, "tracked"),
     (Quality::Filled, "filled"),
     (Quality::Extrapolated, "extrapolated"),
+    (Quality::Snapped, "snapped"),
 ];
 
 /// The word for a quality.

@@ -96,9 +96,9 @@ pub struct Proposal {
     pub ends: [[f64; 2]; 2],
     /// Shallowest and deepest vertical value of its surface.
     pub depth: [f64; 2],
-    /// Names of the horizons that it offsets.
+    /// Names of the horizons that it offsets; none where it was found from the ends of reflections.
     pub horizons: Vec<String>,
-    /// Count of pairs of rim nodes on it.
+    /// Count of pairs of rim nodes on it, or of reflections that end at it.
     pub support: usize,
     /// RMS distance of these pairs from its surface, m.
     pub misfit_m: f64,
@@ -114,6 +114,14 @@ pub struct Proposal {
 }
 
 impl Proposal {
+    /// What it rests on, in words.
+    pub fn evidence(&self) -> String {
+        if self.horizons.is_empty() {
+            return format!("{} reflections end at it", self.support);
+        }
+        format!("{} pairs on {}, {:.0} m off", self.support, self.horizons.join(", "), self.misfit_m)
+    }
+
     /// The proposal as a fault of the given name.
     pub fn fault(&self, name: &str) -> Fault {
         Fault::new(name, self.mesh.clone())

@@ -245,11 +245,18 @@ fn borrow(
 /// extrapolated elsewhere. Nodes filled between close picks count as picked.
 fn grade(size: [usize; 2], quality: &mut [Quality]) {
     let [nx, ny] = size;
-    let rank = |q: Quality| if q == Quality::Hole { u8::MAX } else { q as u8 };
+    let rank = |q: Quality| match q {
+        Quality::Picked => 0,
+        Quality::Tracked => 1,
+        Quality::Snapped => 2,
+        Quality::Filled => 3,
+        Quality::Extrapolated => 4,
+        Quality::Hole => 5,
+    };
     for _ in 0..SOLID_NODES {
         let before = quality.to_vec();
         for n in 0..quality.len() {
-            if rank(before[n]) > Quality::Tracked as u8 {
+            if !before[n].is_on_data() {
                 let best = beside(size, n).map(|m| before[m]).chain([before[n]]).min_by_key(|&q| rank(q));
                 quality[n] = best.unwrap_or(Quality::Hole);
             }

@@ -5,7 +5,6 @@
 use super::load::Rock;
 use glam::Vec3;
 use rayon::prelude::*;
-use survey::Quality;
 
 /// Places along each line at which a horizon is looked at: the share is right to about a percent.
 const PLACES: usize = 72;
@@ -54,7 +53,7 @@ impl Rock {
                     let [above, below] = [-BESIDE, BESIDE].map(|off| model.region_at(Vec3::new(x, y, z + off)));
                     if above.block == block && above.layer != below.layer {
                         let quality = model.quality_at(horizon, block, x, y);
-                        counts[0] += usize::from(matches!(quality, Quality::Picked | Quality::Tracked));
+                        counts[0] += usize::from(quality.is_on_data());
                         counts[1] += 1;
                     }
                 }

@@ -490,8 +490,8 @@ pub enum ProjectError {
     /// There are no horizons, so there are no layers.
     #[error("the project has no horizons, so there are no layers to parameterize")]
     NoLayers,
-    /// There are no horizons from which to propose faults.
-    #[error("the project has no horizons whose offsets could indicate faults")]
+    /// There is nothing from which to propose faults.
+    #[error("the project has neither horizons whose offsets could tell faults, nor candidates that end at them")]
     NoEvidence,
     /// No faults were proposed.
     #[error("no faults have been proposed yet")]

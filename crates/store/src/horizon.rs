@@ -170,7 +170,6 @@ fn check_depths(path: &Path, sheet: usize, depths: &[f32]) -> Result<(), StoreEr
 
 /// The quality that a number stands for.
 fn quality_of(number: u8) -> Option<Quality> {
-    [Quality::Hole, Quality::Picked, Quality::Tracked, Quality::Filled, Quality::Extrapolated]
-        .into_iter()
-        .find(|&quality| quality as u8 == number)
+    use Quality::{Extrapolated, Filled, Hole, Picked, Snapped, Tracked};
+    [Hole, Picked, Tracked, Filled, Extrapolated, Snapped].into_iter().find(|&quality| quality as u8 == number)
 }

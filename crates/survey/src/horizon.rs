@@ -23,6 +23,15 @@ pub enum Quality {
     Filled = 3,
     /// Extrapolated beyond the picks.
     Extrapolated = 4,
+    /// Taken from a reflection beside a level of geologic time.
+    Snapped = 5,
+}
+
+impl Quality {
+    /// Whether a node lies on what was picked, or on a reflection.
+    pub fn is_on_data(self) -> bool {
+        matches!(self, Self::Picked | Self::Tracked | Self::Snapped)
+    }
 }
 
 /// A regular grid of nodes in world X, Y; `[u][v]`, v fastest.

@@ -58,7 +58,7 @@ pub struct Event {
 }
 
 /// Distance from the level within which an event goes to a reflection, samples.
-pub const SNAP_REACH: f32 = 1.5;
+const SNAP_REACH: f32 = 1.5;
 /// Distance from a seed within which it goes to a reflection, samples.
 const SEED_REACH: f32 = 3.0;
 /// Distance from the level within which a vertex of a patch speaks for the patch, samples.
@@ -90,12 +90,6 @@ impl Reflections {
         let level = |x: usize, y: usize| level_at(&placed, [x, y], cuts);
         let own: Vec<u32> = placed.iter().filter_map(|seed| seed.hub).collect();
         Some(self.along(tau, level, placed[0].time, first, &own))
-    }
-
-    /// The event at a level of τ.
-    pub fn level(&self, tau: &Volume<f32>, time: f32) -> Event {
-        let kind = self.kind_along(tau, time);
-        self.along(tau, |_, _| time, time, kind, &[])
     }
 
     /// The time of a seed: the median over its patch around it.
@@ -186,24 +180,7 @@ impl Reflections {
             .collect();
         Event { time, kind, nodes }
     }
-
-    /// What a level follows at most traces; `None` where nothing reflects along it.
-    fn kind_along(&self, tau: &Volume<f32>, time: f32) -> Option<Extremum> {
-        let [nx, ny, _] = tau.size();
-        let mut counts = std::collections::BTreeMap::<Extremum, usize>::new();
-        for trace in (0..nx * ny).step_by(KIND_STEP) {
-            for at in crossings(tau.trace(trace / ny, trace % ny), time) {
-                if let Some(found) = self.nearest([trace / ny, trace % ny], at, None, SNAP_REACH) {
-                    *counts.entry(found.kind).or_default() += 1;
-                }
-            }
-        }
-        counts.into_iter().max_by_key(|(kind, count)| (*count, std::cmp::Reverse(*kind))).map(|(kind, _)| kind)
-    }
 }
-
-/// Traces between those at which it is asked what a level follows.
-const KIND_STEP: usize = 37;
 
 /// The level at a trace.
 fn level_at(seeds: &[Placed], trace: [usize; 2], cuts: &[Cut]) -> f32 {

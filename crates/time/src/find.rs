@@ -213,6 +213,15 @@ pub struct FoundFault {
     pub ends: usize,
 }
 
+impl FoundFault {
+    /// Whether most of it lies within a few traces of a known fault.
+    pub fn is_on(&self, known: &Cut) -> bool {
+        let there = self.cut.place.iter().filter(|place| place.is_finite()).count();
+        let near = |(a, b): &(&f32, &f32)| (**a - **b).abs() <= OWN;
+        known.across == self.cut.across && 2 * self.cut.place.iter().zip(&known.place).filter(near).count() > there
+    }
+}
+
 /// Finds the faults of a volume from the ends of patches, and how far they reach from what lies beside them.
 ///
 /// Patches of fewer than `fewest` vertices do not count.

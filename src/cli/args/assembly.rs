@@ -21,7 +21,7 @@ pub(in crate::cli) struct PickArgs {
     #[arg(long)]
     pub(in crate::cli) highest_valid: bool,
     /// Add a new horizon that is the level of geologic time through the place, over the whole survey and across its
-    /// faults; `petroglyph time` first
+    /// faults, or correct one that was made so around the place; `petroglyph time` first
     #[arg(long, conflicts_with_all = ["up", "highest_valid", "remove", "colour"])]
     pub(in crate::cli) by_time: bool,
     /// Remove the node from the horizon

@@ -192,7 +192,7 @@ pub(in crate::cli) enum FaultAction {
                       \n  petroglyph fault pick north.petro --name F1 --stick 1250,1300,900 1250,1310,1020 \
                       --stick 1270,1302,900 1270,1312,1020")]
     Pick(FaultPickArgs),
-    /// Propose faults from the offsets of the horizons
+    /// Propose faults from the offsets of the horizons or, while there are none, from where candidates end
     #[command(after_help = "Example:\n  petroglyph fault propose north.petro")]
     Propose(FaultProposeArgs),
     /// Accept a proposed fault

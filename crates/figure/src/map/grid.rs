@@ -60,7 +60,7 @@ impl Grid {
             });
             let (z, block) = places.min_by(|a, b| a.0.total_cmp(&b.0))?;
             let quality = model.quality_at(horizon, block, x, y);
-            Some(ShallowestPlace { z, block, is_open: !matches!(quality, Quality::Picked | Quality::Tracked) })
+            Some(ShallowestPlace { z, block, is_open: !quality.is_on_data() })
         };
         let count = model.stratigraphy().horizons.len();
         mapped.is_among(count).then(|| Self::of(geometry, mapped, place))

@@ -22,7 +22,7 @@ use series::{Series, SeriesPoint};
 use shape::{Shape, problem};
 use std::sync::Arc;
 use survey::geometry::SurveyGeometry;
-use survey::horizon::{Horizon, Quality};
+use survey::horizon::Horizon;
 use survey::progress::Progress;
 use survey::stratigraphy::Contact;
 use survey::{HeightField, LevelField, TriangleMesh};
@@ -264,9 +264,12 @@ impl Given<'_> {
         let sheets = self.horizons[h].sheets.iter();
         let nodes = sheets.flat_map(|sheet| {
             let nv = sheet.grid.count[1];
-            let known = sheet.depth.iter().zip(&sheet.quality).enumerate().filter(|(_, (depth, quality))| {
-                depth.is_finite() && matches!(quality, Quality::Picked | Quality::Tracked)
-            });
+            let known = sheet
+                .depth
+                .iter()
+                .zip(&sheet.quality)
+                .enumerate()
+                .filter(|(_, (depth, quality))| depth.is_finite() && quality.is_on_data());
             known.map(move |(n, (depth, _))| {
                 let at = sheet.grid.world_at(glam::DVec2::new((n / nv) as f64, (n % nv) as f64));
                 self.geometry.voxel_from_world(at.extend(f64::from(*depth))).as_vec3()

@@ -56,7 +56,7 @@ pub(super) fn lines(
                 let horizon = usize::from(horizon);
                 let p = middle(plane, &positions, edge).as_vec3();
                 let quality = match model.quality_at(horizon, edge.region.block, p.x, p.y) {
-                    Quality::Picked | Quality::Tracked => LineQuality::Certain,
+                    Quality::Picked | Quality::Tracked | Quality::Snapped => LineQuality::Certain,
                     Quality::Filled => LineQuality::Approximate,
                     Quality::Extrapolated | Quality::Hole => LineQuality::Inferred,
                 };

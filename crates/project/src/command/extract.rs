@@ -53,7 +53,8 @@ impl Extract {
     }
 }
 
-/// Proposes faults from the offsets and bends of the project's horizons.
+/// Proposes faults from the offsets and bends of the project's horizons or, while there are none, from where the
+/// candidates end.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ProposeFaults {
     /// The settings of the proposal.

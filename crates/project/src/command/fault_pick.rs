@@ -95,7 +95,10 @@ impl AcceptFault {
         let source = Source {
             path: PathBuf::from("proposal"),
             bytes: 0,
-            reading: format!("proposed from the offsets of {}", proposal.horizons.join(", ")),
+            reading: match proposal.horizons.as_slice() {
+                [] => "proposed from reflections that end at it".to_owned(),
+                horizons => format!("proposed from the offsets of {}", horizons.join(", ")),
+            },
         };
         put(draft, &proposal.fault(&self.name), source)?;
         rebuild_all(draft, progress)?;

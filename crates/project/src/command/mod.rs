@@ -14,6 +14,7 @@ mod import;
 mod layer;
 mod parameterization;
 pub(crate) mod pick;
+mod pick_by_time;
 mod refine;
 mod scalar;
 mod scene;
@@ -35,12 +36,13 @@ pub use pick::{
     Climb, Move, MovePick, PickNode, PickNodes, Picked, RemovePick, ReplayPicks, Replayed, ReplayedPick,
     SetHorizonColour, Unfit,
 };
+pub use pick_by_time::{PickByTime, PickedByTime, TimeLevel};
 pub use refine::{FillHorizon, HorizonRefined, SmoothHorizon};
 pub use scalar::{RemoveScalar, SetRaw, SetScalar};
 pub use scene::{AddScene, RemoveScene};
 pub use survey_frame::SetVelocity;
 pub use texture::AddTexture;
-pub use time::{ComputeTime, PickByTime, PickedByTime, TimeComputed, TimeLevel, read_time};
+pub use time::{ComputeTime, TimeComputed, read_time};
 pub use well::{AddWell, RemoveWell, RenameWell, WellAdded};
 
 use crate::document::{Document, Source};

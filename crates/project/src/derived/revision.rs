@@ -16,6 +16,9 @@ pub const EXTRACTION: u32 = 1;
 /// Proposed faults.
 pub const PROPOSALS: u32 = 1;
 
+/// Faults found from the ends of reflections.
+pub const FOUND_FAULTS: u32 = 1;
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -118,6 +121,23 @@ mod tests {
         )
     }
 
+    fn of_found_faults() -> String {
+        let mut volume = Volume::filled([48, 40, 96], 0.0f32);
+        for (n, sample) in volume.samples_mut().iter_mut().enumerate() {
+            let [x, y, z] = [n / 96 / 40, n / 96 % 40, n % 96].map(|at| at as f32);
+            let thrown = if x > 22.0 + 0.3 * (z - 48.0) { 5.0 } else { 0.0 };
+            let t = z - 0.2 * y - thrown;
+            *sample = (t * 0.71).sin() + 0.8 * (t * 0.43 + 1.0).sin() + 0.5 * (t * 0.93 + 2.0).cos();
+        }
+        let quiet = Progress::silent();
+        let surfaces = interp::grow_surfaces(&volume, &interp::GrowSettings::default(), &quiet).unwrap();
+        let found = time::find_faults(&volume, &surfaces, 30, &quiet).unwrap();
+        let geometry = SurveyGeometry::regular([48, 40, 96], 25.0, 10.0, VerticalUnit::Metres);
+        let proposals = time::proposals(&found, &geometry, 1);
+        assert_eq!(proposals.len(), 1, "a fault of five samples' throw is found");
+        fingerprint(proposals.iter().flat_map(|p| [p.strike_deg, p.dip_deg, p.throw[0], p.ends[0][0]]))
+    }
+
     #[test]
     fn a_changed_result_has_a_changed_revision() {
         let known = [
@@ -125,6 +145,7 @@ mod tests {
             ("PARAMETERIZATION", PARAMETERIZATION, of_parameterization(), (3, "b365248c779a")),
             ("EXTRACTION", EXTRACTION, of_extraction(), (1, "7a7715634834")),
             ("PROPOSALS", PROPOSALS, of_proposals(), (1, "1fc6c26217e7")),
+            ("FOUND_FAULTS", FOUND_FAULTS, of_found_faults(), (1, "638965a838a1")),
         ];
         let changed: Vec<String> = known
             .into_iter()

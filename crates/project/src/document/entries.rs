@@ -101,6 +101,9 @@ pub struct HorizonEntry {
     /// How it was assembled from picks; `None` if it was imported.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assembly: Option<Assembly>,
+    /// The places in geologic time that it was picked through: inline, crossline, vertical value.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub seeds: Vec<[f64; 3]>,
 }
 
 /// A fault of the project.

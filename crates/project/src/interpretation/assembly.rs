@@ -377,7 +377,8 @@ pub(crate) fn put(
         (None, None) => return Err(ProjectError::NothingLeft { horizon: name.clone() }),
     };
     let contact = old.map_or(Contact::default(), |old| document.horizons[old].contact);
-    let entry = HorizonEntry { name: name.clone(), contact, file, hash, source, assembly: log };
+    let seeds = old.map_or(Vec::new(), |old| document.horizons[old].seeds.clone());
+    let entry = HorizonEntry { name: name.clone(), contact, file, hash, source, assembly: log, seeds };
     match old {
         Some(old) if old == position => document.horizons[old] = entry,
         Some(old) => {

@@ -4,7 +4,7 @@
 //! same extraction get it without reading anything but its report.
 
 use super::extraction;
-use crate::document::Document;
+use crate::document::{Document, VolumeEntry};
 use crate::error::ProjectError;
 use crate::weak_cache::WeakCache;
 use glam::DVec2;
@@ -71,6 +71,13 @@ impl Candidates {
         }
         levels
     }
+}
+
+/// The volume that the present extraction is of; the first on the project's lattice where that is not recorded.
+pub(crate) fn amplitudes(document: &Document) -> Result<&VolumeEntry, ProjectError> {
+    let extracted = document.extraction.as_ref().map(|entry| entry.volume.as_str());
+    let named = document.volumes.iter().find(|entry| extracted == Some(entry.name.as_str()));
+    named.or_else(|| document.volumes.iter().find(|entry| entry.geometry.is_none())).ok_or(ProjectError::NoVolume)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Proposed faults, stored for as long as a state of the history names them.
+//! Proposed faults, from the offsets of horizons or, before there is one, from where reflections end; stored for as long as a state of the history names them.
 //!
 //! `derived/fault-proposals-KEY.json` holds the proposals of the horizons, faults, volume and settings that the key
 //! identifies. Proposals of another state cannot be accepted, unless that state differs only by faults accepted from
@@ -10,6 +10,8 @@ use crate::document::Document;
 use crate::error::ProjectError;
 use crate::folder::{history, storage};
 use crate::interpretation::assembly;
+use crate::interpretation::candidates::{Candidates, amplitudes};
+use ::time::{Cut, FoundFault, TimeSettings, find_faults};
 use attribute::{DipSettings, SemblanceSettings, dip, semblance};
 use interp::faults::{Evidence, Proposal, ProposeSettings, Repeat, propose_faults};
 use interp::reassembly::from_horizon;
@@ -37,6 +39,9 @@ impl Proposals {
     /// The message if there are none.
     pub fn nothing_new(&self) -> Option<&'static str> {
         match (self.proposals.is_empty(), self.repeats.is_empty()) {
+            (true, true) if self.horizons.is_empty() => {
+                Some("reflections end nowhere along a surface that the project has no fault for: no fault is proposed")
+            }
             (true, true) => Some("the horizons are not offset anywhere: no fault is proposed"),
             (true, false) => {
                 Some("the horizons are offset only where the project has faults already: no fault is proposed")
@@ -52,8 +57,7 @@ impl Proposals {
         write!(
             f,
             "{}: {kind}, strikes {:.0} deg, dips {:.0} deg, throw {:.0} {unit} (up to {:.0}), from inline \
-             {:.0}, crossline {:.0} to inline {:.0}, \
-             crossline {:.0}, {:.0} to {:.0} {unit}; throw by length {:.0} m2, {} pairs on {}, {:.0} m off",
+             {:.0}, crossline {:.0} to inline {:.0}, crossline {:.0}, {:.0} to {:.0} {unit}; throw by length {:.0} m2, {}",
             p.id,
             p.strike_deg,
             p.dip_deg,
@@ -66,9 +70,7 @@ impl Proposals {
             p.depth[0],
             p.depth[1],
             p.offset_m2,
-            p.support,
-            p.horizons.join(", "),
-            p.misfit_m
+            p.evidence()
         )?;
         if let Some([on, beside]) = p.semblance {
             write!(f, "; semblance {on:.2} on it, {beside:.2} beside")?;
@@ -141,7 +143,7 @@ pub(crate) fn compute(
 ) -> Result<(String, Proposals), ProjectError> {
     let geometry = document.frame()?;
     if document.horizons.is_empty() {
-        return Err(ProjectError::NoEvidence);
+        return from_candidates(root, document, settings, progress);
     }
     let key = key(document, settings);
     let none = FaultNetwork::none();
@@ -176,13 +178,47 @@ pub(crate) fn compute(
         repeats: found.repeats,
         unit: geometry.vertical.unit.symbol().to_owned(),
     };
-    let (scratch, file) = (Scratch::begin(root)?, file_of(&key));
+    write(root, &key, &proposals)?;
+    Ok((key, proposals))
+}
+
+/// Proposes faults from where patches of reflections end, before there is any horizon.
+fn from_candidates(
+    root: &Path,
+    document: &Document,
+    settings: &ProposeSettings,
+    progress: &Progress,
+) -> Result<(String, Proposals), ProjectError> {
+    let geometry = document.frame()?;
+    let Some(extraction) = &document.extraction else { return Err(ProjectError::NoEvidence) };
+    let key = key_of(&(key(document, settings), &extraction.key, revision::FOUND_FAULTS));
+    let candidates = Candidates::load(root, document, progress)?;
+    let blocks = assembly::blocks(root, document, progress)?;
+    let seismic = content::read_volume(root, amplitudes(document)?, geometry, progress)?;
+    if let Some(known) = read(root, &key) {
+        return Ok((key, known));
+    }
+    let fewest = TimeSettings::default().fewest_vertices;
+    let found = find_faults(&seismic, &candidates.forest.surfaces, fewest, progress)?;
+    let drawn = Cut::of_network(&blocks, seismic.size());
+    let new: Vec<FoundFault> = found.into_iter().filter(|fault| !drawn.iter().any(|cut| fault.is_on(cut))).collect();
+    let proposals = Proposals {
+        horizons: hashes(document),
+        proposals: ::time::proposals(&new, geometry, 1),
+        repeats: Vec::new(),
+        unit: geometry.vertical.unit.symbol().to_owned(),
+    };
+    write(root, &key, &proposals)?;
+    Ok((key, proposals))
+}
+
+fn write(root: &Path, key: &str, proposals: &Proposals) -> Result<(), ProjectError> {
+    let (scratch, file) = (Scratch::begin(root)?, file_of(key));
     let path = scratch.path(&file);
-    let text = serde_json::to_string_pretty(&proposals)
+    let text = serde_json::to_string_pretty(proposals)
         .map_err(|error| ProjectError::Malformed { path: path.clone(), detail: error.to_string() })?;
     store::replace_file(&path, text.as_bytes())?;
-    scratch.publish(&file)?;
-    Ok((key, proposals))
+    scratch.publish(&file)
 }
 
 /// The proposals stored under a key, if there is an intact file.

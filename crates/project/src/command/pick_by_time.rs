@@ -1,0 +1,246 @@
+//! Horizons that are levels of geologic time.
+
+use super::horizon::{Age, insert_made};
+use super::time::time_volume;
+use super::{Effect, Noun, ProjectError};
+use crate::content;
+use crate::document::{Document, Source};
+use crate::folder::Draft;
+use crate::interpretation::assembly;
+use crate::interpretation::candidates::Candidates;
+use ::time::{Crossing, Cut, Event, Node, Reflections, Seed, Support, isochron};
+use glam::Vec3;
+use interp::Extremum;
+use model::FaultNetwork;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use survey::{Horizon, NodeGrid, Progress, Quality, Sheet, SurveyGeometry, Volume};
+
+/// The level of geologic time that a horizon is.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TimeLevel {
+    /// The one through this inline, crossline and vertical value, or through the reflection beside it.
+    Through([f64; 3]),
+    /// The one of this value, samples. It stays where it is beside reflections, which is smoother than what was tracked.
+    Of(f32),
+}
+
+/// Adds a horizon that is a level of geologic time. A place of a horizon that was picked by time corrects it around that
+/// place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PickByTime {
+    /// Which level.
+    pub level: TimeLevel,
+    /// Name of the new horizon.
+    pub horizon: String,
+}
+
+/// The report of a horizon that was picked by time.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PickedByTime {
+    /// The horizon.
+    pub horizon: String,
+    /// Position in the stratigraphy, 0 = youngest.
+    pub position: usize,
+    /// The value of geologic time, samples.
+    pub time: f32,
+    /// Number of sheets, one for each fault block.
+    pub sheets: usize,
+    /// Number of places that it goes through.
+    pub seeds: usize,
+    /// Number of nodes on patches of a reflection that lie along the level.
+    pub tracked: usize,
+    /// Number of nodes on another reflection close to the level.
+    pub snapped: usize,
+    /// Number of nodes between reflections.
+    pub between: usize,
+    /// Share of the survey's traces that it covers, 0 to 1.
+    pub coverage: f64,
+}
+
+impl std::fmt::Display for PickedByTime {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { horizon, tracked, snapped, between, coverage, sheets, .. } = self;
+        let places = if self.seeds > 1 { format!(" through {} places", self.seeds) } else { String::new() };
+        write!(
+            f,
+            "horizon '{horizon}' by geologic time{places}: {:.1} % of the traces in {sheets} sheets, {tracked} nodes on \
+             its reflection (tracked), {snapped} on one close by (snapped), {between} between reflections (filled)",
+            100.0 * coverage
+        )
+    }
+}
+
+impl PickByTime {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let corrected = self.corrected(&draft.document)?;
+        let geometry = draft.document.frame()?.clone();
+        let entry = time_volume(draft.root(), &draft.document)?;
+        let tau = content::read_volume(draft.root(), &entry, &geometry, progress)?;
+        let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
+        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let cuts = Cut::of_network(&blocks, tau.size());
+        let reflections = Reflections::new(&candidates.forest.surfaces, &cuts);
+        let earlier = corrected.map_or(&[][..], |index| &draft.document.horizons[index].seeds);
+        let (event, seeds, reading) = match self.level {
+            TimeLevel::Through(at) => {
+                let seeds = [earlier, &[at]].concat();
+                let event = through(&seeds, &geometry, &tau, &reflections, &cuts)?;
+                let [inline, crossline, z] = seeds[0];
+                let more = match seeds.len() {
+                    1 => String::new(),
+                    count => format!(" and {} more", count - 1),
+                };
+                (event, seeds, format!("geologic time through inline {inline}, crossline {crossline}, {z}{more}"))
+            }
+            TimeLevel::Of(time) => (level(&tau, time, &reflections), Vec::new(), format!("geologic time {time}")),
+        };
+        if event.nodes.is_empty() {
+            return Err(ProjectError::NoIsochron { time: event.time });
+        }
+        let voxels = seeds.iter().map(|at| voxel(*at, &geometry)).collect::<Result<Vec<_>, _>>()?;
+        let sheets = sheets(&event, &geometry, &blocks, &voxels);
+        let count = |quality: Quality| -> usize {
+            sheets.iter().flat_map(|sheet| &sheet.quality).filter(|found| **found == quality).count()
+        };
+        let tracked = count(Quality::Tracked) + count(Quality::Picked);
+        let (snapped, between) = (count(Quality::Snapped), count(Quality::Filled));
+        let mut traces: Vec<[u16; 2]> = event.nodes.iter().map(|at| [at.x, at.y]).collect();
+        traces.dedup();
+        let coverage = traces.len() as f64 / (tau.size()[0] * tau.size()[1]) as f64;
+        let (sheet_count, time) = (sheets.len(), event.time);
+        let horizon = Horizon::new(self.horizon.clone(), sheets);
+        let source = Source { path: PathBuf::from(&entry.file), bytes: entry.source.bytes, reading };
+        let seed_count = seeds.len();
+        if corrected.is_some() {
+            assembly::put(draft, &horizon, None, "", progress)?;
+        } else {
+            insert_made(draft, &horizon, &Age::ByDepth, source.clone(), progress)?;
+        }
+        let position = draft.document.position(Noun::Horizon, &self.horizon)?;
+        let made = &mut draft.document.horizons[position];
+        (made.seeds, made.source) = (seeds, source);
+        Ok(Effect::PickedByTime(PickedByTime {
+            horizon: self.horizon.clone(),
+            position,
+            time,
+            seeds: seed_count,
+            sheets: sheet_count,
+            tracked,
+            snapped,
+            between,
+            coverage,
+        }))
+    }
+
+    /// The horizon that another place corrects; `None` for a new one.
+    fn corrected(&self, document: &Document) -> Result<Option<usize>, ProjectError> {
+        let known = document.horizons.iter().position(|entry| entry.name == self.horizon);
+        let by_time = known.filter(|&index| !document.horizons[index].seeds.is_empty());
+        match (by_time, &self.level) {
+            (Some(index), TimeLevel::Through(_)) => Ok(Some(index)),
+            _ => document.check_new_name(Noun::Horizon, &self.horizon).map(|()| None),
+        }
+    }
+}
+
+/// A place as trace and fractional sample.
+fn voxel(at: [f64; 3], geometry: &SurveyGeometry) -> Result<Seed, ProjectError> {
+    let place = geometry.voxel_from_lines(at[0], at[1]).round();
+    let z = geometry.vertical.index_of(at[2]);
+    let [nx, ny, nz] = geometry.size();
+    let inside = |at: f64, count: usize| at >= 0.0 && at <= (count - 1) as f64;
+    if inside(place.x, nx) && inside(place.y, ny) && inside(z, nz) {
+        Ok(Seed { trace: [place.x as usize, place.y as usize], z: z as f32 })
+    } else {
+        Err(ProjectError::outside(at, geometry))
+    }
+}
+
+/// The event through places, each on the reflection beside it if there is one.
+fn through(
+    seeds: &[[f64; 3]],
+    geometry: &SurveyGeometry,
+    tau: &Volume<f32>,
+    reflections: &Reflections,
+    cuts: &[Cut],
+) -> Result<Event, ProjectError> {
+    let voxels = seeds.iter().map(|at| voxel(*at, geometry)).collect::<Result<Vec<_>, _>>()?;
+    // The last is the new one.
+    let unknown = ProjectError::TimeUnknown { at: seeds.last().copied().unwrap_or_default() };
+    reflections.event(tau, &voxels, cuts).ok_or(unknown)
+}
+
+/// A level of time as it is, which is smoother than what was tracked; its nodes tell which reflections it passes.
+fn level(tau: &Volume<f32>, time: f32, reflections: &Reflections) -> Event {
+    let crossings = isochron(tau, time).crossings;
+    let near = |at: &Crossing, kind| reflections.nearest([at.x.into(), at.y.into()], at.z, kind, SNAP_REACH);
+    let mut counts: BTreeMap<Extremum, usize> = BTreeMap::new();
+    for found in crossings.iter().step_by(KIND_STEP).filter_map(|at| near(at, None)) {
+        *counts.entry(found.kind).or_default() += 1;
+    }
+    let kind = counts.into_iter().max_by_key(|(kind, count)| (*count, std::cmp::Reverse(*kind))).map(|(kind, _)| kind);
+    let nodes = crossings.iter().map(|at| {
+        let is_there = kind.is_some_and(|kind| near(at, Some(kind)).is_some());
+        Node { x: at.x, y: at.y, z: at.z, support: if is_there { Support::Snapped } else { Support::Between } }
+    });
+    Event { time, kind, nodes: nodes.collect() }
+}
+
+/// Distance from a level within which it passes a reflection, samples.
+const SNAP_REACH: f32 = 1.5;
+/// Crossings between those at which it is asked what a level follows.
+const KIND_STEP: usize = 37;
+
+/// The sheets of an event, one for each fault block. Where it crosses a trace twice in a block, the upper counts. Without
+/// seeds the sheets are smoothed.
+fn sheets(event: &Event, geometry: &SurveyGeometry, blocks: &FaultNetwork, seeds: &[Seed]) -> Vec<Sheet> {
+    let grid = NodeGrid::of_survey(geometry);
+    let mut sheets: BTreeMap<u16, Sheet> = BTreeMap::new();
+    for at in &event.nodes {
+        let (x, y) = (usize::from(at.x), usize::from(at.y));
+        let block = blocks.block_at(Vec3::new(x as f32, y as f32, at.z));
+        let sheet = sheets.entry(block).or_insert_with(|| Sheet {
+            block: None,
+            ..Sheet::new(grid, vec![f32::NAN; grid.count[0] * grid.count[1]], Quality::Hole)
+        });
+        let node = x * grid.count[1] + y;
+        if sheet.depth[node].is_finite() {
+            continue;
+        }
+        sheet.depth[node] = geometry.vertical.value_at(f64::from(at.z)) as f32;
+        let is_seed = |seed: &Seed| seed.trace == [x, y] && (seed.z - at.z).abs() <= SEED_OFF;
+        sheet.quality[node] = match at.support {
+            _ if seeds.iter().any(is_seed) => Quality::Picked,
+            Support::Tracked => Quality::Tracked,
+            Support::Snapped => Quality::Snapped,
+            Support::Between => Quality::Filled,
+        };
+    }
+    if seeds.is_empty() {
+        sheets.values_mut().for_each(smooth);
+    }
+    sheets.into_values().collect()
+}
+
+/// Distance between a place that was pointed at and the node that it made, samples.
+const SEED_OFF: f32 = 3.0;
+
+/// Nodes to either side over which a level of a picture is smoothed.
+const SMOOTHED: usize = 3;
+
+/// Replaces every depth by the median of those around it: steps stay, single spikes go.
+fn smooth(sheet: &mut Sheet) {
+    let [nu, nv] = sheet.grid.count;
+    let range = |at: usize, count: usize| at.saturating_sub(SMOOTHED)..(at + SMOOTHED + 1).min(count);
+    let median = |n: usize| {
+        let places = range(n / nv, nu).flat_map(|u| range(n % nv, nv).map(move |v| u * nv + v));
+        let mut near: Vec<f32> = places.map(|n| sheet.depth[n]).filter(|depth| depth.is_finite()).collect();
+        near.sort_by(f32::total_cmp);
+        if sheet.depth[n].is_finite() { near[near.len() / 2] } else { f32::NAN }
+    };
+    sheet.depth = (0..nu * nv).into_par_iter().map(median).collect();
+}
