@@ -3,8 +3,9 @@
 //! A level of τ alone is as exact as τ. Where a patch of a reflection lies along most of the level, the event goes
 //! through all of the patch, also where τ is a few samples off; beside other reflections of its kind it goes to them;
 //! elsewhere it is the level. With more than one seed the level varies from place to place: it is the mean of the
-//! seeds' times with weights 1/d⁴, and a fault between a seed and a place makes their distance [`BEYOND_FAULT`] times as
-//! long. So a second seed corrects what the first got wrong around it, and nothing is solved for again. Space: voxels.
+//! seeds' times with weights 1/d⁸, where a fault between a seed and a place makes their distance [`BEYOND_FAULT`] times as
+//! long, and seeds after the first are taken to be [`CORRECTION`] times as far away. So a further seed corrects what the
+//! first got wrong around it, in another fault block all of the block, and nothing is solved for again. Space: voxels.
 
 use crate::cut::Cut;
 use crate::reflections::Reflections;
@@ -70,7 +71,10 @@ const LEAST_SHARE: f64 = 0.6;
 /// Traces around a seed within which its patch tells its time.
 const SEED_AROUND: usize = 8;
 /// Distances across a fault count so many times.
-pub const BEYOND_FAULT: f32 = 4.0;
+const BEYOND_FAULT: f32 = 8.0;
+/// Distances from a seed that corrects count so many times: within a block it changes what lies within about two fifths of
+/// its distance from the first.
+const CORRECTION: f32 = 2.5;
 
 /// A seed that was looked at.
 struct Placed {
@@ -187,16 +191,17 @@ fn level_at(seeds: &[Placed], trace: [usize; 2], cuts: &[Cut]) -> f32 {
     if let [only] = seeds {
         return only.time;
     }
-    let (mut sum, mut weights) = (0.0f32, 0.0f32);
-    for Placed { seed, time, .. } in seeds {
+    let (mut sum, mut weights) = (0.0f64, 0.0f64);
+    for (n, Placed { seed, time, .. }) in seeds.iter().enumerate() {
         let [dx, dy] = [0, 1].map(|axis| trace[axis] as f32 - seed.trace[axis] as f32);
         let beyond = cuts.iter().any(|cut| cut.separates(seed.trace, seed.z, trace, seed.z));
-        let distance = dx.hypot(dy).max(0.1) * if beyond { BEYOND_FAULT } else { 1.0 };
-        let weight = distance.powi(-4);
-        sum += weight * time;
+        let locally = if n == 0 { 1.0 } else { CORRECTION };
+        let distance = dx.hypot(dy).max(0.1) * locally * if beyond { BEYOND_FAULT } else { 1.0 };
+        let weight = f64::from(distance).powi(-8);
+        sum += weight * f64::from(*time);
         weights += weight;
     }
-    sum / weights
+    (sum / weights) as f32
 }
 
 /// The depths at which a trace of τ rises through `time`.
