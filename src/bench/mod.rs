@@ -217,6 +217,7 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
             raw: None,
             tables: Some(tables),
             version: load::new_version(),
+            data_version: load::new_version(),
         },
     ))
 }

@@ -15,6 +15,7 @@ use project::{content, derived, memory_budget, styles};
 use render::distortion::{self, LayerDistortion};
 use render::{DrawnWell, Inputs, Lookup, Media, NamedVolume, RenderError, Scene, VoxelBox};
 use std::path::Path;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use survey::{Progress, SurveyGeometry, Volume, memory};
@@ -52,6 +53,8 @@ pub struct Rock {
     pub key: String,
     /// The stages and their durations; empty for results that were stored before.
     pub stages: Vec<Stage>,
+    /// Metres that k = 0 … 1 spans in each layer, once they were measured.
+    thicknesses_m: OnceLock<Vec<f32>>,
 }
 
 /// Builds the model alone, from which sections and maps are cut; `None` for a project without horizons.
@@ -94,7 +97,7 @@ pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, Proj
             computed
         }
     };
-    Ok(Some(Rock { model, parameterization, key, stages }))
+    Ok(Some(Rock { model, parameterization, key, stages, thicknesses_m: OnceLock::new() }))
 }
 
 /// Whether a parameterization has the size, layers and blocks of a model.
@@ -138,7 +141,11 @@ impl Rock {
 
     /// Metres that k = 0 … 1 spans in each layer, bottom to top: the mean thickness where the layer exists, or the
     /// reference thickness of an open layer.
-    fn thicknesses_m(&self, geometry: &SurveyGeometry) -> Vec<f32> {
+    fn thicknesses_m(&self, geometry: &SurveyGeometry) -> &[f32] {
+        self.thicknesses_m.get_or_init(|| self.measured_thicknesses_m(geometry))
+    }
+
+    fn measured_thicknesses_m(&self, geometry: &SurveyGeometry) -> Vec<f32> {
         let size = self.model.size();
         let counts = size.map(|n| n.min(THICKNESS_SAMPLES));
         let at = |axis: usize, n: usize| param::corner_aligned(n, counts[axis], size[axis]);
@@ -211,6 +218,8 @@ pub struct Loaded {
     /// A number that no other loaded data of this process have: renderers keep what they uploaded while it stays the
     /// same.
     pub version: u64,
+    /// The same of all but the styles: it stays when only `tables` and `raw` change.
+    pub data_version: u64,
 }
 
 /// A number that was not given before.
@@ -289,6 +298,7 @@ pub fn load_within(
         raw: functions.raw,
         tables,
         version: new_version(),
+        data_version: new_version(),
     })
 }
 
@@ -317,7 +327,7 @@ impl More {
     pub fn add_to(self, loaded: &mut Loaded) {
         loaded.volumes.extend(self.volumes);
         loaded.candidates = self.candidates;
-        loaded.version = new_version();
+        (loaded.version, loaded.data_version) = (new_version(), new_version());
     }
 }
 
@@ -345,6 +355,7 @@ pub fn load_bare(
         candidates: ShownCandidates::load(project, scene, None, progress)?,
         tables: None,
         version: new_version(),
+        data_version: new_version(),
         raw,
         geometry,
     })
@@ -410,7 +421,7 @@ fn at_level(covers: VoxelBox, full: [usize; 3], size: [usize; 3], level: usize) 
 pub fn block_extent(geometry: &SurveyGeometry, rock: &Rock, names: Vec<String>, exaggeration: f64) -> BlockExtent {
     let extent = solid::extent_m(geometry);
     let layer =
-        |(name, thickness_m): (String, f32)| LayerExtent { name, thickness_m: thickness_m * exaggeration as f32 };
+        |(name, thickness_m): (String, &f32)| LayerExtent { name, thickness_m: thickness_m * exaggeration as f32 };
     BlockExtent {
         extent_i_m: extent[0] as f32,
         extent_j_m: extent[1] as f32,
@@ -474,6 +485,7 @@ impl Loaded {
             candidates: self.candidates.as_ref().map(ShownCandidates::candidates),
             wells,
             version: self.version,
+            data_version: self.data_version,
         }
     }
 }

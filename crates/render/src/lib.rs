@@ -32,10 +32,10 @@ pub mod inputs;
 mod kept;
 pub mod leaves;
 pub mod media;
-pub mod motion;
 pub mod outline;
 mod pattern_size;
 pub mod pick;
+mod points;
 pub mod reference;
 mod resolved;
 pub mod scene;
@@ -52,7 +52,6 @@ pub use leaves::FaceData;
 pub use media::{
     Faces, Interleaved, Isosurface, IsosurfaceSource, Media, Medium, Occlusion, Phong, PickedHorizon, Scope, Shading,
 };
-pub use motion::Motion;
 pub use outline::{Outlines, Stroke, Unpicked};
 pub use pick::{PickedObject, PickedPoint, pick};
 pub use scene::{Background, Ground, LabelChange, Lookup, PatternSize, Scene, Water};

@@ -201,7 +201,9 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
         if kept.wells != document.wells {
             let geometry = kept.rocks.read().unwrap_or_else(PoisonError::into_inner).geometry.clone();
             let wells = load::read_wells(&wanted.root, document, &geometry)?;
-            kept.rocks.write().unwrap_or_else(PoisonError::into_inner).wells = wells;
+            let mut loaded = kept.rocks.write().unwrap_or_else(PoisonError::into_inner);
+            (loaded.wells, loaded.data_version) = (wells, load::new_version());
+            drop(loaded);
             kept.wells.clone_from(&document.wells);
         }
         restyle(&kept.rocks, wanted)?;

@@ -238,25 +238,27 @@ impl Work {
     }
 }
 
-/// Computes on all processors but one, which is left to the window so that it stays responsive.
+/// Computes on all processors, at a lower priority than the window, so that it stays responsive.
 ///
 /// A job must take no lock on the loaded data: the thread that holds the lock may be waiting for these processors. The
 /// caller takes locks beforehand.
 pub(super) fn compute<T: Send>(job: impl FnOnce() -> T + Send) -> T {
     static POOL: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
-    on(&POOL, job)
+    on(&POOL, threads::SOON, job)
 }
 
 /// The same on separate threads: jobs that take minutes must not delay the drawing of pictures.
 fn compute_apart<T: Send>(job: impl FnOnce() -> T + Send) -> T {
     static POOL: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
-    on(&POOL, job)
+    on(&POOL, threads::LATER, job)
 }
 
-fn on<T: Send>(pool: &OnceLock<Option<rayon::ThreadPool>>, job: impl FnOnce() -> T + Send) -> T {
+fn on<T: Send>(pool: &OnceLock<Option<rayon::ThreadPool>>, nice: i32, job: impl FnOnce() -> T + Send) -> T {
     let pool = pool.get_or_init(|| {
-        let threads = std::thread::available_parallelism().map_or(1, |count| count.get().saturating_sub(1).max(1));
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()
+        let spared = usize::from(!threads::HAS_PRIORITIES);
+        let threads = std::thread::available_parallelism().map_or(1, |count| count.get().saturating_sub(spared).max(1));
+        let builder = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        builder.start_handler(move |_| threads::give_way(nice)).build().ok()
     });
     match pool {
         Some(pool) => pool.install(job),

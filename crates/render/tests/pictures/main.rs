@@ -7,5 +7,4 @@ mod gpu_media;
 mod gpu_shapes;
 mod kept;
 mod media;
-mod motion;
 mod vector;
