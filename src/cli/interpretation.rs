@@ -13,7 +13,7 @@ use formats::{
 };
 use project::command::{
     AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, RemoveFault, RemoveHorizon,
-    RemovePick, RenameHorizon, SetContact, SetFaultExtent, SetHorizonColour, SetTruncation,
+    RemovePick, RenameFault, RenameHorizon, SetContact, SetFaultExtent, SetHorizonColour, SetTruncation,
 };
 use project::document::Polarity;
 use project::memory_budget;
@@ -197,6 +197,9 @@ pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
         FaultAction::Extent { project, name, extent } => {
             let grown_m = grown_m("extent", &extent)?;
             Request::Change { project, command: Command::SetFaultExtent(SetFaultExtent { fault: name, grown_m }) }
+        }
+        FaultAction::Rename { project, from, to } => {
+            Request::Change { project, command: Command::RenameFault(RenameFault { from, to }) }
         }
         FaultAction::Remove { project, name } => {
             Request::Change { project, command: Command::RemoveFault(RemoveFault { name }) }

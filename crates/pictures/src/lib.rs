@@ -23,4 +23,4 @@ mod shown_candidates;
 pub use certainty::SparseHorizon;
 pub use motion::Motion;
 pub use painter::{Device, Painter, write_png};
-pub use shown_candidates::ShownCandidates;
+pub use shown_candidates::{LeafFacts, ShownCandidates};

@@ -4,10 +4,13 @@
 //! Writes illustrative, raw and half-blended pictures, a corner cut, a stair and the ground as relief, each
 //! by the CPU reference and by the GPU. Prints their times and differences.
 
+#[path = "../tests/pictures/compare.rs"]
+mod compare;
+
 use glam::DVec3;
 use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization};
-use render::compare::compare;
+use compare::compare;
 use render::{Corner, Ground, Inputs, Lookup, NamedVolume, Renderer, Scene, VoxelBox};
 use std::error::Error;
 use std::path::Path;

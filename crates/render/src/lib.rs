@@ -2,7 +2,7 @@
 //!
 //! A declarative [`Scene`] says what a picture shows; [`Inputs`] hold the data. Two renderers draw it by the
 //! same algorithm: [`reference::render`] on the CPU, written for clarity, and [`Renderer`] on the GPU,
-//! without a window. [`compare`] decides whether their pictures agree.
+//! without a window. Tests compare their pictures, off edges.
 //!
 //! Each sample of a pixel casts one ray, which finds the first face of the block ([`visible`]) or the ground
 //! ([`ground`]). That point is looked up in flat space, textured, and blended with the raw data. [`media`]
@@ -22,7 +22,6 @@
 
 pub mod accuracy;
 pub mod camera;
-pub mod compare;
 pub mod distortion;
 pub mod error;
 pub mod faces;

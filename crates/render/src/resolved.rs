@@ -102,7 +102,7 @@ impl<'a> ResolvedScene<'a> {
         Ok(Self {
             background,
             candidates: resolve_candidates(scene, inputs)?,
-            tubes: Tubes::new(inputs.wells, &scene.wells, &view, longest_m, solid.roaming_box),
+            tubes: Tubes::new(inputs.wells, scene, &view, longest_m, solid.roaming_box),
             field,
             roaming_box,
             scene,

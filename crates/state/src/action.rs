@@ -63,6 +63,10 @@ pub enum Action {
     Show(Box<Scene>),
     /// Show a named scene.
     ShowNamed(String),
+    /// Present the scenes over the whole screen, beginning with this one; `None`: leave, and show what was shown before.
+    Present(Option<usize>),
+    /// Draw sections at this vertical exaggeration; `None`: as large as their views.
+    Proportions(Option<f64>),
     /// Move the camera to a standard position.
     Stand(StandardView),
     /// Choose which views fill the middle.

@@ -79,6 +79,7 @@ impl State {
                 self.quieten(Place::Dialogue);
                 return self.task(Task::ExportSurface(form));
             }
+            Action::Present(at) => self.present(at),
             Action::Copy => return self.task(Task::Copy),
             Action::Picking(step) => return self.pick(step),
             Action::Extract(volume, settings) => {
@@ -119,6 +120,7 @@ impl State {
                 Err(error) => self.notices.push(Notice::failure(Place::Scenes, &error)),
             },
             Action::Stand(place) => camera::stand(&mut view.scene, place),
+            Action::Proportions(factor) => view.proportions = factor,
             Action::Arrange(layout) => view.layout = layout,
             Action::Compare(compare) => view.compare = compare,
             Action::Wipe(at) => view.wipe = at.clamp(0.02, 0.98),
@@ -139,9 +141,28 @@ impl State {
         }
     }
 
+    /// Shows the scene at a place of the list over the whole screen, or leaves.
+    fn present(&mut self, at: Option<usize>) {
+        let Some(session) = &mut self.session else { return };
+        let scene = &mut session.view.scene;
+        let before = self.presented.take().map(|(_, before)| before);
+        match at.and_then(|at| Some((at, session.document.scenes.get(at)?))) {
+            Some((at, entry)) => {
+                self.presented = Some((at, before.unwrap_or_else(|| Box::new(scene.clone()))));
+                *scene = entry.scene.clone();
+            }
+            None => {
+                if let Some(before) = before {
+                    *scene = *before;
+                }
+            }
+        }
+    }
+
     fn close(&mut self) -> Vec<Task> {
         self.put_by();
         self.session = None;
+        self.presented = None;
         self.dialogue = None;
         self.notices.clear();
         self.remembered.left = None;
@@ -156,6 +177,7 @@ impl State {
         self.remembered.add(&snapshot.root);
         self.notices.clear();
         self.dialogue = None;
+        self.presented = None;
         self.session = Some(Session::new(snapshot, left.map(|left| left.view)));
         self.mark();
         vec![Task::Remember]

@@ -24,6 +24,8 @@ pub mod volume_rendering;
 #[cfg(test)]
 mod tests;
 
+use render::Scene;
+
 pub use action::{Action, Task};
 pub use dialogue::{Choice, Dialogue, ExportForm, FileContent, Shown, SurfaceForm, Target};
 pub use notice::{Notice, Place};
@@ -58,6 +60,8 @@ pub struct State {
     pub session: Option<Session>,
     /// The dialogue in front, if any.
     pub dialogue: Option<Dialogue>,
+    /// The scene that is presented, and what was shown before.
+    pub presented: Option<(usize, Box<Scene>)>,
     /// Messages, each with the place where it is shown; newest last.
     pub notices: Vec<Notice>,
 }

@@ -12,7 +12,7 @@ use interp::ExtractSettings;
 use interp::assembly::Operation;
 use interp::faults::Proposal;
 use project::command::{Climb, Command, PickNode};
-use project::document::Document;
+use project::document::{Document, HorizonEntry};
 use project::error::Noun;
 use project::interpretation::assembly::next_colour;
 use render::{FaceData, Scene};
@@ -252,7 +252,7 @@ impl Picking {
     /// Colour of the horizon that picks go to.
     pub fn colour_in(&self, document: &Document) -> Colour {
         let entry = document.horizons.iter().find(|entry| Some(&entry.name) == self.horizon.as_ref());
-        let known = entry.and_then(|entry| entry.assembly.as_ref()).map(|log| log.colour);
+        let known = entry.and_then(HorizonEntry::own_colour);
         known.or(self.colour).unwrap_or_else(|| next_colour(document))
     }
 

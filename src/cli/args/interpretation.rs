@@ -238,6 +238,16 @@ pub(in crate::cli) enum FaultAction {
         #[arg(value_name = "drawn|grow M", num_args = 1..=2, required = true, allow_hyphen_values = true)]
         extent: Vec<String>,
     },
+    /// Rename a fault
+    #[command(after_help = "Example:\n  petroglyph fault rename north.petro F1 \"Main fault\"")]
+    Rename {
+        /// Project folder
+        project: PathBuf,
+        /// Fault
+        from: String,
+        /// New name
+        to: String,
+    },
     /// Remove a fault
     #[command(after_help = "Example:\n  petroglyph fault remove north.petro F1")]
     Remove {

@@ -6,10 +6,11 @@ use crate::state::{Action, Choice, Dialogue, Place, Session, State, SurfaceForm}
 use eframe::egui::{Align, Button, DragValue, Id, Layout, Response, ScrollArea, Ui, UiBuilder, WidgetInfo};
 use formats::SurfaceKind;
 use project::command::{
-    Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameHorizon, SetFaultExtent, SetRaw, SetVelocity,
+    Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameFault, RenameHorizon, SetFaultExtent, SetRaw, SetVelocity,
 };
 use project::document::FaultEntry;
 use project::styles;
+use render::Scene;
 use survey::VerticalUnit;
 use ttf::ColourMap;
 use widgets::keyboard::{Renamed, Renaming};
@@ -19,6 +20,8 @@ use widgets::obstacle::{needs, unless};
 #[derive(Default)]
 pub struct Data {
     renaming: Option<Renaming>,
+    /// The fault whose name is being changed.
+    renaming_fault: Option<Renaming>,
     /// The fault whose buttons are shown.
     fault: Option<String>,
     velocity: Option<f64>,
@@ -91,6 +94,17 @@ impl Data {
             let is_chosen = self.fault.as_ref() == Some(&entry.name);
             ui.horizontal(|ui| {
                 eye(ui, session, SurfaceKind::Fault, &entry.name, actions);
+                if let Some(renaming) = self.renaming_fault.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
+                    let renamed = renaming.show(ui, 150.0);
+                    if let Renamed::To(to) = &renamed {
+                        let command = RenameFault { from: entry.name.clone(), to: to.clone() };
+                        actions.push(Action::Apply(Box::new(Command::RenameFault(command))));
+                    }
+                    if renamed != Renamed::Typing {
+                        self.renaming_fault = None;
+                    }
+                    return;
+                }
                 let row = named(ui, &entry.name, is_chosen, &format!("Remove fault {}", entry.name));
                 if row.name.on_hover_text(format!("{}: {}", entry.name, entry.source.reading)).clicked() {
                     self.fault = (!is_chosen).then(|| entry.name.clone());
@@ -107,7 +121,14 @@ impl Data {
             let row = UiBuilder::new().scope_id(Id::unique(("extent", &entry.name)));
             ui.scope_builder(row, |ui| ui.horizontal(|ui| self.extent(ui, entry, actions)));
             if is_chosen {
-                ui.indent("chosen", |ui| export(ui, session, SurfaceKind::Fault, &entry.name, actions));
+                ui.indent("chosen", |ui| {
+                    ui.horizontal(|ui| {
+                        if ui.button("Rename").on_hover_text(format!("Rename fault {}", entry.name)).clicked() {
+                            self.renaming_fault = Some(Renaming::of(&entry.name));
+                        }
+                        export(ui, session, SurfaceKind::Fault, &entry.name, actions);
+                    });
+                });
             }
         }
         add(ui, "Add a fault…", Choice::Fault, session.document.geometry.is_some(), actions);
@@ -259,6 +280,15 @@ fn wells(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     ui.heading("Wells");
     for entry in &session.document.wells {
         ui.horizontal(|ui| {
+            let hidden = &session.view.scene.hidden_wells;
+            let mut is_shown = !hidden.contains(&entry.name);
+            let shown = ui.name_inputs(format!("Show well {}", entry.name), |ui| ui.checkbox(&mut is_shown, ""));
+            if shown.on_hover_text("Its path in the block, and its name on figures").changed() {
+                let mut hidden: Vec<String> = hidden.iter().filter(|name| **name != entry.name).cloned().collect();
+                hidden.extend((!is_shown).then(|| entry.name.clone()));
+                let scene = Scene { hidden_wells: hidden, ..session.view.scene.clone() };
+                actions.push(Action::Show(Box::new(scene)));
+            }
             ui.label(&entry.name).on_hover_text(&entry.source.reading);
             if remove(ui, &format!("Remove well {}", entry.name)) {
                 let command = RemoveWell { name: entry.name.clone() };

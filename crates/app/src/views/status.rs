@@ -1,15 +1,15 @@
 //! The status bar: what is under the cursor, and what is under way.
 
 use super::pointed::{self, Pointed};
-use crate::state::{Action, Place, State};
-use crate::work::RunningLine;
+use crate::state::{Action, Place, State, Tool};
+use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Align, Label, Layout, ProgressBar, Ui};
 
 /// Shows the status bar.
 pub fn show(
     ui: &mut Ui,
     state: &State,
-    pointed: Option<&Pointed>,
+    (pointed, interpreted): (Option<&Pointed>, Option<&Interpreted>),
     running: &[RunningLine],
     (is_drawing, device): (bool, &str),
     actions: &mut Vec<Action>,
@@ -18,6 +18,15 @@ pub fn show(
         let session = state.session.as_ref();
         if let (Some(session), Some(pointed)) = (session, pointed) {
             ui.label(pointed::sentence(pointed, &session.document));
+            if let Some(shown) = interpreted.filter(|shown| shown.key.is_some() && session.view.picking.tool == Tool::Pick)
+            {
+                let has = |leaf: u32| {
+                    let holds = shown.horizons.iter().find(|horizon| horizon.leaves.contains(&leaf));
+                    holds.map(|horizon| horizon.name.clone())
+                };
+                ui.separator();
+                ui.add(Label::new(pointed::picked(pointed, has)).truncate());
+            }
         } else if let Some(session) = session {
             ui.weak(session.root.display().to_string());
         }

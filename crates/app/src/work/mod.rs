@@ -35,6 +35,7 @@ use figure::DisplayList;
 use figure::cut::{FenceCut, SectionCut};
 use figure::map::HorizonMap;
 use project::command::PickNode;
+use image::RgbaImage;
 use render::FaceData;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -91,6 +92,15 @@ pub enum Event {
         root: PathBuf,
         /// The picks.
         picks: Vec<PickNode>,
+    },
+    /// The small picture of a scene.
+    Thumbnail {
+        /// The project it is of.
+        root: PathBuf,
+        /// The scene's name.
+        name: String,
+        /// The picture.
+        image: RgbaImage,
     },
     /// A picture was written.
     Exported(PathBuf),

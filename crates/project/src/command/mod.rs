@@ -25,7 +25,7 @@ mod well;
 pub use attribute::{AttributeComputed, AttributeKind, ComputeAttribute};
 pub use contact::SetContact;
 pub use extract::{Extract, ProposeFaults};
-pub use fault::{AddFault, FaultAdded, RemoveFault, SetFaultExtent, SetTruncation};
+pub use fault::{AddFault, FaultAdded, RemoveFault, RenameFault, SetFaultExtent, SetTruncation};
 pub use fault_pick::{AcceptFault, PickFault};
 pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
 pub use import::{ImportVolume, RemoveVolume, VolumeImported};
@@ -92,7 +92,7 @@ pub enum Command {
     MovePick(MovePick),
     /// Remove a pick from its horizon's log.
     RemovePick(RemovePick),
-    /// Give an assembled horizon another colour.
+    /// Give a horizon another colour.
     SetHorizonColour(SetHorizonColour),
     /// Repeat picks on the present extraction.
     ReplayPicks(ReplayPicks),
@@ -110,6 +110,8 @@ pub enum Command {
     SetTruncation(SetTruncation),
     /// State how far a fault reaches beyond what was drawn.
     SetFaultExtent(SetFaultExtent),
+    /// Rename a fault.
+    RenameFault(RenameFault),
     /// Remove a fault.
     RemoveFault(RemoveFault),
     /// Add a well from its files.
@@ -225,6 +227,7 @@ impl Command {
             Self::RemoveWell(change) => change.execute(draft),
             Self::SetTruncation(change) => change.execute(draft, progress),
             Self::SetFaultExtent(change) => change.execute(draft, progress),
+            Self::RenameFault(change) => change.execute(draft, progress),
             Self::RemoveFault(change) => change.execute(draft, progress),
             Self::SetVelocity(change) => change.execute(draft),
             Self::SetContact(change) => change.execute(draft),

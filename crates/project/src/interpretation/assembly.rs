@@ -377,7 +377,8 @@ pub(crate) fn put(
         (None, None) => return Err(ProjectError::NothingLeft { horizon: name.clone() }),
     };
     let contact = old.map_or(Contact::default(), |old| document.horizons[old].contact);
-    let entry = HorizonEntry { name: name.clone(), contact, file, hash, source, assembly: log };
+    let colour = old.and_then(|old| document.horizons[old].colour);
+    let entry = HorizonEntry { name: name.clone(), contact, file, hash, source, assembly: log, colour };
     match old {
         Some(old) if old == position => document.horizons[old] = entry,
         Some(old) => {

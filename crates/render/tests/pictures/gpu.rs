@@ -5,7 +5,7 @@
 
 use crate::block::Block;
 use glam::DVec3;
-use render::compare::compare;
+use crate::compare::compare;
 use render::{
     Background, Camera, CutShape, Ground, Inputs, Lookup, NamedVolume, Outlines, PatternSize, Projection, RenderError,
     Renderer, Scene, Side, VoxelBox,

@@ -2,7 +2,7 @@
 
 use crate::block::Block;
 use crate::media::medium;
-use render::compare::compare;
+use crate::compare::compare;
 use render::media::{Colouring, LayerOpacity, MediumColour, Paint, white_ramp};
 use render::{
     Background, Camera, CandidateVolume, DrawnWell, FaceData, Faces, Ground, Interleaved, Isosurface, IsosurfaceSource,

@@ -3,7 +3,7 @@
 use crate::block::Block;
 use crate::gpu::skipped;
 use glam::{DVec2, DVec3};
-use render::compare::compare;
+use crate::compare::compare;
 use render::{Ground, Inputs, Renderer, Scene, VoxelBox};
 use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
 use survey::stratigraphy::{Contact, StratigraphicHorizon, Stratigraphy};

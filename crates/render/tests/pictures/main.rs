@@ -1,5 +1,6 @@
 //! Pictures drawn by both renderers: closed forms on the CPU, and the GPU beside it.
 
+mod compare;
 mod block;
 mod closed_form;
 mod gpu;

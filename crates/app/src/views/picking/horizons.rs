@@ -3,9 +3,8 @@
 use super::go;
 use super::palette::palette;
 use crate::state::{Action, PickingStep, Session};
-use crate::views::sections::horizon_colour;
 use crate::work::{Interpreted, InterpretedHorizon};
-use eframe::egui::{Button, DragValue, RichText, Sense, TextEdit, Ui, vec2};
+use eframe::egui::{Button, DragValue, RichText, TextEdit, Ui};
 use interp::assembly::Operation;
 use interp::holes::FillSettings;
 use project::command::{
@@ -239,19 +238,12 @@ impl HorizonList {
     }
 }
 
-/// The colour of a horizon; it can be changed if the horizon was assembled from picks.
+/// The colour of a horizon, which can be changed.
 pub fn swatch(ui: &mut Ui, entry: &HorizonEntry, index: usize, actions: &mut Vec<Action>) {
-    match &entry.assembly {
-        Some(log) => {
-            if let Some(colour) = palette(ui, log.colour, &format!("Colour of {}", entry.name)) {
-                let command = SetHorizonColour { horizon: entry.name.clone(), colour };
-                actions.push(Action::Apply(Box::new(Command::SetHorizonColour(command))));
-            }
-        }
-        None => {
-            let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
-            ui.painter().circle_filled(rect.center(), 6.0, horizon_colour(None, index));
-        }
+    let present = figure::style::horizon_colour(entry.own_colour(), index);
+    if let Some(colour) = palette(ui, present, &format!("Colour of {}", entry.name)) {
+        let command = SetHorizonColour { horizon: entry.name.clone(), colour };
+        actions.push(Action::Apply(Box::new(Command::SetHorizonColour(command))));
     }
 }
 

@@ -52,6 +52,8 @@ struct Pane {
     /// When another was requested than the picture shows.
     behind: Option<Instant>,
     zoom: f32,
+    /// Shares of the view that the whole section takes at zoom 1.
+    fit: Vec2,
     /// The point of the section that is in the middle of the view, shares of its width and height.
     middle: Vec2,
     /// The part of a line of the wheel that has not changed the section yet.
@@ -68,6 +70,7 @@ impl Default for Pane {
             of: None,
             behind: None,
             zoom: 1.0,
+            fit: Vec2::splat(1.0),
             middle: vec2(0.5, 0.5),
             wheel: 0.0,
             lasso: LassoLine::default(),
@@ -120,6 +123,7 @@ impl Sections {
         if !body.is_positive() {
             return None;
         }
+        pane.fit = lines::fitted(session, geometry, kind, body.size());
         let has_lasso = lasso::is_held(ui, session);
         if !has_lasso {
             pane.touch(ui, &response, body);
@@ -218,7 +222,7 @@ impl Pane {
         }
         let [s, t] = kind.axes();
         let axis = |axis: usize, last: f64, at: [f64; 2]| Axis {
-            name: String::new(),
+            name: lines::axis_name(geometry, axis),
             ends: [0.0, last].map(|index| value_at(geometry, axis, index)),
             at,
             least_step: if axis < 2 { 1.0 } else { 0.0 },
@@ -227,18 +231,19 @@ impl Pane {
         let down = axis(t, extent.y, [on_page.min.y, on_page.max.y]);
         let drawn = axes::drawn(canvas::page_rect(whole), seen, [&across, &down]);
         canvas::paint(&ui.painter_at(whole), &drawn, None);
+        lines::name_across(ui, whole, body, &across.name);
         Some(image)
     }
 
     /// The rectangle of the whole section on the screen.
     fn image_rect(&self, body: Rect) -> Rect {
-        let size = body.size() * self.zoom;
+        let size = body.size() * self.fit * self.zoom;
         Rect::from_min_size(body.center() - self.middle * size, size)
     }
 
     fn touch(&mut self, ui: &Ui, response: &eframe::egui::Response, body: Rect) {
         if response.dragged() {
-            self.middle -= response.drag_delta() / (body.size() * self.zoom);
+            self.middle -= response.drag_delta() / (body.size() * self.fit * self.zoom);
         }
         if let Some(pointer) = response.hover_pos() {
             let factor = ui.input(|input| input.zoom_delta());
@@ -246,14 +251,15 @@ impl Pane {
                 let before = self.image_rect(body);
                 let share = (pointer - before.min) / before.size();
                 self.zoom = (self.zoom * factor).clamp(ZOOM[0], ZOOM[1]);
-                self.middle = share - (pointer - body.center()) / (body.size() * self.zoom);
+                self.middle = share - (pointer - body.center()) / (body.size() * self.fit * self.zoom);
             }
         }
         if response.double_clicked() {
             (self.zoom, self.middle) = (1.0, vec2(0.5, 0.5));
         }
-        let half = 0.5 / self.zoom;
-        self.middle = self.middle.clamp(Vec2::splat(half), Vec2::splat(1.0 - half));
+        // What is smaller than the view stays in its middle.
+        let half = (Vec2::splat(0.5) / (self.fit * self.zoom)).min(Vec2::splat(0.5));
+        self.middle = self.middle.clamp(half, Vec2::splat(1.0) - half);
     }
 
     /// Goes to the next section by the wheel.
@@ -312,7 +318,28 @@ fn header(ui: &mut Ui, session: &Session, kind: SectionKind, geometry: &SurveyGe
                 actions.push(Action::Slices(slices));
             }
         }
+        proportions(ui, session, kind, actions);
     });
+}
+
+/// The choice of the sections' proportions.
+fn proportions(ui: &mut Ui, session: &Session, kind: SectionKind, actions: &mut Vec<Action>) {
+    let present = session.view.proportions;
+    let words = |factor: Option<f64>| match factor {
+        None => "Fill".to_owned(),
+        Some(factor) => format!("{factor} : 1"),
+    };
+    let button = ui.menu_button(words(present), |ui| {
+        for choice in [None, Some(1.0), Some(2.0), Some(5.0), Some(10.0)] {
+            let name = choice.map_or_else(|| "Fill the view".to_owned(), |_| words(choice));
+            if ui.radio(present == choice, name).clicked() {
+                actions.push(Action::Proportions(choice));
+                ui.close();
+            }
+        }
+    });
+    let hint = format!("Proportions of sections, vertical to horizontal ({})", kind.name());
+    button.response.on_hover_text(hint);
 }
 
 #[cfg(test)]
