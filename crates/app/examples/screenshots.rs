@@ -15,7 +15,8 @@ use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, TestRenderer};
 use glam::DVec3;
 use image::{Rgba, RgbaImage};
-use render::FaceData;
+use project::command::{AddScene, Command};
+use render::{FaceData, Scene};
 use state::picking::voxel_of;
 use state::{
     Action, Appearance, Choice, Compare, Dialogue, ExportForm, FileContent, How, Layout, Look, Notice, Panel,
@@ -190,6 +191,9 @@ impl Tour {
         self.act(Action::Arrange(Layout::Sections));
         self.shoot("sections")?;
         self.print("print-sections");
+        self.act(Action::Proportions(Some(1.0)));
+        self.shoot("sections-true")?;
+        self.act(Action::Proportions(None));
         self.act(Action::Arrange(Layout::Map));
         self.shoot("map")?;
         self.click("Thickness");
@@ -374,6 +378,26 @@ impl Tour {
         Ok(())
     }
 
+    fn presentation(&mut self) -> anyhow::Result<()> {
+        self.act(Action::Arrange(Layout::Block));
+        let Some(scene) = self.window().state().session.as_ref().map(|session| session.view.scene.clone()) else {
+            bail!("a project is open");
+        };
+        for (name, blend, turn) in [("Overview", 0.0, 0.0), ("Half-way, from the other side", 0.5, 120.0)] {
+            let mut scene = Scene { blend, ..scene.clone() };
+            scene.camera.azimuth_deg = scene.camera.azimuth_deg.map(|azimuth| azimuth + turn);
+            let command = Command::AddScene(AddScene { name: name.to_owned(), scene });
+            self.act(Action::Apply(Box::new(command)));
+            self.settle();
+        }
+        self.act(Action::Present(Some(0)));
+        self.settle();
+        self.key(Key::ArrowRight);
+        self.shoot("presenting")?;
+        self.key(Key::Escape);
+        Ok(())
+    }
+
     fn sticks(&mut self) -> anyhow::Result<()> {
         self.key(Key::F);
         let [nx, ny, nz] = self.geometry().size().map(|count| count as f64);
@@ -417,6 +441,7 @@ fn main() -> anyhow::Result<()> {
     tour.styles()?;
     tour.dialogues()?;
     tour.interpretation()?;
+    tour.presentation()?;
     // Gone without being closed, as after a crash: the next window offers to continue.
     let Tour { harness, folder, out, size, names, .. } = tour;
     drop(harness);
