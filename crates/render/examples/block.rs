@@ -7,10 +7,10 @@
 #[path = "../tests/pictures/compare.rs"]
 mod compare;
 
+use compare::compare;
 use glam::DVec3;
 use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization};
-use compare::compare;
 use render::{Corner, Ground, Inputs, Lookup, NamedVolume, Renderer, Scene, VoxelBox};
 use std::error::Error;
 use std::path::Path;

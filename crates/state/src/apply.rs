@@ -144,16 +144,16 @@ impl State {
     /// Shows the scene at a place of the list over the whole screen, or leaves.
     fn present(&mut self, at: Option<usize>) {
         let Some(session) = &mut self.session else { return };
-        let scene = &mut session.view.scene;
+        let view = &mut session.view;
         let before = self.presented.take().map(|(_, before)| before);
         match at.and_then(|at| Some((at, session.document.scenes.get(at)?))) {
             Some((at, entry)) => {
-                self.presented = Some((at, before.unwrap_or_else(|| Box::new(scene.clone()))));
-                *scene = entry.scene.clone();
+                self.presented = Some((at, before.unwrap_or_else(|| Box::new((view.scene.clone(), view.handles)))));
+                (view.scene, view.handles) = (entry.scene.clone(), false);
             }
             None => {
                 if let Some(before) = before {
-                    *scene = *before;
+                    (view.scene, view.handles) = *before;
                 }
             }
         }

@@ -132,6 +132,17 @@ pub enum LassoOn {
     Block(Box<Scene>, DVec2),
 }
 
+/// A point of a stick.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StickPoint {
+    /// The fault; `None` of one that does not exist yet.
+    pub fault: Option<String>,
+    /// Which of its sticks; of a fault that does not exist yet, the one being drawn is the last.
+    pub stick: usize,
+    /// Which of the stick's points.
+    pub point: usize,
+}
+
 /// A step of the interpretation.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PickingStep {
@@ -165,6 +176,8 @@ pub enum PickingStep {
     Erase(Lasso),
     /// Add a point to the stick, voxel.
     Stick(DVec3),
+    /// Move a point of a stick, voxel.
+    MovePoint(StickPoint, DVec3),
     /// End the stick.
     EndStick,
     /// Remove the last point of the sticks.

@@ -1,9 +1,9 @@
 //! What each step of the interpretation does to the state, and which tasks follow.
 
-use super::picking::{How, Picking, PickingStep, PickingTask, Tool, free_name, place_of};
+use super::picking::{How, Picking, PickingStep, PickingTask, StickPoint, Tool, free_name, place_of};
 use super::{Place, State, Task};
 use interp::assembly::Operation;
-use project::command::{Climb, Command, PickFault, PickNode};
+use project::command::{Climb, Command, MoveStickPoint, PickFault, PickNode};
 use project::document::Document;
 use project::error::Noun;
 
@@ -71,6 +71,16 @@ impl State {
                 }
             }
             PickingStep::Stick(voxel) => picking.stick.push(place_of(&geometry, voxel)),
+            PickingStep::MovePoint(StickPoint { fault: Some(fault), stick, point }, to) => {
+                let command = MoveStickPoint { fault, stick, point, to: place_of(&geometry, to) };
+                return vec![Task::Apply(Box::new(Command::MoveStickPoint(command)))];
+            }
+            PickingStep::MovePoint(StickPoint { fault: None, stick, point }, to) => {
+                let drawn = picking.sticks.iter_mut().chain(std::iter::once(&mut picking.stick)).nth(stick);
+                if let Some(place) = drawn.and_then(|stick| stick.get_mut(point)) {
+                    *place = place_of(&geometry, to);
+                }
+            }
             PickingStep::EndStick => picking.end_stick(),
             PickingStep::Backspace => {
                 if picking.stick.is_empty() {

@@ -118,7 +118,7 @@ impl CandidatesPanel {
             ui.add(drag).labelled_by(label.id);
             ui.end_row();
         });
-        if ui.small_button("Default settings").clicked() {
+        if ui.button("Default settings").clicked() {
             *settings = ExtractSettings::default();
         }
     }

@@ -6,7 +6,8 @@ use crate::state::{Action, Choice, Dialogue, Place, Session, State, SurfaceForm}
 use eframe::egui::{Align, Button, DragValue, Id, Layout, Response, ScrollArea, Ui, UiBuilder, WidgetInfo};
 use formats::SurfaceKind;
 use project::command::{
-    Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameFault, RenameHorizon, SetFaultExtent, SetRaw, SetVelocity,
+    Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameFault, RenameHorizon, SetFaultExtent, SetRaw,
+    SetVelocity,
 };
 use project::document::FaultEntry;
 use project::styles;
@@ -15,6 +16,9 @@ use survey::VerticalUnit;
 use ttf::ColourMap;
 use widgets::keyboard::{Renamed, Renaming};
 use widgets::obstacle::{needs, unless};
+
+/// Room at the right for the scroll bar, points.
+const BESIDE_BAR: f32 = 8.0;
 
 /// The panel, with the text being typed in it.
 #[derive(Default)]
@@ -34,6 +38,8 @@ impl Data {
     pub fn show(&mut self, ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>) {
         notices::show(ui, state, Place::Data, actions);
         ScrollArea::vertical().show(ui, |ui| {
+            // Buttons at the right end of rows keep clear of the scroll bar.
+            ui.set_max_width(ui.available_width() - BESIDE_BAR);
             ui.heading("Volumes");
             volumes(ui, session, actions);
             ui.add_space(10.0);
@@ -206,8 +212,7 @@ fn settled(
 
 /// A button at the right end of a row; returns whether it was clicked.
 pub(super) fn remove(ui: &mut Ui, hint: &str) -> bool {
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.small_button("Remove").on_hover_text(hint).clicked())
-        .inner
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.button("Remove").on_hover_text(hint).clicked()).inner
 }
 
 /// The name of a row, and whether it is to be removed.
@@ -219,7 +224,7 @@ struct Row {
 /// A name that is cut off where there is no room, and a button to remove it at the end of the row.
 fn named(ui: &mut Ui, name: &str, is_chosen: bool, hint: &str) -> Row {
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        let is_removed = ui.small_button("Remove").on_hover_text(hint).clicked();
+        let is_removed = ui.button("Remove").on_hover_text(hint).clicked();
         let label = Button::selectable(is_chosen, name).truncate();
         let name = ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.add(label)).inner;
         Row { name, is_removed }

@@ -8,9 +8,10 @@ use super::overlay::Overlay;
 use super::texture;
 use crate::state::{Action, Panel, Session};
 use crate::work::{Drawing, Rocks};
+use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
     Align2, CentralPanel, Color32, Context, FontId, Frame, Key, Modifiers, Rect, Role, ScrollArea, Sense, Stroke,
-    StrokeKind, TextureHandle, Ui, Vec2, WidgetInfo, pos2, vec2,
+    StrokeKind, TextureHandle, Ui, WidgetInfo, pos2, vec2,
 };
 use image::RgbaImage;
 use std::collections::HashMap;
@@ -108,14 +109,12 @@ impl Presentation {
         if is_shown {
             painter.rect_stroke(picture, 3.0, Stroke::new(2.5, theme::accent(ui.visuals())), StrokeKind::Outside);
         }
-        let words = painter.layout(name.to_owned(), FontId::proportional(12.0), ui.visuals().text_color(), f32::MAX);
         let room = Rect::from_min_max(picture.left_bottom(), rect.max);
-        if words.size().x > room.width() {
-            let at = room.left_center() - Vec2::Y * 0.5 * words.size().y;
-            ui.painter_at(room).galley(at, words, ui.visuals().text_color());
-        } else {
-            painter.galley(Align2::CENTER_CENTER.align_size_within_rect(words.size(), room).min, words, Color32::WHITE);
-        }
+        let mut words =
+            LayoutJob::simple_singleline(name.to_owned(), FontId::proportional(12.0), ui.visuals().text_color());
+        words.wrap = TextWrapping::truncate_at_width(room.width());
+        let words = painter.layout_job(words);
+        painter.galley(Align2::CENTER_CENTER.align_size_within_rect(words.size(), room).min, words, Color32::WHITE);
         response.on_hover_text(name).clicked()
     }
 }

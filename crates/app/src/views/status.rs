@@ -18,7 +18,8 @@ pub fn show(
         let session = state.session.as_ref();
         if let (Some(session), Some(pointed)) = (session, pointed) {
             ui.label(pointed::sentence(pointed, &session.document));
-            if let Some(shown) = interpreted.filter(|shown| shown.key.is_some() && session.view.picking.tool == Tool::Pick)
+            if let Some(shown) =
+                interpreted.filter(|shown| shown.key.is_some() && session.view.picking.tool == Tool::Pick)
             {
                 let has = |leaf: u32| {
                     let holds = shown.horizons.iter().find(|horizon| horizon.leaves.contains(&leaf));
@@ -32,7 +33,7 @@ pub fn show(
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             for line in running {
-                if ui.small_button("Stop").on_hover_text(format!("Stop: {}", line.title)).clicked() {
+                if ui.button("Stop").on_hover_text(format!("Stop: {}", line.title)).clicked() {
                     line.progress.cancel();
                 }
                 let bar = match line.share() {
@@ -45,7 +46,7 @@ pub fn show(
                 ui.label(text);
             }
             if let Some((index, notice)) = state.notices_at(Place::Foot).last() {
-                if ui.small_button("Dismiss").clicked() {
+                if ui.button("Dismiss").clicked() {
                     actions.push(Action::Dismiss(index));
                 }
                 ui.add(Label::new(&notice.text).truncate());

@@ -11,9 +11,8 @@ use super::views::dropped::{self, Dropped};
 use super::views::{
     block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, fence::FenceView, functions::Functions,
     import::Import, interpretation::Interpretation, layers::Layers, map::MapView, overlay::Overlay, patterns::Patterns,
-    picking::PickingPanel, pointed::Pointed,
-    present::Presentation, print::Page, sections::Sections, shortcuts, start::StartPage, status,
-    surface, tiles::Tiles, well::WellDialogue,
+    picking::PickingPanel, pointed::Pointed, present::Presentation, print::Page, sections::Sections, shortcuts,
+    start::StartPage, status, surface, tiles::Tiles, well::WellDialogue,
 };
 use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
 use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};

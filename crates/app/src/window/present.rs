@@ -37,7 +37,8 @@ impl Window {
             let told = |error| Notice::failure(Place::Block, &error);
             let mut painter = Painter::new(Device::Auto, progress).map_err(told)?;
             for entry in scenes {
-                let scene = Scene { size_px: THUMBNAIL, samples: 2, background: Background::Transparent, ..entry.scene };
+                let scene =
+                    Scene { size_px: THUMBNAIL, samples: 2, background: Background::Transparent, ..entry.scene };
                 let loaded = rocks.read().unwrap_or_else(PoisonError::into_inner);
                 if !loaded.holds_media(&scene.media) {
                     continue;

@@ -75,5 +75,7 @@ fn the_foot_says_what_a_click_would_select() {
     wait(&mut harness, "the section is there", |harness| harness.query_by_label("Inline section").is_some());
     let rect = harness.get_by_label("Inline section").rect();
     harness.event(Event::PointerMoved(rect.center() + Vec2::new(10.0, 5.0)));
-    wait(&mut harness, "it is said", |harness| says(harness, "a click selects leaf") || says(harness, "no leaf is near"));
+    wait(&mut harness, "it is said", |harness| {
+        says(harness, "a click selects leaf") || says(harness, "no leaf is near")
+    });
 }

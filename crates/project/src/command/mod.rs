@@ -26,7 +26,7 @@ pub use attribute::{AttributeComputed, AttributeKind, ComputeAttribute};
 pub use contact::SetContact;
 pub use extract::{Extract, ProposeFaults};
 pub use fault::{AddFault, FaultAdded, RemoveFault, RenameFault, SetFaultExtent, SetTruncation};
-pub use fault_pick::{AcceptFault, PickFault};
+pub use fault_pick::{AcceptFault, MoveStickPoint, PickFault};
 pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
 pub use import::{ImportVolume, RemoveVolume, VolumeImported};
 pub use layer::{ResetLayer, SetLayer};
@@ -102,6 +102,8 @@ pub enum Command {
     SmoothHorizon(SmoothHorizon),
     /// Draw a fault by sticks.
     PickFault(PickFault),
+    /// Move a point of a stick.
+    MoveStickPoint(MoveStickPoint),
     /// Accept a proposed fault.
     AcceptFault(AcceptFault),
     /// Add a fault from a file.
@@ -220,6 +222,7 @@ impl Command {
             Self::FillHorizon(change) => change.execute(draft, progress),
             Self::SmoothHorizon(change) => change.execute(draft, progress),
             Self::PickFault(change) => change.execute(draft, progress),
+            Self::MoveStickPoint(change) => change.execute(draft, progress),
             Self::AcceptFault(change) => change.execute(draft, progress),
             Self::AddFault(change) => change.execute(draft, progress),
             Self::AddWell(change) => change.execute(draft, progress),

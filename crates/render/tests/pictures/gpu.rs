@@ -4,8 +4,8 @@
 //! driver.
 
 use crate::block::Block;
-use glam::DVec3;
 use crate::compare::compare;
+use glam::DVec3;
 use render::{
     Background, Camera, CutShape, Ground, Inputs, Lookup, NamedVolume, Outlines, PatternSize, Projection, RenderError,
     Renderer, Scene, Side, VoxelBox,

@@ -1,8 +1,8 @@
 //! Pictures drawn by both renderers: closed forms on the CPU, and the GPU beside it.
 
-mod compare;
 mod block;
 mod closed_form;
+mod compare;
 mod gpu;
 mod gpu_media;
 mod gpu_shapes;

@@ -130,7 +130,8 @@ fn numbers(ui: &mut Ui, name: &str, horizon: &mut PickedHorizon) {
         colour_well(ui, &format!("Light of {name}"), &mut horizon.colour.rgb);
         ui.weak("opacity");
         let opacity = percent::drag(&mut horizon.opacity);
-        ui.name_inputs(format!("{name}: opacity"), |ui| ui.add(opacity)).on_hover_text("For each voxel of its thickness");
+        ui.name_inputs(format!("{name}: opacity"), |ui| ui.add(opacity))
+            .on_hover_text("For each voxel of its thickness");
         for (word, value, range, hint) in [
             ("thickness", &mut horizon.thickness, 0.2..=9.0, "Voxels on either side"),
             (

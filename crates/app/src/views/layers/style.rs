@@ -103,10 +103,10 @@ pub(super) fn intervals(ui: &mut Ui, layer: &str, style: &mut LayerStyle, action
             let opacity = percent::drag(&mut style.intervals[index].opacity);
             ui.name_inputs(format!("Opacity of pattern {ordinal}"), |ui| ui.add(opacity))
                 .on_hover_text("Opacity of the pattern");
-            if ui.small_button("Split").on_hover_text("Split this part of the layer in two").clicked() {
+            if ui.button("Split").on_hover_text("Split this part of the layer in two").clicked() {
                 split = Some(index);
             }
-            if count > 1 && ui.small_button("Remove").clicked() {
+            if count > 1 && ui.button("Remove").clicked() {
                 join = Some(index);
             }
         });

@@ -112,10 +112,10 @@ impl HorizonList {
                     self.renaming = None;
                 }
             } else {
-                if ui.small_button("Rename…").clicked() {
+                if ui.button("Rename…").clicked() {
                     self.renaming = Some(Renaming::of(&entry.name));
                 }
-                if ui.small_button("Remove").on_hover_text(format!("Remove horizon {}", entry.name)).clicked() {
+                if ui.button("Remove").on_hover_text(format!("Remove horizon {}", entry.name)).clicked() {
                     let command = RemoveHorizon { name: entry.name.clone() };
                     actions.push(apply(Command::RemoveHorizon(command)));
                 }
@@ -154,7 +154,7 @@ impl HorizonList {
                 ui.visuals().warn_fg_color,
                 format!("Overlaps itself at {} traces, by up to {:.0} samples.", overlap.traces, overlap.apart),
             );
-            if ui.small_button("Show the overlap").clicked() {
+            if ui.button("Show the overlap").clicked() {
                 go(geometry, overlap.at, actions);
             }
         }
@@ -185,7 +185,7 @@ impl HorizonList {
         ui.horizontal_wrapped(|ui| {
             for hole in holes.iter().take(HOLES) {
                 let hint = "Move the sections through this hole";
-                if ui.small_button(counted(hole.traces, "trace")).on_hover_text(hint).clicked() {
+                if ui.button(counted(hole.traces, "trace")).on_hover_text(hint).clicked() {
                     let [x, y] = hole.at.map(|at| at as f64);
                     actions.push(Action::Slices([x, y, session.view.slices[2]]));
                 }
@@ -230,7 +230,7 @@ impl HorizonList {
         if let Some(SmoothSettings { radius, passes }) = entry.assembly.as_ref().and_then(|log| log.smooth) {
             ui.horizontal(|ui| {
                 ui.weak(format!("Smoothed over {radius} traces, passes: {passes}"));
-                if ui.small_button("Not smoothed").on_hover_text("Show it as it was picked").clicked() {
+                if ui.button("Not smoothed").on_hover_text("Show it as it was picked").clicked() {
                     order(SmoothSettings { radius: 0, passes: 1 });
                 }
             });
@@ -273,7 +273,7 @@ fn picks(ui: &mut Ui, entry: &HorizonEntry, geometry: &SurveyGeometry, actions: 
                 } else {
                     "The horizon has no other pick: remove it instead"
                 };
-                let button = unless(ui, needs(can, why), Button::new(name).small());
+                let button = unless(ui, needs(can, why), Button::new(name));
                 if button.on_hover_text(format!("{hint} pick {}", pick.id)).clicked() {
                     actions.push(apply(command));
                 }

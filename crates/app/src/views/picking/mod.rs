@@ -146,7 +146,7 @@ fn selected(ui: &mut Ui, session: &Session, overlay: &Overlay, geometry: &Survey
                 way_out(pick.up)
             ),
         );
-        if ui.small_button("Show where").clicked() {
+        if ui.button("Show where").clicked() {
             go(geometry, overlap.at, actions);
         }
     }

@@ -49,7 +49,7 @@ pub(super) fn visible<'a>(session: &Session, lines: &'a [CutLine]) -> Cow<'a, [C
 }
 
 /// What is counted along an axis, with its unit.
-pub(super) fn axis_name(geometry: &SurveyGeometry, axis: usize) -> String {
+pub fn axis_name(geometry: &SurveyGeometry, axis: usize) -> String {
     match (axis, geometry.vertical.unit) {
         (0, _) => "inline".to_owned(),
         (1, _) => "crossline".to_owned(),
@@ -59,7 +59,7 @@ pub(super) fn axis_name(geometry: &SurveyGeometry, axis: usize) -> String {
 }
 
 /// The name of the axis across, before its first number.
-pub(super) fn name_across(ui: &Ui, whole: Rect, body: Rect, name: &str) {
+pub fn name_across(ui: &Ui, whole: Rect, body: Rect, name: &str) {
     let at = pos2(body.left() - 14.0, body.top() - 4.0);
     let colour = ui.visuals().weak_text_color();
     ui.painter_at(whole).text(at, Align2::RIGHT_BOTTOM, name, FontId::proportional(9.0), colour);
