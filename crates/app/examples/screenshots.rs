@@ -13,9 +13,10 @@ use app::Window;
 use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, TexturesDelta, vec2};
 use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, TestRenderer};
+use formats::well::WellFiles;
 use glam::DVec3;
 use image::{Rgba, RgbaImage};
-use project::command::{AddScene, Command};
+use project::command::{AddScene, AddWell, Command};
 use render::{FaceData, Scene};
 use state::picking::voxel_of;
 use state::{
@@ -378,6 +379,25 @@ impl Tour {
         Ok(())
     }
 
+    fn well_on_sections(&mut self) -> anyhow::Result<()> {
+        let deviation = self.well()?;
+        let beside = |name: &str| deviation.with_file_name(name);
+        let files = WellFiles {
+            tops: Some(beside("tops.csv")),
+            las: vec![beside("log.las")],
+            deviation: deviation.clone(),
+            checkshot: None,
+        };
+        let command = AddWell { name: "W-1".to_owned(), files, options: Default::default() };
+        self.act(Action::Apply(Box::new(Command::AddWell(command))));
+        self.settle();
+        let geometry = self.geometry();
+        let lines = geometry.size().map(|count| (count / 2) as f64);
+        self.act(Action::Slices(lines));
+        self.act(Action::Arrange(Layout::Sections));
+        self.shoot("sections-well")
+    }
+
     fn presentation(&mut self) -> anyhow::Result<()> {
         self.act(Action::Arrange(Layout::Block));
         let Some(scene) = self.window().state().session.as_ref().map(|session| session.view.scene.clone()) else {
@@ -442,6 +462,7 @@ fn main() -> anyhow::Result<()> {
     tour.dialogues()?;
     tour.interpretation()?;
     tour.presentation()?;
+    tour.well_on_sections()?;
     // Gone without being closed, as after a crash: the next window offers to continue.
     let Tour { harness, folder, out, size, names, .. } = tour;
     drop(harness);

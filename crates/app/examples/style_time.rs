@@ -70,7 +70,7 @@ fn main() -> anyhow::Result<()> {
         None => [1280.0, 800.0],
     };
     let folder = tempfile::tempdir()?;
-    let (settings, opened) = (folder.path().join("window.toml"), project.clone());
+    let (settings, opened) = (folder.path().join("window.toml"), project);
     let show = move |ui: &mut egui::Ui, window: &mut Option<Window>| {
         let make = || Window::new(ui.ctx(), Some(settings.clone()), Some(opened.clone()));
         window.get_or_insert_with(make).show(ui);

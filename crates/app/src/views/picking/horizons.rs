@@ -49,8 +49,14 @@ impl HorizonList {
             let is_current = picking.horizon.as_deref() == Some(&entry.name);
             ui.horizontal(|ui| {
                 swatch(ui, entry, index, actions);
-                let label = ui.selectable_label(is_current, RichText::new(&entry.name).strong());
-                if label.on_hover_text("Picks go to this horizon").clicked() {
+                // Room for the coverage and the sign that something is wrong.
+                let room = (ui.available_width() - 78.0).max(40.0);
+                let label = Button::selectable(is_current, RichText::new(&entry.name).strong()).truncate();
+                let label = ui.scope(|ui| {
+                    ui.set_max_width(room);
+                    ui.add(label)
+                });
+                if label.inner.on_hover_text(format!("{}: picks go to this horizon", entry.name)).clicked() {
                     actions.push(Action::Picking(PickingStep::Choose(entry.name.clone())));
                 }
                 if let Some(facts) = facts {

@@ -5,6 +5,7 @@
 //! the next section.
 
 mod lines;
+mod wells;
 
 pub use lines::{axis_name, entry_colour, horizon_colour, name_across};
 
@@ -134,12 +135,16 @@ impl Sections {
         }
         let image = pane.paint(ui, session, kind, whole, overlay)?;
         let painter = ui.painter_at(body);
-        pane.cover(ui, &painter, kind, body);
         let extent = kind.extent(geometry.size());
         let to_section = |pointer: Pos2| {
             let share = (pointer - image.min) / image.size();
             DVec2::new(f64::from(share.x) * extent.x, f64::from(share.y) * extent.y)
         };
+        if let Some(loaded) = rocks.and_then(|(rocks, _)| rocks.try_read().ok()) {
+            let page = |st: DVec2| image.min + vec2((st.x / extent.x) as f32, (st.y / extent.y) as f32) * image.size();
+            wells::draw(&painter, session, (kind, body), &loaded.wells, page);
+        }
+        pane.cover(ui, &painter, kind, body);
         if let Some(line) = pane.lasso.draw(ui, &painter, &response, has_lasso) {
             let corners = line.into_iter().map(to_section).collect();
             let on = LassoOn::Section(kind, at);
