@@ -22,6 +22,8 @@ type Driven = Harness<'static, Option<Window>>;
 
 /// Longest wait.
 const PATIENCE: Duration = Duration::from_secs(300);
+/// Calm after which nothing more is to come.
+const CALM: Duration = Duration::from_millis(700);
 
 fn window(harness: &mut Driven) -> anyhow::Result<&mut Window> {
     harness.step();
@@ -50,10 +52,22 @@ fn changed(harness: &mut Driven, command: SetLayer) -> anyhow::Result<f64> {
     let start = Instant::now();
     window(harness)?.act(Action::Apply(Box::new(Command::SetLayer(command))));
     wait(harness, |window| step_of(window) > before)?;
-    // The frame that sees the change asks for a picture.
-    harness.run_steps(2);
-    wait(harness, Window::is_settled)?;
-    Ok(start.elapsed().as_secs_f64())
+    Ok(last_work(harness, start)?.as_secs_f64())
+}
+
+/// How long after `start` work was seen last, before a while of calm: between two workers nothing is under way.
+fn last_work(harness: &mut Driven, start: Instant) -> anyhow::Result<Duration> {
+    let mut last = start.elapsed();
+    while start.elapsed() < last + CALM {
+        if !window(harness)?.is_settled() {
+            last = start.elapsed();
+        }
+        if start.elapsed() > PATIENCE {
+            bail!("it took longer than {PATIENCE:?}");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    Ok(last)
 }
 
 fn median(mut seconds: Vec<f64>) -> f64 {
@@ -77,8 +91,8 @@ fn main() -> anyhow::Result<()> {
     };
     let mut harness = Harness::builder().with_size(vec2(width, height)).build_ui_state(show, None);
     let start = Instant::now();
-    wait(&mut harness, |window| window.state().session.is_some() && window.is_settled())?;
-    println!("opened, drawn           {:6.2} s", start.elapsed().as_secs_f64());
+    wait(&mut harness, |window| window.state().session.is_some())?;
+    println!("opened, drawn           {:6.2} s", last_work(&mut harness, start)?.as_secs_f64());
     let layers = window(&mut harness)?.state().session.as_ref().map(|session| session.document.layers());
     let layer = layers.and_then(|layers| layers.get(1).cloned()).context("the project has no layers")?;
     let (mut colours, mut patterns) = (Vec::new(), Vec::new());
@@ -97,7 +111,7 @@ fn main() -> anyhow::Result<()> {
     let form = ExportForm::new(out.display().to_string());
     let start = Instant::now();
     window(&mut harness)?.act(Action::Export(Box::new(form)));
-    wait(&mut harness, |window| out.exists() && window.is_settled())?;
+    wait(&mut harness, |_| out.exists())?;
     println!("export, 16 × 11 cm      {:6.2} s", start.elapsed().as_secs_f64());
     Ok(())
 }

@@ -5,13 +5,14 @@
 //! pixel.
 
 use eframe::egui::{
-    Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke as Line, TextureId, Vec2,
+    Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke as Line, TextureId, Vec2, Visuals,
     epaint::{TextShape, Vertex},
     pos2, vec2,
 };
 use figure::list::{Across, Cap, Group, Ink, Item, Path, PathItem, Picture, Segment, Stroke, Text, Upright};
 use glam::DVec2;
 use std::f32::consts::PI;
+use ttf::Colour;
 
 /// Points of the screen to a point of the page.
 pub const SCALE: f64 = 1.64;
@@ -54,6 +55,22 @@ pub fn paint(painter: &Painter, group: &Group, texture: Option<TextureId>) {
             _ => {}
         }
     }
+}
+
+/// The same group with letters and lines in the ink of the window's own words: what stands on the window and not on
+/// paper, whatever the theme.
+#[must_use]
+pub fn on_window(mut group: Group, visuals: &Visuals) -> Group {
+    let [r, g, b, _] = visuals.text_color().to_array();
+    let ink = Ink::glass(Colour::new(r, g, b), 0.8);
+    for item in &mut group.items {
+        match item {
+            Item::Text(text) => text.ink = ink,
+            Item::Path(path) => path.stroke.iter_mut().for_each(|stroke| stroke.ink = ink),
+            _ => {}
+        }
+    }
+    group
 }
 
 fn colour(ink: Ink) -> Color32 {

@@ -37,7 +37,7 @@ impl Data {
     /// Shows the panel.
     pub fn show(&mut self, ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>) {
         notices::show(ui, state, Place::Data, actions);
-        ScrollArea::vertical().show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink([false, true]).show(ui, |ui| {
             // Buttons at the right end of rows keep clear of the scroll bar.
             ui.set_max_width(ui.available_width() - BESIDE_BAR);
             ui.heading("Volumes");

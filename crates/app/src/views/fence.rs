@@ -122,7 +122,7 @@ impl FenceView {
         let down = [0.0, depth].map(|index| geometry.vertical.value_at(index));
         let down = axis(axis_name(geometry, 2), down, [seen.min.y, seen.max.y]);
         let drawn = axes::drawn(canvas::page_rect(whole), seen, [&across, &down]);
-        canvas::paint(&ui.painter_at(whole), &drawn, None);
+        canvas::paint(&ui.painter_at(whole), &canvas::on_window(drawn, ui.visuals()), None);
         name_across(ui, whole, body, &across.name);
         Some(())
     }

@@ -239,7 +239,7 @@ impl Pane {
         let across = axis(s, extent.x, [on_page.min.x, on_page.max.x]);
         let down = axis(t, extent.y, [on_page.min.y, on_page.max.y]);
         let drawn = axes::drawn(canvas::page_rect(whole), seen, [&across, &down]);
-        canvas::paint(&ui.painter_at(whole), &drawn, None);
+        canvas::paint(&ui.painter_at(whole), &canvas::on_window(drawn, ui.visuals()), None);
         name_across(ui, whole, body, &across.name);
         Some(image)
     }

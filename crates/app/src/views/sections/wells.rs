@@ -51,7 +51,7 @@ pub(super) fn draw(
                 curve(painter, log, near);
             }
         }
-        let above = head.clamp(body.min + vec2(0.0, 14.0), body.max);
+        let above = head.clamp(body.min + vec2(0.0, 20.0), body.max);
         words(painter, above - vec2(0.0, 5.0), Align2::CENTER_BOTTOM, &well.name, INK);
     }
 }
@@ -69,7 +69,7 @@ fn curve(painter: &Painter, log: &LoadedLog, near: impl Fn(DVec3) -> Option<Pos2
         painter.line(part.clone(), Stroke::new(2.5, RIM));
         painter.line(part, Stroke::new(1.0, LOG_INK));
     }
-    words(painter, first + vec2(3.0, -2.0), Align2::LEFT_BOTTOM, &log.name, LOG_INK);
+    words(painter, first + vec2(3.0, 4.0), Align2::LEFT_TOP, &log.name, LOG_INK);
 }
 
 fn words(painter: &Painter, at: Pos2, align: Align2, words: &str, ink: Color32) {
