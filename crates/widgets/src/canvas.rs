@@ -186,11 +186,29 @@ fn paint_picture(painter: &Painter, picture: &Picture, texture: Option<TextureId
 #[cfg(test)]
 mod tests {
     use super::*;
+    use figure::list::GroupKind;
 
     #[test]
     fn places_go_to_the_page_and_back() {
         let at = pos2(123.0, 45.5);
         assert!((screen(page(at)) - at).length() < 1e-4);
+    }
+
+    #[test]
+    fn what_stands_on_the_window_has_the_ink_of_its_words() {
+        let dark = Ink::solid(Colour::BLACK);
+        let mark = PathItem::stroked(Path::line(&[DVec2::ZERO, DVec2::ONE]), Stroke::new(1.0, dark));
+        let axes = Group::new(GroupKind::Annotation, "axes").with([Text::new(DVec2::ZERO, "12").into(), mark.into()]);
+        let group = on_window(axes, &Visuals::dark());
+        let inks = group.items.iter().filter_map(|item| match item {
+            Item::Text(text) => Some(text.ink),
+            Item::Path(path) => path.stroke.as_ref().map(|stroke| stroke.ink),
+            _ => None,
+        });
+        let [r, g, b, _] = Visuals::dark().text_color().to_array();
+        let inks: Vec<Ink> = inks.collect();
+        assert_eq!(inks.len(), 2);
+        assert!(inks.iter().all(|ink| ink.colour == Colour::new(r, g, b)), "{inks:?}");
     }
 
     #[test]
