@@ -4,6 +4,7 @@
 //! Writes illustrative, raw and half-blended pictures, a corner cut, a stair and the ground as relief, each
 //! by the CPU reference and by the GPU. Prints their times and differences.
 
+#[expect(dead_code, reason = "tests use the rest")]
 #[path = "../tests/pictures/compare.rs"]
 mod compare;
 
