@@ -4,6 +4,10 @@
 //! packed, extrapolated one (P-illus 3.3 and 3.4) side by side, at the same places, by the same yardstick. Lengths are
 //! voxels, angles degrees.
 
+#[path = "../crates/render/tests/pictures/compare.rs"]
+#[expect(dead_code, reason = "the tests use more of it")]
+mod compare;
+
 use anyhow::{Context, Result};
 use glam::{DVec3, Vec3};
 use model::section::SectionPlane;
@@ -318,7 +322,7 @@ fn devices(cases: &[Case]) -> Result<()> {
                 Scene { size_px: [240, 200], samples: 2, lookup, outlines: Outlines::none(), ..Scene::default() };
             let cpu = render::reference::render(&scene, &inputs, &Progress::silent())?;
             let gpu = renderer.render(&scene, &inputs, &Progress::silent())?;
-            let found = render::compare::compare(&cpu, &gpu).context("pictures of different sizes")?;
+            let found = compare::compare(&cpu, &gpu).context("pictures of different sizes")?;
             println!(
                 "| {} | {lookup:?} | {} | {:.3} % |",
                 case.name,

@@ -202,7 +202,7 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
         peak_bytes_per_voxel: peak.map(|bytes| bytes / count),
     };
     let packed = PackedVolume::from_voxels(&voxels, [side; 3], model.layer_count(), model.block_count());
-    let rock = Rock { model, parameterization, key: String::new(), stages: Vec::new() };
+    let rock = Rock::new(model, parameterization, String::new(), Vec::new());
     let tables = model::tables(&geometry, &rock)?;
     Ok((
         cube,
@@ -217,6 +217,7 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
             raw: None,
             tables: Some(tables),
             version: load::new_version(),
+            data_version: load::new_version(),
         },
     ))
 }

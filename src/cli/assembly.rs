@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 use survey::Progress;
 
 /// Parses three numbers separated by commas.
-fn place(option: &str, text: &str) -> Result<[f64; 3], Usage> {
+pub(super) fn place(option: &str, text: &str) -> Result<[f64; 3], Usage> {
     let numbers: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
     let wrong = || format!("{option} {text}: expected INLINE,CROSSLINE,Z, three numbers");
     let place: [f64; 3] = numbers.try_into().map_err(|_| wrong())?;

@@ -12,8 +12,8 @@ use formats::{
     ZPositive, ZUnit,
 };
 use project::command::{
-    AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, RemoveFault, RemoveHorizon,
-    RemovePick, RenameHorizon, SetContact, SetFaultExtent, SetHorizonColour, SetTruncation,
+    AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, MoveStickPoint, RemoveFault,
+    RemoveHorizon, RemovePick, RenameFault, RenameHorizon, SetContact, SetFaultExtent, SetHorizonColour, SetTruncation,
 };
 use project::document::Polarity;
 use project::memory_budget;
@@ -188,6 +188,14 @@ pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
     Ok(match action {
         FaultAction::Add(typed) => add_fault(*typed)?,
         FaultAction::Pick(typed) => assembly::fault_pick(typed)?,
+        FaultAction::Move { project, name, stick, point, to } => {
+            let counted = |option: &str, number: usize| {
+                number.checked_sub(1).ok_or_else(|| format!("{option} 0: they are counted from 1"))
+            };
+            let (stick, point) = (counted("--stick", stick)?, counted("--point", point)?);
+            let command = MoveStickPoint { fault: name, stick, point, to: assembly::place("--to", &to)? };
+            Request::Change { project, command: Command::MoveStickPoint(command) }
+        }
         FaultAction::Propose(typed) => assembly::fault_propose(&typed)?,
         FaultAction::Accept { project, id, name } => assembly::fault_accept(project, id, name),
         FaultAction::List { project } => Request::List { project, what: Listing::Faults },
@@ -197,6 +205,9 @@ pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
         FaultAction::Extent { project, name, extent } => {
             let grown_m = grown_m("extent", &extent)?;
             Request::Change { project, command: Command::SetFaultExtent(SetFaultExtent { fault: name, grown_m }) }
+        }
+        FaultAction::Rename { project, from, to } => {
+            Request::Change { project, command: Command::RenameFault(RenameFault { from, to }) }
         }
         FaultAction::Remove { project, name } => {
             Request::Change { project, command: Command::RemoveFault(RemoveFault { name }) }

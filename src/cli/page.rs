@@ -139,6 +139,7 @@ impl PageRequest {
             caption: self.caption.clone(),
             interpretation: self.is_interpretation,
             preset: Some(scene.preset),
+            hidden: Vec::new(),
         })
     }
 }

@@ -13,9 +13,11 @@ use app::Window;
 use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, TexturesDelta, vec2};
 use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, TestRenderer};
+use formats::well::WellFiles;
 use glam::DVec3;
 use image::{Rgba, RgbaImage};
-use render::FaceData;
+use project::command::{AddScene, AddWell, Command};
+use render::{FaceData, Scene};
 use state::picking::voxel_of;
 use state::{
     Action, Appearance, Choice, Compare, Dialogue, ExportForm, FileContent, How, Layout, Look, Notice, Panel,
@@ -190,6 +192,9 @@ impl Tour {
         self.act(Action::Arrange(Layout::Sections));
         self.shoot("sections")?;
         self.print("print-sections");
+        self.act(Action::Proportions(Some(1.0)));
+        self.shoot("sections-true")?;
+        self.act(Action::Proportions(None));
         self.act(Action::Arrange(Layout::Map));
         self.shoot("map")?;
         self.click("Thickness");
@@ -374,6 +379,45 @@ impl Tour {
         Ok(())
     }
 
+    fn well_on_sections(&mut self) -> anyhow::Result<()> {
+        let deviation = self.well()?;
+        let beside = |name: &str| deviation.with_file_name(name);
+        let files = WellFiles {
+            tops: Some(beside("tops.csv")),
+            las: vec![beside("log.las")],
+            deviation: deviation.clone(),
+            checkshot: None,
+        };
+        let command = AddWell { name: "W-1".to_owned(), files, options: Default::default() };
+        self.act(Action::Apply(Box::new(Command::AddWell(command))));
+        self.settle();
+        let geometry = self.geometry();
+        let lines = geometry.size().map(|count| (count / 2) as f64);
+        self.act(Action::Slices(lines));
+        self.act(Action::Arrange(Layout::Sections));
+        self.shoot("sections-well")
+    }
+
+    fn presentation(&mut self) -> anyhow::Result<()> {
+        self.act(Action::Arrange(Layout::Block));
+        let Some(scene) = self.window().state().session.as_ref().map(|session| session.view.scene.clone()) else {
+            bail!("a project is open");
+        };
+        for (name, blend, turn) in [("Overview", 0.0, 0.0), ("Half-way, from the other side", 0.5, 120.0)] {
+            let mut scene = Scene { blend, ..scene.clone() };
+            scene.camera.azimuth_deg = scene.camera.azimuth_deg.map(|azimuth| azimuth + turn);
+            let command = Command::AddScene(AddScene { name: name.to_owned(), scene });
+            self.act(Action::Apply(Box::new(command)));
+            self.settle();
+        }
+        self.act(Action::Present(Some(0)));
+        self.settle();
+        self.key(Key::ArrowRight);
+        self.shoot("presenting")?;
+        self.key(Key::Escape);
+        Ok(())
+    }
+
     fn sticks(&mut self) -> anyhow::Result<()> {
         self.key(Key::F);
         let [nx, ny, nz] = self.geometry().size().map(|count| count as f64);
@@ -417,6 +461,8 @@ fn main() -> anyhow::Result<()> {
     tour.styles()?;
     tour.dialogues()?;
     tour.interpretation()?;
+    tour.presentation()?;
+    tour.well_on_sections()?;
     // Gone without being closed, as after a crash: the next window offers to continue.
     let Tour { harness, folder, out, size, names, .. } = tour;
     drop(harness);

@@ -11,7 +11,8 @@ use pictures::figures::{self, FigureFormat, FigureSettings, InterpreterView};
 use pictures::scene;
 use project::Project;
 use project::command::{
-    AcceptFault, Command, ComputeTime, Extract, ImportVolume, PickByTime, ProposeFaults, SetLayer, TimeLevel, read_time,
+    AcceptFault, Command, ComputeTime, Extract, ImportVolume, PickByTime, ProposeFaults, SetLayer, TimeLevel, has_time,
+    read_time,
 };
 use project::document::Polarity;
 use project::error::ProjectError;
@@ -148,12 +149,31 @@ fn build(
         memory_bytes: None,
     };
     project.apply(&Command::Import(import), progress)?;
-    project.apply(&Command::Extract(Extract { volume: None, settings: ExtractSettings::default() }), progress)?;
-    accept_faults(project, progress)?;
-    let time = ComputeTime { name: "time".to_owned(), settings: TimeSettings::default() };
-    project.apply(&Command::Time(time), progress)?;
+    layers_by_time(project, settings.layers, progress)
+}
+
+/// Number of layers where none is stated.
+pub const LAYERS: usize = 6;
+
+/// Gives a project with a volume and without horizons layers between levels of geologic time, and styles by the character
+/// of the reflections; what was extracted, the faults and geologic time are taken as they are where they exist. Returns the
+/// names of the layers. Each step can be undone.
+///
+/// # Errors
+/// No level of time stands out, data are damaged, or the user cancelled.
+pub fn layers_by_time(project: &mut Project, layers: usize, progress: &Progress) -> Result<Vec<String>, ProjectError> {
+    if project.document().extraction.is_none() {
+        project.apply(&Command::Extract(Extract { volume: None, settings: ExtractSettings::default() }), progress)?;
+    }
+    if project.document().faults.is_empty() {
+        accept_faults(project, progress)?;
+    }
+    if !has_time(project.document()) {
+        let time = ComputeTime { name: "time".to_owned(), settings: TimeSettings::default() };
+        project.apply(&Command::Time(time), progress)?;
+    }
     let (tau, volume) = read_time(project.root(), project.document(), progress)?;
-    let levels = strongest_levels(&tau, &volume, settings.layers.saturating_sub(1));
+    let levels = strongest_levels(&tau, &volume, layers.saturating_sub(1));
     if levels.is_empty() {
         return Err(ProjectError::NoLevels);
     }

@@ -54,6 +54,9 @@ pub struct Figure {
     pub caption: Option<String>,
     /// Whether it shows what an interpreter sees, sheets as they were picked, instead of the model. Default no.
     pub interpretation: bool,
+    /// Horizons and faults, by name, whose lines sections leave out, and surfaces in front of blocks. Default none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub hidden: Vec<String>,
     /// How its colours are printed. Default as its first block's scene says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preset: Option<Preset>,
@@ -73,6 +76,7 @@ impl Default for Figure {
             title: None,
             caption: None,
             interpretation: false,
+            hidden: Vec::new(),
             preset: None,
         }
     }
@@ -82,6 +86,11 @@ impl Figure {
     /// A figure of one part.
     pub fn of(part: Part) -> Self {
         Self { parts: vec![part], ..Self::default() }
+    }
+
+    /// Whether a horizon or fault of this name is left out.
+    pub fn hides(&self, name: &str) -> bool {
+        self.hidden.iter().any(|hidden| hidden == name)
     }
 
     /// How its colours are printed.

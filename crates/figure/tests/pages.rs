@@ -117,6 +117,18 @@ fn a_flat_horizon_lies_beside_its_time_on_the_axis() {
 }
 
 #[test]
+fn what_is_hidden_has_no_line() {
+    let shown = figure(vec![section(SectionKind::Inline, 12.0)]);
+    let has = |figure: &Figure, colour: [u8; 3]| {
+        !rows(&raster(&made(figure).unwrap(), 150.0).unwrap(), colour, 300).is_empty()
+    };
+    let [top, base] = [[255, 0, 0], [0, 0, 255]];
+    assert!(has(&shown, top) && has(&shown, base));
+    let hidden = Figure { hidden: vec!["Top".into()], legend: false, ..shown };
+    assert!(!has(&hidden, top) && has(&hidden, base));
+}
+
+#[test]
 fn texts_of_a_full_page_lie_within_it_and_none_over_another() {
     for size in [[14.0, 10.0], [9.0, 14.0], [24.0, 18.0]] {
         let page = made(&Figure { size: PageSize::Cm(size), ..figure(parts()) }).unwrap();

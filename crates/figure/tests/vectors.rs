@@ -69,6 +69,7 @@ impl Fold {
             candidates: None,
             wells: &[],
             version: 1,
+            data_version: 1,
         }
     }
 

@@ -5,6 +5,7 @@
 //! |---|---|
 //! | [`load`] | what a scene needs, read once for every renderer |
 //! | [`scene`] | the scenes of a project, and scenes by default |
+//! | [`Motion`] | scenes that follow one another |
 //! | [`Painter`] | the renderer that the device allows |
 //! | [`figures`] | what a figure needs, loaded, and its page made |
 //!
@@ -14,10 +15,12 @@ mod certainty;
 pub mod figures;
 mod horizon_distance;
 pub mod load;
+mod motion;
 mod painter;
 pub mod scene;
 mod shown_candidates;
 
 pub use certainty::SparseHorizon;
+pub use motion::Motion;
 pub use painter::{Device, Painter, write_png};
-pub use shown_candidates::ShownCandidates;
+pub use shown_candidates::{LeafFacts, ShownCandidates};

@@ -15,9 +15,10 @@ use project::{content, derived, memory_budget, styles};
 use render::distortion::{self, LayerDistortion};
 use render::{DrawnWell, Inputs, Lookup, Media, NamedVolume, RenderError, Scene, VoxelBox};
 use std::path::Path;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
-use survey::{Progress, SurveyGeometry, Volume, memory};
+use survey::{Progress, SurveyGeometry, Volume, Well, memory};
 use ttf::{BlockExtent, LayerExtent, RawColour, TtfTables};
 
 /// Memory that the sampled parameterization takes for each voxel: i, j, k, layer and block.
@@ -52,6 +53,15 @@ pub struct Rock {
     pub key: String,
     /// The stages and their durations; empty for results that were stored before.
     pub stages: Vec<Stage>,
+    /// Metres that k = 0 … 1 spans in each layer, once they were measured.
+    thicknesses_m: OnceLock<Vec<f32>>,
+}
+
+impl Rock {
+    /// What was computed under a key, in stages.
+    pub fn new(model: StructuralModel, parameterization: Parameterization, key: String, stages: Vec<Stage>) -> Self {
+        Self { model, parameterization, key, stages, thicknesses_m: OnceLock::new() }
+    }
 }
 
 /// Builds the model alone, from which sections and maps are cut; `None` for a project without horizons.
@@ -94,7 +104,7 @@ pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, Proj
             computed
         }
     };
-    Ok(Some(Rock { model, parameterization, key, stages }))
+    Ok(Some(Rock::new(model, parameterization, key, stages)))
 }
 
 /// Whether a parameterization has the size, layers and blocks of a model.
@@ -138,7 +148,11 @@ impl Rock {
 
     /// Metres that k = 0 … 1 spans in each layer, bottom to top: the mean thickness where the layer exists, or the
     /// reference thickness of an open layer.
-    fn thicknesses_m(&self, geometry: &SurveyGeometry) -> Vec<f32> {
+    fn thicknesses_m(&self, geometry: &SurveyGeometry) -> &[f32] {
+        self.thicknesses_m.get_or_init(|| self.measured_thicknesses_m(geometry))
+    }
+
+    fn measured_thicknesses_m(&self, geometry: &SurveyGeometry) -> Vec<f32> {
         let size = self.model.size();
         let counts = size.map(|n| n.min(THICKNESS_SAMPLES));
         let at = |axis: usize, n: usize| param::corner_aligned(n, counts[axis], size[axis]);
@@ -186,6 +200,31 @@ pub struct LoadedWell {
     pub path: Vec<DVec3>,
     /// Its tops.
     pub tops: Vec<DVec3>,
+    /// Their names.
+    pub top_names: Vec<String>,
+    /// A curve measured along it: its gamma ray, or else its first.
+    pub log: Option<LoadedLog>,
+}
+
+/// A curve measured along a well.
+pub struct LoadedLog {
+    /// Its short name.
+    pub name: String,
+    /// Its values and their places, voxels; NaN where nothing was measured.
+    pub points: Vec<(DVec3, f32)>,
+    /// Its smallest and largest value.
+    pub range: [f32; 2],
+}
+
+/// The curve that is shown beside a well.
+fn shown_log(well: &Well, geometry: &SurveyGeometry) -> Option<LoadedLog> {
+    let curves = || well.logs.iter().flat_map(|set| set.curves.iter().map(move |curve| (set, curve)));
+    let (set, curve) = curves().find(|(_, curve)| curve.name.eq_ignore_ascii_case("GR")).or_else(|| curves().next())?;
+    let values = curve.values.iter().copied().filter(|value| value.is_finite());
+    let range = values.fold([f32::MAX, f32::MIN], |[low, high], value| [low.min(value), high.max(value)]);
+    let place = |(md_m, value): (&f64, &f32)| Some((well.voxel_at_md(*md_m, geometry)?, *value));
+    let points: Vec<(DVec3, f32)> = set.md_m.iter().zip(&curve.values).filter_map(place).collect();
+    (range[0] <= range[1]).then(|| LoadedLog { name: curve.name.clone(), points, range })
 }
 
 /// Everything that a scene of a project is drawn from.
@@ -211,6 +250,8 @@ pub struct Loaded {
     /// A number that no other loaded data of this process have: renderers keep what they uploaded while it stays the
     /// same.
     pub version: u64,
+    /// The same of all but the styles: it stays when only `tables` and `raw` change.
+    pub data_version: u64,
 }
 
 /// A number that was not given before.
@@ -289,6 +330,7 @@ pub fn load_within(
         raw: functions.raw,
         tables,
         version: new_version(),
+        data_version: new_version(),
     })
 }
 
@@ -317,7 +359,7 @@ impl More {
     pub fn add_to(self, loaded: &mut Loaded) {
         loaded.volumes.extend(self.volumes);
         loaded.candidates = self.candidates;
-        loaded.version = new_version();
+        (loaded.version, loaded.data_version) = (new_version(), new_version());
     }
 }
 
@@ -345,6 +387,7 @@ pub fn load_bare(
         candidates: ShownCandidates::load(project, scene, None, progress)?,
         tables: None,
         version: new_version(),
+        data_version: new_version(),
         raw,
         geometry,
     })
@@ -389,8 +432,15 @@ pub fn read_wells(
     let mut wells = Vec::new();
     for entry in &document.wells {
         let well = content::read_well(root, entry)?;
-        let tops = well.tops.iter().filter_map(|top| well.voxel_at_md(top.md_m, geometry)).collect();
-        wells.push(LoadedWell { name: entry.name.clone(), path: well.path_in_voxels(geometry), tops });
+        let placed = well.tops.iter().filter_map(|top| Some((well.voxel_at_md(top.md_m, geometry)?, top.name.clone())));
+        let (tops, top_names) = placed.unzip();
+        wells.push(LoadedWell {
+            name: entry.name.clone(),
+            path: well.path_in_voxels(geometry),
+            tops,
+            top_names,
+            log: shown_log(&well, geometry),
+        });
     }
     Ok(wells)
 }
@@ -410,7 +460,7 @@ fn at_level(covers: VoxelBox, full: [usize; 3], size: [usize; 3], level: usize) 
 pub fn block_extent(geometry: &SurveyGeometry, rock: &Rock, names: Vec<String>, exaggeration: f64) -> BlockExtent {
     let extent = solid::extent_m(geometry);
     let layer =
-        |(name, thickness_m): (String, f32)| LayerExtent { name, thickness_m: thickness_m * exaggeration as f32 };
+        |(name, thickness_m): (String, &f32)| LayerExtent { name, thickness_m: thickness_m * exaggeration as f32 };
     BlockExtent {
         extent_i_m: extent[0] as f32,
         extent_j_m: extent[1] as f32,
@@ -474,6 +524,7 @@ impl Loaded {
             candidates: self.candidates.as_ref().map(ShownCandidates::candidates),
             wells,
             version: self.version,
+            data_version: self.data_version,
         }
     }
 }

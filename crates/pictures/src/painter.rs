@@ -60,6 +60,13 @@ impl Painter {
         Ok(Self { renderer, processor: CpuRenderer::default(), device })
     }
 
+    /// Lets the processor keep what rays hit, in at most so many bytes, for pictures whose styles alone change.
+    #[must_use]
+    pub fn keeping_points(mut self, max_bytes: usize) -> Self {
+        self.processor = CpuRenderer::keeping_points(max_bytes);
+        self
+    }
+
     /// The name of the device that draws.
     pub fn device(&self) -> &str {
         self.renderer.as_ref().map_or("processor", Renderer::adapter_name)

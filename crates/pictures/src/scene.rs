@@ -142,7 +142,7 @@ impl VolumeRendering {
         for shown in &self.horizons {
             let index = document.position(Noun::Horizon, &shown.name)?;
             let entry = &document.horizons[index];
-            let own = entry.assembly.as_ref().map(|log| log.colour);
+            let own = entry.own_colour();
             let colour = horizon_colour(shown.colour.or(own), index);
             scene.media.horizons.push(PickedHorizon {
                 name: Some(entry.name.clone()),

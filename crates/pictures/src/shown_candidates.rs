@@ -10,6 +10,7 @@
 //! In memory: five bytes a voxel, and the trees without their triangles.
 
 use crate::horizon_distance::{self, FARTHEST};
+use glam::Vec3;
 use interp::Forest;
 use interp::assembly::selected_leaves;
 use model::StructuralModel;
@@ -43,12 +44,34 @@ pub struct ShownCandidates {
     sheets: BTreeMap<String, u32>,
 }
 
+/// A leaf and the tree that it belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LeafFacts {
+    /// Its number.
+    pub leaf: u32,
+    /// Its triangles.
+    pub triangles: usize,
+    /// Levels from it up to its whole surface.
+    pub levels: u32,
+}
+
 /// Whether a scene shows any of this.
 pub fn is_shown(scene: &Scene) -> bool {
     !scene.media.horizons.is_empty() || scene.face_data.shows_candidates()
 }
 
 impl ShownCandidates {
+    /// The leaf that is nearest to a place, voxel; `None` where none is near, or where sheets stand in for leaves.
+    pub fn leaf_at(&self, voxel: Vec3) -> Option<LeafFacts> {
+        self.key.as_ref().filter(|_| !self.voxels.leaf.is_empty())?;
+        let leaf = self.candidates().leaf_at(voxel);
+        let node = *self.trees.leaves.get(leaf.checked_sub(1)? as usize)?;
+        let parent = |node: &u32| self.trees.nodes.get(*node as usize).and_then(|node| node.parent);
+        let levels = std::iter::successors(Some(node), parent).count() as u32 - 1;
+        let triangles = self.trees.nodes.get(node as usize)?.triangles.len();
+        Some(LeafFacts { leaf, triangles, levels })
+    }
+
     /// Reads what `scene` shows; `None` if that is nothing.
     ///
     /// # Errors

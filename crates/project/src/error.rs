@@ -487,6 +487,16 @@ pub enum ProjectError {
         /// Its name.
         fault: String,
     },
+    /// A fault was not drawn with so many sticks, or points on one.
+    #[error("fault {fault} has no point {} on a stick {}", point + 1, stick + 1)]
+    NoStickPoint {
+        /// Its name.
+        fault: String,
+        /// The stick, counted from 0.
+        stick: usize,
+        /// The point, counted from 0.
+        point: usize,
+    },
     /// There are no horizons, so there are no layers.
     #[error("the project has no horizons, so there are no layers to parameterize")]
     NoLayers,

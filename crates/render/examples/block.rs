@@ -4,10 +4,14 @@
 //! Writes illustrative, raw and half-blended pictures, a corner cut, a stair and the ground as relief, each
 //! by the CPU reference and by the GPU. Prints their times and differences.
 
+#[expect(dead_code, reason = "tests use the rest")]
+#[path = "../tests/pictures/compare.rs"]
+mod compare;
+
+use compare::compare;
 use glam::DVec3;
 use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization};
-use render::compare::compare;
 use render::{Corner, Ground, Inputs, Lookup, NamedVolume, Renderer, Scene, VoxelBox};
 use std::error::Error;
 use std::path::Path;
@@ -76,6 +80,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         candidates: None,
         wells: &[],
         version: 1,
+        data_version: 1,
     };
     let whole = VoxelBox::of_size(geometry.size());
     let base = Scene { size_px: [800, 640], samples: 2, exaggeration: 1.5, ..Scene::default() };

@@ -134,6 +134,10 @@ impl Relief {
 
     /// Whether a point of the box is air.
     pub fn is_air(&self, model: &StructuralModel, p: Vec3) -> bool {
+        // Below the deepest ground there is rock; a surface of any shape may overhang.
+        if p.z > self.z_range[1] && !model.has_levels() {
+            return false;
+        }
         !self.probe(model, p).is_rock
     }
 

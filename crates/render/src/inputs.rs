@@ -34,6 +34,9 @@ pub struct Inputs<'a> {
     /// Version of the data. It must change whenever the data behind any of these references changes; uploaded
     /// data are reused while it stays the same.
     pub version: u64,
+    /// Version of all but the styles (`tables`): of what a ray can hit. What is kept of model and volumes is used again
+    /// while it stays the same, whatever styles change; 0: never.
+    pub data_version: u64,
 }
 
 /// A scalar volume and the part of the survey that it covers. Its size and extent may differ from the
@@ -200,6 +203,7 @@ impl<'a> Inputs<'a> {
             candidates: None,
             wells: &[],
             version: 0,
+            data_version: 0,
         }
     }
 }

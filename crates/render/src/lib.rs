@@ -2,7 +2,7 @@
 //!
 //! A declarative [`Scene`] says what a picture shows; [`Inputs`] hold the data. Two renderers draw it by the
 //! same algorithm: [`reference::render`] on the CPU, written for clarity, and [`Renderer`] on the GPU,
-//! without a window. [`compare`] decides whether their pictures agree.
+//! without a window. Tests compare their pictures, off edges.
 //!
 //! Each sample of a pixel casts one ray, which finds the first face of the block ([`visible`]) or the ground
 //! ([`ground`]). That point is looked up in flat space, textured, and blended with the raw data. [`media`]
@@ -22,7 +22,6 @@
 
 pub mod accuracy;
 pub mod camera;
-pub mod compare;
 pub mod distortion;
 pub mod error;
 pub mod faces;
@@ -32,10 +31,10 @@ pub mod inputs;
 mod kept;
 pub mod leaves;
 pub mod media;
-pub mod motion;
 pub mod outline;
 mod pattern_size;
 pub mod pick;
+mod points;
 pub mod reference;
 mod resolved;
 pub mod scene;
@@ -52,7 +51,6 @@ pub use leaves::FaceData;
 pub use media::{
     Faces, Interleaved, Isosurface, IsosurfaceSource, Media, Medium, Occlusion, Phong, PickedHorizon, Scope, Shading,
 };
-pub use motion::Motion;
 pub use outline::{Outlines, Stroke, Unpicked};
 pub use pick::{PickedObject, PickedPoint, pick};
 pub use scene::{Background, Ground, LabelChange, Lookup, PatternSize, Scene, Water};

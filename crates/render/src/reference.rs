@@ -11,10 +11,11 @@ use crate::kept::Kept;
 use crate::media::interleaved::{halves, interleave};
 use crate::media::light::LightVolume;
 use crate::media::light_grid::Asked;
-use crate::outline::draw::draw as draw_outlines;
+use crate::outline::draw::{OutlineLines, draw as draw_outlines, draw_lines};
+use crate::points::{KeptPoints, PicturePoints};
 use crate::resolved::ResolvedScene;
 use crate::scene::Scene;
-use crate::shade::trace;
+use crate::shade::{stopping_points, trace};
 use glam::{DVec2, Vec4};
 use image::RgbaImage;
 use rayon::prelude::*;
@@ -49,13 +50,20 @@ pub fn render(scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<Rgb
     CpuRenderer::default().render(scene, inputs, progress)
 }
 
-/// The CPU renderer. It keeps what it has computed from the data while [`Inputs::version`] stays the same.
+/// The CPU renderer. It keeps what it has computed from the data while [`Inputs::data_version`] stays the same.
 #[derive(Debug, Default)]
 pub struct CpuRenderer {
     kept: Kept,
+    points: KeptPoints,
 }
 
 impl CpuRenderer {
+    /// One that also keeps what rays hit, in at most so many bytes: a picture whose styles alone have changed is coloured
+    /// again without looking for it.
+    pub fn keeping_points(max_bytes: usize) -> Self {
+        Self { points: KeptPoints::within(max_bytes), ..Self::default() }
+    }
+
     /// Draws the scene.
     ///
     /// # Errors
@@ -65,7 +73,9 @@ impl CpuRenderer {
             let first = self.render(&first, inputs, progress)?;
             return Ok(interleave(first, &self.render(&second, inputs, progress)?, stripes));
         }
-        draw(&ResolvedScene::new(scene, inputs, &mut self.kept)?, progress)
+        let resolved = ResolvedScene::new(scene, inputs, &mut self.kept)?;
+        let points = self.points.of(&resolved, inputs, BLOCK as u32);
+        draw(&resolved, points.as_deref(), progress)
     }
 }
 
@@ -76,7 +86,11 @@ const BLOCK: usize = 8;
 /// Number of tiles that are drawn before they are copied into the picture.
 const TILES_AT_ONCE: usize = 4096;
 
-fn draw(resolved: &ResolvedScene, progress: &Progress) -> Result<RgbaImage, RenderError> {
+fn draw(
+    resolved: &ResolvedScene,
+    points: Option<&PicturePoints>,
+    progress: &Progress,
+) -> Result<RgbaImage, RenderError> {
     let light = match &resolved.field {
         Some(field) => {
             let asked = if resolved.tubes.is_some() { Asked::Everywhere } else { Asked::Block };
@@ -100,7 +114,7 @@ fn draw(resolved: &ResolvedScene, progress: &Progress) -> Result<RgbaImage, Rend
                 for y in (top..bottom).step_by(BLOCK) {
                     for x in (left..right).step_by(BLOCK) {
                         let (across, down) = ((right - x).min(BLOCK as u32), (bottom - y).min(BLOCK as u32));
-                        for (n, pixel) in (0..).zip(block(resolved, light.as_ref(), [x, y], [across, down])) {
+                        for (n, pixel) in (0..).zip(block(resolved, (light.as_ref(), points), [x, y], [across, down])) {
                             let (column, row) = (x - left + n % across, y - top + n / across);
                             pixels[(row * (right - left) + column) as usize] = pixel;
                         }
@@ -116,28 +130,38 @@ fn draw(resolved: &ResolvedScene, progress: &Progress) -> Result<RgbaImage, Rend
             }
         }
     }
-    draw_outlines(resolved, &mut image);
+    match points {
+        Some(points) => draw_lines(resolved, points.lines(|| OutlineLines::of(resolved)), &mut image),
+        None => draw_outlines(resolved, &mut image),
+    }
     Ok(image)
 }
 
 /// The averaged colours of a block of pixels, 8-bit straight RGBA, row by row.
 fn block(
     resolved: &ResolvedScene,
-    light: Option<&LightVolume>,
+    (light, points): (Option<&LightVolume>, Option<&PicturePoints>),
     [left, top]: [u32; 2],
     [across, down]: [u32; 2],
 ) -> Vec<[u8; 4]> {
     let samples = resolved.scene.samples;
     let per_pixel = samples * samples;
-    let rays: Vec<ViewRay> = (0..across * down * per_pixel)
-        .map(|n| {
-            let (pixel, sub) = (n / per_pixel, n % per_pixel);
-            let corner = DVec2::new(f64::from(left + pixel % across), f64::from(top + pixel / across));
-            let offset = DVec2::new(f64::from(sub % samples) + 0.5, f64::from(sub / samples) + 0.5);
-            resolved.view.ray(corner + offset / f64::from(samples))
-        })
-        .collect();
-    let colours = trace(resolved, light, &rays);
+    let ray = |n: u32| {
+        let (pixel, sub) = (n / per_pixel, n % per_pixel);
+        let corner = DVec2::new(f64::from(left + pixel % across), f64::from(top + pixel / across));
+        let offset = DVec2::new(f64::from(sub % samples) + 0.5, f64::from(sub / samples) + 0.5);
+        resolved.view.ray(corner + offset / f64::from(samples))
+    };
+    let rays = || (0..across * down * per_pixel).map(ray).collect::<Vec<ViewRay>>();
+    let colours = match points {
+        Some(points) => points.block([left, top], || stopping_points(resolved, &rays())).colours(resolved),
+        None => trace(resolved, light, &rays()),
+    };
+    if colours.is_empty() {
+        let background = Vec4::from_array(resolved.background);
+        let all = (background.truncate() * background.w).extend(background.w);
+        return vec![straight_bytes(all); (across * down) as usize];
+    }
     let average = |colours: &[Vec4]| {
         let sum: Vec4 = colours.iter().map(|colour| (colour.truncate() * colour.w).extend(colour.w)).sum();
         straight_bytes(sum / per_pixel as f32)

@@ -90,7 +90,7 @@ impl<'a> ResolvedScene<'a> {
         }
         let volumes = resolve_volumes(&tables, &media, inputs.volumes)?;
         let roaming_box = scene.box_in(inputs.geometry);
-        kept.renew(inputs.version);
+        kept.renew(inputs.data_version);
         let relief = resolve_relief(scene, inputs, interpretation, kept)?;
         let hidden =
             tables.globals.blend >= 1.0 && tables.globals.raw_volume != NONE && tables.globals.no_data[3] >= 1.0;
@@ -102,7 +102,7 @@ impl<'a> ResolvedScene<'a> {
         Ok(Self {
             background,
             candidates: resolve_candidates(scene, inputs)?,
-            tubes: Tubes::new(inputs.wells, &scene.wells, &view, longest_m, solid.roaming_box),
+            tubes: Tubes::new(inputs.wells, scene, &view, longest_m, solid.roaming_box),
             field,
             roaming_box,
             scene,

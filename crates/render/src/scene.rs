@@ -82,6 +82,9 @@ pub struct Scene {
     pub tree_level: u32,
     /// How wells are drawn.
     pub wells: WellStyle,
+    /// Wells that are not drawn, by name. Default none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub hidden_wells: Vec<String>,
     /// The media: volume rendering in the cut-outs and around them.
     pub media: Media,
     /// What is changed about the labels of figures that show it.
@@ -149,6 +152,7 @@ impl Default for Scene {
             face_data: FaceData::Rock,
             tree_level: 0,
             wells: WellStyle::default(),
+            hidden_wells: Vec::new(),
             media: Media::default(),
             labels: Vec::new(),
         }
@@ -245,6 +249,11 @@ impl Scene {
     /// a volume.
     pub(crate) fn has_back_edges(&self) -> bool {
         self.media.faces == Faces::None && self.outlines.edges.width_px > 0.0
+    }
+
+    /// Whether a well of this name is not drawn.
+    pub fn hides_well(&self, name: &str) -> bool {
+        self.hidden_wells.iter().any(|hidden| hidden == name)
     }
 
     /// Whether anything is cut out.

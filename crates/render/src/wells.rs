@@ -12,6 +12,7 @@
 
 use crate::camera::View;
 use crate::error::SceneError;
+use crate::scene::Scene;
 use crate::visible::Ray;
 use glam::{DVec3, Mat3, Vec3};
 use serde::{Deserialize, Serialize};
@@ -100,18 +101,19 @@ impl Tubes {
     /// The wells inside a block; `None` if there are none.
     pub fn new(
         wells: &[DrawnWell],
-        style: &WellStyle,
+        scene: &Scene,
         view: &View,
         longest_m: f64,
         roaming_box: [Vec3; 2],
     ) -> Option<Self> {
+        let style = &scene.wells;
         if style.radius <= 0.0 {
             return None;
         }
         let to_display = view.display_from_voxel();
         let radius = style.radius * longest_m as f32;
         let mut capsules = Vec::new();
-        for (well, path) in wells.iter().enumerate() {
+        for (well, path) in wells.iter().enumerate().filter(|(_, well)| !scene.hides_well(well.name)) {
             let kept = simplified(path.path, STRAIGHT);
             for ends in kept.windows(2).filter_map(|ends| clipped([ends[0], ends[1]], roaming_box)) {
                 let ends = ends.map(|end| (to_display * end).as_vec3());

@@ -26,6 +26,8 @@ pub enum Action {
     Forget(PathBuf),
     /// Make the demonstration in a folder and open it.
     Demo(PathBuf),
+    /// Give the open project layers by computed geologic time.
+    Illustrate,
     /// Close the project; everything is saved already.
     Close,
     /// A project was opened.
@@ -63,6 +65,10 @@ pub enum Action {
     Show(Box<Scene>),
     /// Show a named scene.
     ShowNamed(String),
+    /// Present the scenes over the whole screen, beginning with this one; `None`: leave, and show what was shown before.
+    Present(Option<usize>),
+    /// Draw sections at this vertical exaggeration; `None`: as large as their views.
+    Proportions(Option<f64>),
     /// Move the camera to a standard position.
     Stand(StandardView),
     /// Choose which views fill the middle.
@@ -113,6 +119,8 @@ pub enum Task {
     Check(PathBuf, Place),
     /// Make the demonstration in this folder, then open it.
     Demo(PathBuf),
+    /// Give the open project layers by computed geologic time.
+    Illustrate,
     /// Change the open project.
     Apply(Box<Command>),
     /// Undo in the open project.

@@ -33,6 +33,10 @@ impl State {
                 self.quieten(Place::Start);
                 return vec![Task::Demo(folder)];
             }
+            Action::Illustrate => {
+                self.quieten(Place::Interpret);
+                return vec![Task::Illustrate];
+            }
             Action::Close => return self.close(),
             Action::Opened(snapshot) => return self.opened(*snapshot),
             Action::Changed(snapshot) => {
@@ -79,6 +83,7 @@ impl State {
                 self.quieten(Place::Dialogue);
                 return self.task(Task::ExportSurface(form));
             }
+            Action::Present(at) => self.present(at),
             Action::Copy => return self.task(Task::Copy),
             Action::Picking(step) => return self.pick(step),
             Action::Extract(volume, settings) => {
@@ -119,6 +124,7 @@ impl State {
                 Err(error) => self.notices.push(Notice::failure(Place::Scenes, &error)),
             },
             Action::Stand(place) => camera::stand(&mut view.scene, place),
+            Action::Proportions(factor) => view.proportions = factor,
             Action::Arrange(layout) => view.layout = layout,
             Action::Compare(compare) => view.compare = compare,
             Action::Wipe(at) => view.wipe = at.clamp(0.02, 0.98),
@@ -139,9 +145,28 @@ impl State {
         }
     }
 
+    /// Shows the scene at a place of the list over the whole screen, or leaves.
+    fn present(&mut self, at: Option<usize>) {
+        let Some(session) = &mut self.session else { return };
+        let view = &mut session.view;
+        let before = self.presented.take().map(|(_, before)| before);
+        match at.and_then(|at| Some((at, session.document.scenes.get(at)?))) {
+            Some((at, entry)) => {
+                self.presented = Some((at, before.unwrap_or_else(|| Box::new((view.scene.clone(), view.handles)))));
+                (view.scene, view.handles) = (entry.scene.clone(), false);
+            }
+            None => {
+                if let Some(before) = before {
+                    (view.scene, view.handles) = *before;
+                }
+            }
+        }
+    }
+
     fn close(&mut self) -> Vec<Task> {
         self.put_by();
         self.session = None;
+        self.presented = None;
         self.dialogue = None;
         self.notices.clear();
         self.remembered.left = None;
@@ -156,6 +181,7 @@ impl State {
         self.remembered.add(&snapshot.root);
         self.notices.clear();
         self.dialogue = None;
+        self.presented = None;
         self.session = Some(Session::new(snapshot, left.map(|left| left.view)));
         self.mark();
         vec![Task::Remember]

@@ -24,10 +24,12 @@ pub mod volume_rendering;
 #[cfg(test)]
 mod tests;
 
+use render::Scene;
+
 pub use action::{Action, Task};
 pub use dialogue::{Choice, Dialogue, ExportForm, FileContent, Shown, SurfaceForm, Target};
 pub use notice::{Notice, Place};
-pub use picking::{How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, Tool};
+pub use picking::{How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, StickPoint, Tool};
 pub use remembered::{Appearance, Remembered};
 pub use session::{Session, Snapshot};
 pub use view::{Compare, Hidden, Layout, Panel, SectionKind, StandardView, ViewState};
@@ -58,6 +60,8 @@ pub struct State {
     pub session: Option<Session>,
     /// The dialogue in front, if any.
     pub dialogue: Option<Dialogue>,
+    /// The scene that is presented, and what was shown before, with its handles.
+    pub presented: Option<(usize, Box<(Scene, bool)>)>,
     /// Messages, each with the place where it is shown; newest last.
     pub notices: Vec<Notice>,
 }

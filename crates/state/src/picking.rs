@@ -12,7 +12,7 @@ use interp::ExtractSettings;
 use interp::assembly::Operation;
 use interp::faults::Proposal;
 use project::command::{Climb, Command, PickNode};
-use project::document::Document;
+use project::document::{Document, HorizonEntry};
 use project::error::Noun;
 use project::interpretation::assembly::next_colour;
 use render::{FaceData, Scene};
@@ -35,6 +35,8 @@ pub enum Tool {
     Lasso,
     /// Draws fault sticks.
     Sticks,
+    /// Makes a horizon of the level of geologic time through a place, or corrects one that was made so.
+    Time,
 }
 
 /// How the block is shown.
@@ -132,6 +134,17 @@ pub enum LassoOn {
     Block(Box<Scene>, DVec2),
 }
 
+/// A point of a stick.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StickPoint {
+    /// The fault; `None` of one that does not exist yet.
+    pub fault: Option<String>,
+    /// Which of its sticks; of a fault that does not exist yet, the one being drawn is the last.
+    pub stick: usize,
+    /// Which of the stick's points.
+    pub point: usize,
+}
+
 /// A step of the interpretation.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PickingStep {
@@ -165,6 +178,8 @@ pub enum PickingStep {
     Erase(Lasso),
     /// Add a point to the stick, voxel.
     Stick(DVec3),
+    /// Move a point of a stick, voxel.
+    MovePoint(StickPoint, DVec3),
     /// End the stick.
     EndStick,
     /// Remove the last point of the sticks.
@@ -252,7 +267,7 @@ impl Picking {
     /// Colour of the horizon that picks go to.
     pub fn colour_in(&self, document: &Document) -> Colour {
         let entry = document.horizons.iter().find(|entry| Some(&entry.name) == self.horizon.as_ref());
-        let known = entry.and_then(|entry| entry.assembly.as_ref()).map(|log| log.colour);
+        let known = entry.and_then(HorizonEntry::own_colour);
         known.or(self.colour).unwrap_or_else(|| next_colour(document))
     }
 

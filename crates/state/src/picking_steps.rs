@@ -1,9 +1,9 @@
 //! What each step of the interpretation does to the state, and which tasks follow.
 
-use super::picking::{How, Picking, PickingStep, PickingTask, Tool, free_name, place_of};
+use super::picking::{How, Picking, PickingStep, PickingTask, StickPoint, Tool, free_name, place_of};
 use super::{Place, State, Task};
 use interp::assembly::Operation;
-use project::command::{Climb, Command, PickFault, PickNode};
+use project::command::{Climb, Command, MoveStickPoint, PickByTime, PickFault, PickNode, TimeLevel};
 use project::document::Document;
 use project::error::Noun;
 
@@ -19,6 +19,9 @@ impl State {
             self.notices.retain(|notice| notice.place != Place::Interpret);
         }
         match step {
+            PickingStep::At(voxel, _) if picking.tool == Tool::Time => {
+                return picking.by_time(place_of(&geometry, voxel), document);
+            }
             PickingStep::At(voxel, how) => return picking.click(place_of(&geometry, voxel), how),
             PickingStep::Found(pick) => {
                 if picking.horizon.is_none() {
@@ -71,6 +74,16 @@ impl State {
                 }
             }
             PickingStep::Stick(voxel) => picking.stick.push(place_of(&geometry, voxel)),
+            PickingStep::MovePoint(StickPoint { fault: Some(fault), stick, point }, to) => {
+                let command = MoveStickPoint { fault, stick, point, to: place_of(&geometry, to) };
+                return vec![Task::Apply(Box::new(Command::MoveStickPoint(command)))];
+            }
+            PickingStep::MovePoint(StickPoint { fault: None, stick, point }, to) => {
+                let drawn = picking.sticks.iter_mut().chain(std::iter::once(&mut picking.stick)).nth(stick);
+                if let Some(place) = drawn.and_then(|stick| stick.get_mut(point)) {
+                    *place = place_of(&geometry, to);
+                }
+            }
             PickingStep::EndStick => picking.end_stick(),
             PickingStep::Backspace => {
                 if picking.stick.is_empty() {
@@ -118,6 +131,20 @@ impl Picking {
         tasks
     }
 
+    /// A click with geologic time: corrects the present horizon if it was picked by time, otherwise makes one, of the
+    /// present name if that is free.
+    fn by_time(&mut self, at: [f64; 3], document: &Document) -> Vec<Task> {
+        let known = self.horizon.as_ref().and_then(|name| document.horizons.iter().find(|entry| entry.name == *name));
+        let name = match (&self.horizon, known) {
+            (Some(name), None) => name.clone(),
+            (Some(name), Some(entry)) if !entry.seeds.is_empty() => name.clone(),
+            _ => free_name(document, Noun::Horizon, "Horizon"),
+        };
+        self.horizon = Some(name.clone());
+        let command = PickByTime { level: TimeLevel::Through(at), horizon: name };
+        vec![Task::Apply(Box::new(Command::PickByTime(command)))]
+    }
+
     /// Sends the next picks to another horizon: the one given, or else a new one.
     fn turn_to(&mut self, chosen: Option<String>, document: &Document) -> Vec<Task> {
         // The selection belongs to the horizon that it was made for.
@@ -132,7 +159,9 @@ impl Picking {
             format!("Horizon {}", number + 1)
         }));
         self.colour = None;
-        self.tool = Tool::Pick;
+        if self.tool != Tool::Time {
+            self.tool = Tool::Pick;
+        }
         tasks
     }
 

@@ -63,7 +63,7 @@ fn without_a_project_undo_and_camera_ask_for_nothing() {
 fn a_scene_without_a_picture_is_not_shown() {
     let mut state = open();
     let before = state.session.as_ref().unwrap().view.scene.clone();
-    let bad = render::Scene { exaggeration: -1.0, ..before.clone() };
+    let bad = Scene { exaggeration: -1.0, ..before.clone() };
     state.apply(Action::Show(Box::new(bad)));
     assert_eq!(state.session.as_ref().unwrap().view.scene, before);
 }

@@ -112,6 +112,11 @@ impl Hidden {
         self.horizons.is_empty() && self.faults.is_empty()
     }
 
+    /// The names of all that is hidden.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.horizons.iter().chain(&self.faults).map(String::as_str)
+    }
+
     pub(crate) fn set(&mut self, kind: SurfaceKind, name: String, hidden: bool) {
         let names = if kind == SurfaceKind::Horizon { &mut self.horizons } else { &mut self.faults };
         if hidden {
@@ -140,6 +145,9 @@ pub struct ViewState {
     pub wipe: f32,
     /// The point the sections run through, voxel.
     pub slices: [f64; 3],
+    /// Vertical exaggeration of sections; `None`: they fill their views.
+    #[serde(default)]
+    pub proportions: Option<f64>,
     /// Corners of the fence, voxel x and y.
     #[serde(default)]
     pub fence: Vec<[f64; 2]>,
@@ -173,6 +181,7 @@ impl ViewState {
             compare: Compare::Blend,
             wipe: 0.5,
             slices: size.map(|count| (count / 2) as f64),
+            proportions: None,
             fence: Vec::new(),
             panel: Panel::Layers,
             layer: None,

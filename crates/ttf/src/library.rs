@@ -53,11 +53,12 @@ pub struct TextureLibrary {
     entries: Vec<LibraryEntry>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct LibraryEntry {
     pattern: Pattern,
-    svg: Option<String>,
-    texture: OnceLock<Arc<Texture>>,
+    svg: Option<Arc<str>>,
+    /// Shared by all libraries of the program, so that a pattern is rasterised once.
+    texture: Arc<OnceLock<Arc<Texture>>>,
 }
 
 #[derive(Deserialize)]
@@ -72,6 +73,15 @@ impl TextureLibrary {
     /// # Errors
     /// [`TtfError::BadCatalogue`] if catalogue and drawings do not match. A test rules this out.
     pub fn builtin() -> Result<Self, TtfError> {
+        static READ: OnceLock<Vec<LibraryEntry>> = OnceLock::new();
+        if let Some(entries) = READ.get() {
+            return Ok(Self { entries: entries.clone() });
+        }
+        let library = Self::read()?;
+        Ok(Self { entries: READ.get_or_init(|| library.entries).clone() })
+    }
+
+    fn read() -> Result<Self, TtfError> {
         let catalogue: Catalogue =
             toml::from_str(CATALOGUE).map_err(|error| TtfError::BadCatalogue { fact: error.to_string() })?;
         let mut library = Self { entries: Vec::new() };
@@ -80,7 +90,7 @@ impl TextureLibrary {
                 .iter()
                 .find(|(name, _)| *name == pattern.name)
                 .ok_or_else(|| TtfError::BadCatalogue { fact: format!("`{}` has no drawing", pattern.name) })?;
-            library.push(pattern, Some((*svg).to_owned()), OnceLock::new())?;
+            library.push(pattern, Some((*svg).into()), OnceLock::new())?;
         }
         Ok(library)
     }
@@ -108,7 +118,7 @@ impl TextureLibrary {
             directional: true,
             colour: Colour::from_unit(mean),
         };
-        self.push(pattern, svg, OnceLock::from(Arc::new(texture)))
+        self.push(pattern, svg.map(Arc::from), OnceLock::from(Arc::new(texture)))
     }
 
     /// Sets the printed size of a tile in millimetres.
@@ -119,13 +129,13 @@ impl TextureLibrary {
     fn push(
         &mut self,
         pattern: Pattern,
-        svg: Option<String>,
+        svg: Option<Arc<str>>,
         texture: OnceLock<Arc<Texture>>,
     ) -> Result<usize, TtfError> {
         if self.find(&pattern.name).is_some() {
             return Err(TtfError::DuplicateTexture { texture: pattern.name });
         }
-        self.entries.push(LibraryEntry { pattern, svg, texture });
+        self.entries.push(LibraryEntry { pattern, svg, texture: Arc::new(texture) });
         Ok(self.entries.len() - 1)
     }
 

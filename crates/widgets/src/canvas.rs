@@ -5,13 +5,14 @@
 //! pixel.
 
 use eframe::egui::{
-    Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke as Line, TextureId, Vec2,
+    Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke as Line, TextureId, Vec2, Visuals,
     epaint::{TextShape, Vertex},
     pos2, vec2,
 };
 use figure::list::{Across, Cap, Group, Ink, Item, Path, PathItem, Picture, Segment, Stroke, Text, Upright};
 use glam::DVec2;
 use std::f32::consts::PI;
+use ttf::Colour;
 
 /// Points of the screen to a point of the page.
 pub const SCALE: f64 = 1.64;
@@ -54,6 +55,22 @@ pub fn paint(painter: &Painter, group: &Group, texture: Option<TextureId>) {
             _ => {}
         }
     }
+}
+
+/// The same group with letters and lines in the ink of the window's own words: what stands on the window and not on
+/// paper, whatever the theme.
+#[must_use]
+pub fn on_window(mut group: Group, visuals: &Visuals) -> Group {
+    let [r, g, b, _] = visuals.text_color().to_array();
+    let ink = Ink::glass(Colour::new(r, g, b), 0.8);
+    for item in &mut group.items {
+        match item {
+            Item::Text(text) => text.ink = ink,
+            Item::Path(path) => path.stroke.iter_mut().for_each(|stroke| stroke.ink = ink),
+            _ => {}
+        }
+    }
+    group
 }
 
 fn colour(ink: Ink) -> Color32 {
@@ -169,11 +186,29 @@ fn paint_picture(painter: &Painter, picture: &Picture, texture: Option<TextureId
 #[cfg(test)]
 mod tests {
     use super::*;
+    use figure::list::GroupKind;
 
     #[test]
     fn places_go_to_the_page_and_back() {
         let at = pos2(123.0, 45.5);
         assert!((screen(page(at)) - at).length() < 1e-4);
+    }
+
+    #[test]
+    fn what_stands_on_the_window_has_the_ink_of_its_words() {
+        let dark = Ink::solid(Colour::BLACK);
+        let mark = PathItem::stroked(Path::line(&[DVec2::ZERO, DVec2::ONE]), Stroke::new(1.0, dark));
+        let axes = Group::new(GroupKind::Annotation, "axes").with([Text::new(DVec2::ZERO, "12").into(), mark.into()]);
+        let group = on_window(axes, &Visuals::dark());
+        let inks = group.items.iter().filter_map(|item| match item {
+            Item::Text(text) => Some(text.ink),
+            Item::Path(path) => path.stroke.as_ref().map(|stroke| stroke.ink),
+            _ => None,
+        });
+        let [r, g, b, _] = Visuals::dark().text_color().to_array();
+        let inks: Vec<Ink> = inks.collect();
+        assert_eq!(inks.len(), 2);
+        assert!(inks.iter().all(|ink| ink.colour == Colour::new(r, g, b)), "{inks:?}");
     }
 
     #[test]

@@ -65,7 +65,7 @@ pub fn number(ui: &mut Ui, setting: Setting, value: &mut Option<f64>) {
         if ui.add(drag).labelled_by(label.id).changed() {
             *value = Some(typed);
         }
-        if is_stated && ui.small_button("×").on_hover_text(format!("{}: {AS_FILE}", name_of(setting))).clicked() {
+        if is_stated && ui.button("×").on_hover_text(format!("{}: {AS_FILE}", name_of(setting))).clicked() {
             *value = None;
         }
     });

@@ -2,6 +2,7 @@
 //! click adds one, and the stop chosen last is shown as numbers below.
 
 use crate::histogram::Histogram;
+use crate::percent;
 use crate::{colour_well, theme};
 use eframe::egui::{
     Button, Color32, DragValue, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
@@ -83,10 +84,10 @@ impl OpacityCurve {
             let drag = DragValue::new(&mut value).speed(f64::from(span) * 0.005);
             ui.name_inputs("Value of the stop", |ui| ui.add(drag));
             let label = ui.weak("opacity");
-            let drag = DragValue::new(&mut opacity).speed(0.01).range(0.0..=1.0).max_decimals(2);
+            let drag = percent::drag(&mut opacity);
             ui.add(drag).labelled_by(label.id);
             let can = stops.len() > FEWEST;
-            let remove = ui.add_enabled(can, Button::new("Remove stop").small());
+            let remove = ui.add_enabled(can, Button::new("Remove stop"));
             if remove.on_disabled_hover_text("A function has at least two stops").clicked() {
                 stops.remove(self.chosen);
                 self.chosen = self.chosen.saturating_sub(1);

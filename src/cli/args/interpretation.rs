@@ -192,6 +192,23 @@ pub(in crate::cli) enum FaultAction {
                       \n  petroglyph fault pick north.petro --name F1 --stick 1250,1300,900 1250,1310,1020 \
                       --stick 1270,1302,900 1270,1312,1020")]
     Pick(FaultPickArgs),
+    /// Move a point of a stick that a fault was drawn with
+    #[command(after_help = "Example:\n  petroglyph fault move north.petro F1 --stick 2 --point 1 --to 1270,1303,890")]
+    Move {
+        /// Project folder
+        project: PathBuf,
+        /// Fault
+        name: String,
+        /// Which of its sticks, counted from 1
+        #[arg(long)]
+        stick: usize,
+        /// Which of the stick's points, counted from 1
+        #[arg(long)]
+        point: usize,
+        /// Inline, crossline, time or depth
+        #[arg(long, value_name = "INLINE,CROSSLINE,Z", allow_hyphen_values = true)]
+        to: String,
+    },
     /// Propose faults from the offsets of the horizons or, while there are none, from where candidates end
     #[command(after_help = "Example:\n  petroglyph fault propose north.petro")]
     Propose(FaultProposeArgs),
@@ -237,6 +254,16 @@ pub(in crate::cli) enum FaultAction {
         /// `drawn`, or `grow` and how many metres it reaches farther on every side
         #[arg(value_name = "drawn|grow M", num_args = 1..=2, required = true, allow_hyphen_values = true)]
         extent: Vec<String>,
+    },
+    /// Rename a fault
+    #[command(after_help = "Example:\n  petroglyph fault rename north.petro F1 \"Main fault\"")]
+    Rename {
+        /// Project folder
+        project: PathBuf,
+        /// Fault
+        from: String,
+        /// New name
+        to: String,
     },
     /// Remove a fault
     #[command(after_help = "Example:\n  petroglyph fault remove north.petro F1")]

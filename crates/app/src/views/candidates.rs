@@ -1,9 +1,13 @@
 //! The panel of horizon candidates: extraction and its settings.
 
+use crate::state::picking::{PickingStep, Tool, free_name};
 use crate::state::{Action, Session};
 use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Align, Button, ComboBox, DragValue, Grid, Layout, ProgressBar, Ui};
 use interp::{ExtractSettings, Extremum, Method};
+use project::command::{Command, ComputeTime, has_time};
+use project::error::Noun;
+use time::TimeSettings;
 use widgets::obstacle::{needs, unless};
 
 /// The volume and the settings of the next extraction.
@@ -50,6 +54,7 @@ impl CandidatesPanel {
                 actions.push(Action::Extract(self.volume.clone(), Box::new(self.settings.clone())));
             }
         });
+        without_picks(ui, session, found.is_some(), can, actions);
         ui.collapsing("Settings", |ui| self.extraction_settings(ui, session));
     }
 
@@ -118,8 +123,37 @@ impl CandidatesPanel {
             ui.add(drag).labelled_by(label.id);
             ui.end_row();
         });
-        if ui.small_button("Default settings").clicked() {
+        if ui.button("Default settings").clicked() {
             *settings = ExtractSettings::default();
         }
     }
 }
+
+/// What needs no picks: geologic time, and layers between its levels.
+fn without_picks(ui: &mut Ui, session: &Session, is_extracted: bool, has_volume: bool, actions: &mut Vec<Action>) {
+    ui.horizontal_wrapped(|ui| {
+        let why = needs(is_extracted, "Needs candidates: extract them first");
+        let name = if has_time(&session.document) { "Geologic time again" } else { "Geologic time" };
+        let hint = "The age of every voxel, from the candidates and the faults: then one click makes a horizon";
+        if unless(ui, why, Button::new(name)).on_hover_text(hint).clicked() {
+            let name = match session.document.volumes.iter().any(|entry| entry.name == TIME) {
+                false => TIME.to_owned(),
+                true => free_name(&session.document, Noun::Volume, TIME),
+            };
+            let command = ComputeTime { name, settings: TimeSettings::default() };
+            actions.push(Action::Apply(Box::new(Command::Time(command))));
+            actions.push(Action::Picking(PickingStep::Use(Tool::Time)));
+        }
+        let is_free = session.document.horizons.is_empty();
+        let why = needs(has_volume, "Needs a volume")
+            .or_else(|| needs(is_free, "The project has horizons, and so layers, already"));
+        let hint =
+            "Layers without a pick: candidates, faults, geologic time, its strongest levels. Undo takes each back";
+        if unless(ui, why, Button::new("Illustrate now")).on_hover_text(hint).clicked() {
+            actions.push(Action::Illustrate);
+        }
+    });
+}
+
+/// Name of the first volume of geologic time.
+const TIME: &str = "time";

@@ -9,6 +9,7 @@ use render::{Corner, Ground, PatternSize, Projection, Scene, VoxelBox};
 use survey::VerticalUnit;
 use ttf::Preset;
 use widgets::obstacle::{needs, unless};
+use widgets::percent;
 
 /// Opening angle that a perspective starts with.
 const FOV_DEG: f64 = 35.0;
@@ -63,6 +64,11 @@ impl Controls {
                     actions.push(Action::Apply(Box::new(Command::RemoveScene(command))));
                 }
             });
+        }
+        let obstacle = super::present::obstacle(session);
+        let present = unless(ui, obstacle, Button::new("Present"));
+        if present.on_hover_text("The scenes one after the other over the whole screen (F5)").clicked() {
+            actions.push(Action::Present(Some(0)));
         }
         ui.horizontal(|ui| {
             let label = ui.label("Scene name");
@@ -138,7 +144,7 @@ fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
                 shown.response
             });
         }
-        row(ui, "Face tone", |ui| ui.add(Slider::new(&mut scene.face_tone, 0.0..=0.5).max_decimals(2)));
+        row(ui, "Face tone", |ui| ui.add(percent::slider_to(&mut scene.face_tone, 0.5)));
     });
     if has_layers {
         let mut has_ground = scene.ground.is_some();
@@ -148,7 +154,7 @@ fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
         }
         if let Some(ground) = &mut scene.ground {
             Grid::new("ground").num_columns(2).min_col_width(LABELS).show(ui, |ui| {
-                row(ui, "Hill shading", |ui| ui.add(Slider::new(&mut ground.hill_shade, 0.0..=1.0).max_decimals(2)));
+                row(ui, "Hill shading", |ui| ui.add(percent::slider(&mut ground.hill_shade)));
                 row(ui, "Light from", |ui| {
                     ui.add(Slider::new(&mut ground.light_deg, -180.0..=180.0).max_decimals(0).suffix("°"))
                 });

@@ -6,19 +6,26 @@ use crate::state::{Action, Choice, Dialogue, Place, Session, State, SurfaceForm}
 use eframe::egui::{Align, Button, DragValue, Id, Layout, Response, ScrollArea, Ui, UiBuilder, WidgetInfo};
 use formats::SurfaceKind;
 use project::command::{
-    Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameHorizon, SetFaultExtent, SetRaw, SetVelocity,
+    Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameFault, RenameHorizon, SetFaultExtent, SetRaw,
+    SetVelocity,
 };
 use project::document::FaultEntry;
 use project::styles;
+use render::Scene;
 use survey::VerticalUnit;
 use ttf::ColourMap;
 use widgets::keyboard::{Renamed, Renaming};
 use widgets::obstacle::{needs, unless};
 
+/// Room at the right for the scroll bar, points.
+const BESIDE_BAR: f32 = 8.0;
+
 /// The panel, with the text being typed in it.
 #[derive(Default)]
 pub struct Data {
     renaming: Option<Renaming>,
+    /// The fault whose name is being changed.
+    renaming_fault: Option<Renaming>,
     /// The fault whose buttons are shown.
     fault: Option<String>,
     velocity: Option<f64>,
@@ -30,7 +37,9 @@ impl Data {
     /// Shows the panel.
     pub fn show(&mut self, ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>) {
         notices::show(ui, state, Place::Data, actions);
-        ScrollArea::vertical().show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink([false, true]).show(ui, |ui| {
+            // Buttons at the right end of rows keep clear of the scroll bar.
+            ui.set_max_width(ui.available_width() - BESIDE_BAR);
             ui.heading("Volumes");
             volumes(ui, session, actions);
             ui.add_space(10.0);
@@ -91,6 +100,17 @@ impl Data {
             let is_chosen = self.fault.as_ref() == Some(&entry.name);
             ui.horizontal(|ui| {
                 eye(ui, session, SurfaceKind::Fault, &entry.name, actions);
+                if let Some(renaming) = self.renaming_fault.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
+                    let renamed = renaming.show(ui, 150.0);
+                    if let Renamed::To(to) = &renamed {
+                        let command = RenameFault { from: entry.name.clone(), to: to.clone() };
+                        actions.push(Action::Apply(Box::new(Command::RenameFault(command))));
+                    }
+                    if renamed != Renamed::Typing {
+                        self.renaming_fault = None;
+                    }
+                    return;
+                }
                 let row = named(ui, &entry.name, is_chosen, &format!("Remove fault {}", entry.name));
                 if row.name.on_hover_text(format!("{}: {}", entry.name, entry.source.reading)).clicked() {
                     self.fault = (!is_chosen).then(|| entry.name.clone());
@@ -107,7 +127,14 @@ impl Data {
             let row = UiBuilder::new().scope_id(Id::unique(("extent", &entry.name)));
             ui.scope_builder(row, |ui| ui.horizontal(|ui| self.extent(ui, entry, actions)));
             if is_chosen {
-                ui.indent("chosen", |ui| export(ui, session, SurfaceKind::Fault, &entry.name, actions));
+                ui.indent("chosen", |ui| {
+                    ui.horizontal(|ui| {
+                        if ui.button("Rename").on_hover_text(format!("Rename fault {}", entry.name)).clicked() {
+                            self.renaming_fault = Some(Renaming::of(&entry.name));
+                        }
+                        export(ui, session, SurfaceKind::Fault, &entry.name, actions);
+                    });
+                });
             }
         }
         add(ui, "Add a fault…", Choice::Fault, session.document.geometry.is_some(), actions);
@@ -185,8 +212,7 @@ fn settled(
 
 /// A button at the right end of a row; returns whether it was clicked.
 pub(super) fn remove(ui: &mut Ui, hint: &str) -> bool {
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.small_button("Remove").on_hover_text(hint).clicked())
-        .inner
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.button("Remove").on_hover_text(hint).clicked()).inner
 }
 
 /// The name of a row, and whether it is to be removed.
@@ -198,7 +224,7 @@ struct Row {
 /// A name that is cut off where there is no room, and a button to remove it at the end of the row.
 fn named(ui: &mut Ui, name: &str, is_chosen: bool, hint: &str) -> Row {
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        let is_removed = ui.small_button("Remove").on_hover_text(hint).clicked();
+        let is_removed = ui.button("Remove").on_hover_text(hint).clicked();
         let label = Button::selectable(is_chosen, name).truncate();
         let name = ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.add(label)).inner;
         Row { name, is_removed }
@@ -259,6 +285,15 @@ fn wells(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     ui.heading("Wells");
     for entry in &session.document.wells {
         ui.horizontal(|ui| {
+            let hidden = &session.view.scene.hidden_wells;
+            let mut is_shown = !hidden.contains(&entry.name);
+            let shown = ui.name_inputs(format!("Show well {}", entry.name), |ui| ui.checkbox(&mut is_shown, ""));
+            if shown.on_hover_text("Its path in the block, and its name on figures").changed() {
+                let mut hidden: Vec<String> = hidden.iter().filter(|name| **name != entry.name).cloned().collect();
+                hidden.extend((!is_shown).then(|| entry.name.clone()));
+                let scene = Scene { hidden_wells: hidden, ..session.view.scene.clone() };
+                actions.push(Action::Show(Box::new(scene)));
+            }
             ui.label(&entry.name).on_hover_text(&entry.source.reading);
             if remove(ui, &format!("Remove well {}", entry.name)) {
                 let command = RemoveWell { name: entry.name.clone() };

@@ -5,6 +5,7 @@
 use super::lasso;
 use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
+use super::sections::{axis_name, name_across};
 use super::texture;
 use crate::state::{Action, Panel, Session};
 use crate::work::fence::FenceRequest;
@@ -116,12 +117,13 @@ impl FenceView {
         if is_interpreting {
             overlay.on_fence(&painter, session, &corners, |st| seen.min + st / extent * seen.size());
         }
-        let axis = |ends: [f64; 2], at: [f64; 2]| Axis { name: String::new(), ends, at, least_step: 0.0 };
-        let across = axis([0.0, length_m(geometry, &corners)], [seen.min.x, seen.max.x]);
+        let axis = |name: String, ends: [f64; 2], at: [f64; 2]| Axis { name, ends, at, least_step: 0.0 };
+        let across = axis("m".to_owned(), [0.0, length_m(geometry, &corners)], [seen.min.x, seen.max.x]);
         let down = [0.0, depth].map(|index| geometry.vertical.value_at(index));
-        let down = axis(down, [seen.min.y, seen.max.y]);
+        let down = axis(axis_name(geometry, 2), down, [seen.min.y, seen.max.y]);
         let drawn = axes::drawn(canvas::page_rect(whole), seen, [&across, &down]);
-        canvas::paint(&ui.painter_at(whole), &drawn, None);
+        canvas::paint(&ui.painter_at(whole), &canvas::on_window(drawn, ui.visuals()), None);
+        name_across(ui, whole, body, &across.name);
         Some(())
     }
 }

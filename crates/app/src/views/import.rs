@@ -268,11 +268,7 @@ fn candidates(ui: &mut Ui, info: &SegyInfo, options: &mut SegyOptions) {
         ui.horizontal_wrapped(|ui| {
             if is_taken {
                 ui.strong("In use:");
-            } else if ui
-                .small_button("Use")
-                .on_hover_text(format!("Read bytes {} and {}", bytes[0], bytes[1]))
-                .clicked()
-            {
+            } else if ui.button("Use").on_hover_text(format!("Read bytes {} and {}", bytes[0], bytes[1])).clicked() {
                 (options.inline_byte, options.crossline_byte) = (Some(bytes[0]), Some(bytes[1]));
             }
             ui.label(candidate.as_sentence());

@@ -84,7 +84,7 @@ pub fn click(ui: &Ui, response: &Response, session: &Session, voxel: DVec3, acti
         let how = how(ui);
         actions.push(Action::Picking(match session.view.picking.tool {
             Tool::Sticks => PickingStep::Stick(voxel),
-            Tool::Pick | Tool::Lasso => PickingStep::At(voxel, how),
+            Tool::Pick | Tool::Lasso | Tool::Time => PickingStep::At(voxel, how),
         }));
     }
 }

@@ -22,6 +22,7 @@ pub mod parts;
 pub mod patterns;
 pub mod picking;
 pub mod pointed;
+pub mod present;
 pub mod print;
 pub mod sections;
 pub mod shortcuts;

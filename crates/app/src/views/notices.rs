@@ -21,12 +21,12 @@ pub fn show(ui: &mut Ui, state: &State, place: Place, actions: &mut Vec<Action>)
             }
             ui.horizontal(|ui| {
                 if let Some(root) = &notice.suspect {
-                    let check = ui.small_button("Check project");
+                    let check = ui.button("Check project");
                     if check.on_hover_text("Reads all of it and says what is damaged; nothing is changed").clicked() {
                         actions.push(Action::Check(root.clone(), notice.place));
                     }
                 }
-                if ui.small_button("Dismiss").clicked() {
+                if ui.button("Dismiss").clicked() {
                     actions.push(Action::Dismiss(index));
                 }
             });

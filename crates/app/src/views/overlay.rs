@@ -6,9 +6,9 @@
 
 use super::surfaces;
 use crate::state::picking::voxel_of;
-use crate::state::{Hidden, Panel, Session, camera};
+use crate::state::{Hidden, Panel, Session, StickPoint, Tool, camera};
 use crate::work::{Interpreted, ShownPick, sheet};
-use eframe::egui::{Painter, Rect, Ui};
+use eframe::egui::{Painter, Pos2, Rect, Ui};
 use figure::SectionKind;
 use figure::draw::overlay::{OverlayLines, SeenOn, stick};
 use figure::draw::surfaces::{Cells, OPACITY};
@@ -41,6 +41,11 @@ pub struct Overlay {
     fence: Option<(Made<Vec<DVec2>>, OverlayLines)>,
 }
 
+/// Points of sticks within so many lines of a section can be dragged on it.
+const ON_SECTION: f64 = 2.5;
+/// Distance within which the pointer catches a point of a stick, points.
+const CATCH: f32 = 9.0;
+
 /// The part of an interpretation that only this view knows, for figures, which read the rest from the project.
 pub fn interpreter_view(session: &Session, selected: Option<&ShownPick>) -> InterpreterView {
     let picking = &session.view.picking;
@@ -58,6 +63,29 @@ fn own_sticks(session: &Session) -> impl Iterator<Item = (&Vec<[f64; 3]>, Colour
     let picking = &session.view.picking;
     let drawn = picking.sticks.iter().map(|stick| (stick, STICKS[0]));
     drawn.chain(std::iter::once((&picking.stick, STICKS[1]))).filter(|(stick, _)| !stick.is_empty())
+}
+
+/// The point of a stick that is within reach of a place of a section: `page` leads from (s, t) to the window.
+pub fn stick_point(session: &Session, kind: SectionKind, at: Pos2, page: impl Fn(DVec2) -> Pos2) -> Option<StickPoint> {
+    let geometry = session.document.geometry.as_ref()?;
+    let picking = &session.view.picking;
+    let section = session.view.slices[kind.axis()];
+    let own = picking.sticks.iter().chain(std::iter::once(&picking.stick)).enumerate();
+    let made = session.document.sticks.iter().flat_map(|fault| {
+        fault.sticks.iter().enumerate().map(move |(index, stick)| (Some(fault.fault.clone()), index, stick))
+    });
+    let all = own.map(|(index, stick)| (None, index, stick)).chain(made);
+    let points = all.flat_map(|(fault, stick, places)| {
+        places.iter().enumerate().map(move |(point, place)| (fault.clone(), stick, point, *place))
+    });
+    let off = |place: [f64; 3]| {
+        let voxel = voxel_of(geometry, place);
+        let is_near = (voxel[kind.axis()] - section).abs() <= ON_SECTION;
+        is_near.then(|| page(kind.flat(voxel)).distance(at)).filter(|off| *off <= CATCH)
+    };
+    let near =
+        points.filter_map(|(fault, stick, point, place)| Some((off(place)?, StickPoint { fault, stick, point })));
+    near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, point)| point)
 }
 
 /// All sticks with their colours: those of faults, those drawn, and the one being drawn.
@@ -207,4 +235,8 @@ fn draw(painter: &Painter, session: &Session, lines: &OverlayLines, on: SeenOn, 
     let own = DrawnInterpretation { sticks: sticks(session), ..DrawnInterpretation::default() };
     let near = figure::draw::overlay::sticks(&own, on, &page);
     near.iter().for_each(|group| canvas::paint(painter, group, None));
+    if session.view.picking.tool == Tool::Sticks {
+        let beside = figure::draw::overlay::ghosts(&own, on, &page);
+        beside.iter().for_each(|group| canvas::paint(painter, group, None));
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::state::camera;
 use glam::{DVec2, DVec3, Vec3};
+use pictures::LeafFacts;
 use pictures::load::Loaded;
 use render::visible::Ray;
 use render::{NamedVolume, Scene};
@@ -20,6 +21,8 @@ pub struct Pointed {
     pub layer: Option<u16>,
     /// The value of the raw volume there.
     pub value: Option<f32>,
+    /// The leaf of the candidates there.
+    pub leaf: Option<LeafFacts>,
 }
 
 /// The first rock under a point of a picture of this size.
@@ -58,7 +61,8 @@ pub fn at_voxel(loaded: &Loaded, voxel: Vec3, axis: Option<usize>) -> Pointed {
     let layer = loaded.rock.as_ref().map(|rock| rock.model.region_at(voxel).layer);
     let raw = loaded.raw.as_ref().and_then(|raw| loaded.volumes.iter().find(|volume| volume.name == raw.volume));
     let value = raw.map(|raw| NamedVolume { name: &raw.name, volume: &raw.volume, covers: raw.covers }.sample(voxel));
-    Pointed { voxel: voxel.as_dvec3(), axis, layer, value: value.filter(|value| !value.is_nan()) }
+    let leaf = loaded.candidates.as_ref().and_then(|candidates| candidates.leaf_at(voxel));
+    Pointed { voxel: voxel.as_dvec3(), axis, layer, value: value.filter(|value| !value.is_nan()), leaf }
 }
 
 /// The place in words: line numbers, time or depth with its unit, value, layer.
@@ -78,6 +82,16 @@ pub fn sentence(pointed: &Pointed, document: &project::document::Document) -> St
         text += &format!("   {name}");
     }
     text
+}
+
+/// What a click there selects while interpreting, and the horizon that has it already.
+pub fn picked(pointed: &Pointed, has: impl Fn(u32) -> Option<String>) -> String {
+    let Some(LeafFacts { leaf, triangles, levels }) = pointed.leaf else {
+        return "no leaf is near".to_owned();
+    };
+    let plural = if levels == 1 { "" } else { "s" };
+    let of = has(leaf).map_or_else(String::new, |horizon| format!(", part of {horizon}"));
+    format!("a click selects leaf {leaf}: {triangles} triangles, {levels} level{plural} to climb{of}")
 }
 
 /// A number with five significant digits.

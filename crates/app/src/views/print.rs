@@ -57,6 +57,7 @@ impl Page {
             title: said(&form.title),
             caption: said(&form.caption),
             interpretation: is_interpreting,
+            hidden: session.view.hidden.names().map(str::to_owned).collect(),
             preset: Some(session.view.scene.preset),
         };
         let view = interpreter_view(session, overlay.selected());

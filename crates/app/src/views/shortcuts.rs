@@ -75,6 +75,9 @@ pub const SHORTCUTS: &[Shortcut] = &[
         ask(Dialogue::Export(ExportForm::new(session.root.with_extension("png").display().to_string())))
     }),
     command(Key::W, "Ctrl W", "Close the project", |_| Some(Action::Close)),
+    plain(Key::F5, "F5", "Present the scenes", |session| {
+        super::present::obstacle(session).is_none().then_some(Action::Present(Some(0)))
+    }),
     plain(Key::Num1, "1", "Block alone", |_| Some(Action::Arrange(Layout::Block))),
     plain(Key::Num2, "2", "Block and sections", |_| Some(Action::Arrange(Layout::Sections))),
     plain(Key::Num3, "3", "Map", |_| Some(Action::Arrange(Layout::Map))),
@@ -213,7 +216,7 @@ fn side(session: &Session, axis: usize, inwards: f64) -> Option<Action> {
 
 /// Obeys the keys that were pressed, unless a text field, an open list or a dialogue takes them.
 pub fn obey(ctx: &Context, state: &State, listener: &Listener, actions: &mut Vec<Action>) {
-    if state.dialogue.is_some() || listener.is_typing(ctx) {
+    if state.dialogue.is_some() || state.presented.is_some() || listener.is_typing(ctx) {
         return;
     }
     let asked = ctx.input_mut(|input| {

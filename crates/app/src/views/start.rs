@@ -88,7 +88,7 @@ impl StartPage {
                     actions.push(Action::Open(root.clone()));
                 }
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    let forget = ui.small_button("Forget").on_hover_text(format!("Take {} off this list", name(root)));
+                    let forget = ui.button("Forget").on_hover_text(format!("Take {} off this list", name(root)));
                     if forget.clicked() {
                         actions.push(Action::Forget(root.clone()));
                     }

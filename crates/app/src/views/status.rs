@@ -1,15 +1,15 @@
 //! The status bar: what is under the cursor, and what is under way.
 
 use super::pointed::{self, Pointed};
-use crate::state::{Action, Place, State};
-use crate::work::RunningLine;
+use crate::state::{Action, Place, State, Tool};
+use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Align, Label, Layout, ProgressBar, Ui};
 
 /// Shows the status bar.
 pub fn show(
     ui: &mut Ui,
     state: &State,
-    pointed: Option<&Pointed>,
+    (pointed, interpreted): (Option<&Pointed>, Option<&Interpreted>),
     running: &[RunningLine],
     (is_drawing, device): (bool, &str),
     actions: &mut Vec<Action>,
@@ -18,12 +18,22 @@ pub fn show(
         let session = state.session.as_ref();
         if let (Some(session), Some(pointed)) = (session, pointed) {
             ui.label(pointed::sentence(pointed, &session.document));
+            if let Some(shown) =
+                interpreted.filter(|shown| shown.key.is_some() && session.view.picking.tool == Tool::Pick)
+            {
+                let has = |leaf: u32| {
+                    let holds = shown.horizons.iter().find(|horizon| horizon.leaves.contains(&leaf));
+                    holds.map(|horizon| horizon.name.clone())
+                };
+                ui.separator();
+                ui.add(Label::new(pointed::picked(pointed, has)).truncate());
+            }
         } else if let Some(session) = session {
             ui.weak(session.root.display().to_string());
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             for line in running {
-                if ui.small_button("Stop").on_hover_text(format!("Stop: {}", line.title)).clicked() {
+                if ui.button("Stop").on_hover_text(format!("Stop: {}", line.title)).clicked() {
                     line.progress.cancel();
                 }
                 let bar = match line.share() {
@@ -36,7 +46,7 @@ pub fn show(
                 ui.label(text);
             }
             if let Some((index, notice)) = state.notices_at(Place::Foot).last() {
-                if ui.small_button("Dismiss").clicked() {
+                if ui.button("Dismiss").clicked() {
                     actions.push(Action::Dismiss(index));
                 }
                 ui.add(Label::new(&notice.text).truncate());

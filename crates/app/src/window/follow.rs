@@ -93,6 +93,11 @@ impl Window {
                     self.act(Action::Answered);
                     self.act(Action::Tell(Notice::note(Place::Foot, format!("Written: {}", path.display()))));
                 }
+                Event::Thumbnail { root, name, image } => {
+                    if self.has_open(&root) {
+                        self.presentation.receive(ctx, name, &image);
+                    }
+                }
                 Event::Previewed(page, preset) => self.preview.set(page, preset),
                 Event::Told(notice) => self.act(Action::Tell(notice)),
             }

@@ -3,6 +3,7 @@
 mod follow;
 mod frames;
 mod page;
+mod present;
 
 use super::error::WindowError;
 use super::hold::Hold;
@@ -10,8 +11,8 @@ use super::views::dropped::{self, Dropped};
 use super::views::{
     block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, fence::FenceView, functions::Functions,
     import::Import, interpretation::Interpretation, layers::Layers, map::MapView, overlay::Overlay, patterns::Patterns,
-    picking::PickingPanel, pointed::Pointed, print::Page, sections::Sections, shortcuts, start::StartPage, status,
-    surface, tiles::Tiles, well::WellDialogue,
+    picking::PickingPanel, pointed::Pointed, present::Presentation, print::Page, sections::Sections, shortcuts,
+    start::StartPage, status, surface, tiles::Tiles, well::WellDialogue,
 };
 use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
 use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};
@@ -107,6 +108,9 @@ pub struct Window {
     titled: Option<String>,
     controls: Controls,
     preview: PagePreview,
+    presentation: Presentation,
+    /// Whether the window was asked to fill the screen.
+    is_full: bool,
     /// What the page that is shown was laid out for.
     previewed: Option<ExportForm>,
     pointed: Option<Pointed>,
@@ -160,6 +164,8 @@ impl Window {
             titled: None,
             controls: Controls::default(),
             preview: PagePreview::default(),
+            presentation: Presentation::default(),
+            is_full: false,
             previewed: None,
             pointed: None,
             rocks: None,
@@ -267,6 +273,7 @@ impl Window {
         self.overlay = Overlay::default();
         self.picking = PickingPanel::default();
         self.preview = PagePreview::default();
+        self.presentation = Presentation::default();
     }
 
     /// Where a failure of the task is shown.
@@ -338,11 +345,18 @@ impl Window {
         let mut actions = Vec::new();
         shortcuts::obey(&ctx, &self.state, &self.listener, &mut actions);
         let running = self.work.running.lines();
+        if self.presented(ui, &mut actions) {
+            self.listener.end_frame(&ctx);
+            actions.into_iter().for_each(|action| self.act(action));
+            return;
+        }
         self.dropped.receive(&ctx, &self.state, !running.is_empty(), &mut actions);
         Panel::bottom("status").exact_size(32.0).show(ui, |ui| {
             let drawable = self.state.session.as_ref().is_some_and(state::Session::is_drawable);
             let device = (drawable && !self.block.is_settled(), self.block.device());
-            status::show(ui, &self.state, self.pointed.as_ref(), &running, device, &mut actions);
+            let interpreted = self.overlay.interpreted().filter(|_| self.is_interpreting()).map(AsRef::as_ref);
+            let pointed = (self.pointed.as_ref(), interpreted);
+            status::show(ui, &self.state, pointed, &running, device, &mut actions);
         });
         if self.state.session.is_some() {
             self.work_page(ui, &running, &mut actions);

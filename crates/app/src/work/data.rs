@@ -201,7 +201,9 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
         if kept.wells != document.wells {
             let geometry = kept.rocks.read().unwrap_or_else(PoisonError::into_inner).geometry.clone();
             let wells = load::read_wells(&wanted.root, document, &geometry)?;
-            kept.rocks.write().unwrap_or_else(PoisonError::into_inner).wells = wells;
+            let mut loaded = kept.rocks.write().unwrap_or_else(PoisonError::into_inner);
+            (loaded.wells, loaded.data_version) = (wells, load::new_version());
+            drop(loaded);
             kept.wells.clone_from(&document.wells);
         }
         restyle(&kept.rocks, wanted)?;
@@ -318,11 +320,20 @@ mod tests {
         let before = load(&wanted(&project), &mut kept, &Progress::silent()).unwrap();
         assert!(before.read().unwrap().wells.is_empty());
         let deviation = write("w.csv", "md_m,x_m,y_m,tvdss_m\n0,50,50,0\n30,50,50,30\n");
-        let files = formats::well::WellFiles { deviation, ..Default::default() };
+        let las = write(
+            "w.las",
+            "~V\nVERS. 2.0 :\nWRAP. NO :\n~W\nNULL. -999.25 :\n~C\nDEPT.M :\nGR.API :\n~A\n0 40\n15 -999.25\n30 90\n",
+        );
+        let files = formats::well::WellFiles { deviation, las: vec![las], ..Default::default() };
         let well = AddWell { name: "W".to_owned(), files, options: Default::default() };
         project.apply(&Command::AddWell(well), &Progress::silent()).unwrap();
         let after = load(&wanted(&project), &mut kept, &Progress::silent()).unwrap();
         assert_eq!(after.read().unwrap().wells.len(), 1);
+        // Its log is shown on sections, from its smallest to its largest value.
+        let loaded = after.read().unwrap();
+        let log = loaded.wells[0].log.as_ref().unwrap();
+        assert_eq!((log.name.as_str(), log.range, log.points.len()), ("GR", [40.0, 90.0], 3));
+        drop(loaded);
         assert!(Arc::ptr_eq(&before, &after), "the model is not computed again");
     }
 

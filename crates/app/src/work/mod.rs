@@ -34,6 +34,7 @@ use super::state::{Notice, PickingStep, Place, Snapshot, Task};
 use figure::DisplayList;
 use figure::cut::{FenceCut, SectionCut};
 use figure::map::HorizonMap;
+use image::RgbaImage;
 use project::command::PickNode;
 use render::FaceData;
 use std::path::PathBuf;
@@ -91,6 +92,15 @@ pub enum Event {
         root: PathBuf,
         /// The picks.
         picks: Vec<PickNode>,
+    },
+    /// The small picture of a scene.
+    Thumbnail {
+        /// The project it is of.
+        root: PathBuf,
+        /// The scene's name.
+        name: String,
+        /// The picture.
+        image: RgbaImage,
     },
     /// A picture was written.
     Exported(PathBuf),
@@ -179,6 +189,10 @@ impl Work {
             Task::Open(root) => orders::Order::Open(root, place),
             Task::Check(root, place) => orders::Order::Check(root, place),
             Task::Demo(folder) => orders::Order::Demo(folder, place),
+            Task::Illustrate => match root() {
+                Some(root) => orders::Order::Illustrate(root),
+                None => return,
+            },
             Task::Create { command, root } => orders::Order::Create { command, root },
             Task::Apply(command) => match root() {
                 Some(root) => orders::Order::Apply { root, command, place },
@@ -238,25 +252,27 @@ impl Work {
     }
 }
 
-/// Computes on all processors but one, which is left to the window so that it stays responsive.
+/// Computes on all processors, at a lower priority than the window, so that it stays responsive.
 ///
 /// A job must take no lock on the loaded data: the thread that holds the lock may be waiting for these processors. The
 /// caller takes locks beforehand.
 pub(super) fn compute<T: Send>(job: impl FnOnce() -> T + Send) -> T {
     static POOL: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
-    on(&POOL, job)
+    on(&POOL, threads::SOON, job)
 }
 
 /// The same on separate threads: jobs that take minutes must not delay the drawing of pictures.
 fn compute_apart<T: Send>(job: impl FnOnce() -> T + Send) -> T {
     static POOL: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
-    on(&POOL, job)
+    on(&POOL, threads::LATER, job)
 }
 
-fn on<T: Send>(pool: &OnceLock<Option<rayon::ThreadPool>>, job: impl FnOnce() -> T + Send) -> T {
+fn on<T: Send>(pool: &OnceLock<Option<rayon::ThreadPool>>, nice: i32, job: impl FnOnce() -> T + Send) -> T {
     let pool = pool.get_or_init(|| {
-        let threads = std::thread::available_parallelism().map_or(1, |count| count.get().saturating_sub(1).max(1));
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()
+        let spared = usize::from(!threads::HAS_PRIORITIES);
+        let threads = std::thread::available_parallelism().map_or(1, |count| count.get().saturating_sub(spared).max(1));
+        let builder = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        builder.start_handler(move |_| threads::give_way(nice)).build().ok()
     });
     match pool {
         Some(pool) => pool.install(job),

@@ -4,7 +4,7 @@
 use super::running::{Running, RunningGuard};
 use super::{Event, Outbox, keep_working};
 use crate::state::{Notice, Place, Snapshot};
-use chains::demo;
+use chains::{demo, illustrate};
 use project::Project;
 use project::check::check;
 use project::command::{Command, ImportVolume};
@@ -19,8 +19,17 @@ pub(super) enum Order {
     Open(PathBuf, Place),
     Check(PathBuf, Place),
     Demo(PathBuf, Place),
-    Create { command: Box<ImportVolume>, root: PathBuf },
-    Apply { root: PathBuf, command: Box<Command>, place: Place },
+    /// Give a project layers by computed geologic time.
+    Illustrate(PathBuf),
+    Create {
+        command: Box<ImportVolume>,
+        root: PathBuf,
+    },
+    Apply {
+        root: PathBuf,
+        command: Box<Command>,
+        place: Place,
+    },
     Undo(PathBuf),
     Redo(PathBuf),
 }
@@ -62,11 +71,13 @@ impl Order {
             Self::Open(..) => "Opening the project".to_owned(),
             Self::Check(..) => "Checking the project".to_owned(),
             Self::Demo(..) => "Making the demonstration".to_owned(),
+            Self::Illustrate(_) => "Illustrating".to_owned(),
             Self::Create { command, .. } => format!("Reading {}", file_name(&command.path)),
             Self::Apply { command, .. } => match command.as_ref() {
                 Command::Import(import) => format!("Reading {}", file_name(&import.path)),
                 Command::AddHorizon(add) => format!("Reading {}", file_name(&add.path)),
                 Command::AddFault(add) => format!("Reading {}", file_name(&add.path)),
+                Command::Time(_) => "Computing geologic time".to_owned(),
                 _ => "Saving".to_owned(),
             },
             Self::Undo(_) => "Undo".to_owned(),
@@ -78,6 +89,7 @@ impl Order {
         match self {
             Self::Open(_, place) | Self::Check(_, place) | Self::Demo(_, place) => *place,
             Self::Create { .. } => Place::Dialogue,
+            Self::Illustrate(_) => Place::Interpret,
             Self::Apply { place, .. } => *place,
             Self::Undo(_) | Self::Redo(_) => Place::Block,
         }
@@ -86,7 +98,11 @@ impl Order {
     /// The project that is there already.
     fn root(&self) -> Option<PathBuf> {
         match self {
-            Self::Open(root, _) | Self::Apply { root, .. } | Self::Undo(root) | Self::Redo(root) => Some(root.clone()),
+            Self::Open(root, _)
+            | Self::Illustrate(root)
+            | Self::Apply { root, .. }
+            | Self::Undo(root)
+            | Self::Redo(root) => Some(root.clone()),
             Self::Check(..) | Self::Demo(..) | Self::Create { .. } => None,
         }
     }
@@ -98,6 +114,11 @@ impl Order {
             Self::Demo(folder, _) => {
                 let done = demo::run(&folder, progress)?;
                 Event::Opened(Box::new(snapshot(&Project::open(&absolute(&done.project))?)?))
+            }
+            Self::Illustrate(root) => {
+                let mut project = Project::open(&root)?.waiting(DEFAULT_WAIT);
+                illustrate::layers_by_time(&mut project, illustrate::LAYERS, progress)?;
+                Event::Changed { snapshot: Box::new(snapshot(&project)?), place: Place::Interpret }
             }
             Self::Create { command, root } => {
                 let mut new = Project::create(&absolute(&root), None)?;

@@ -25,6 +25,9 @@ const COARSEST: u32 = 8;
 const COARSE_CELLS: u32 = 96;
 /// Samples for each pixel along each axis in the final picture.
 const SMOOTH_SAMPLES: u32 = 2;
+/// Memory for what rays hit, bytes: two pictures of a window, or one on a large screen. A change of colours or patterns
+/// only colours it again.
+const POINTS_BYTES: usize = 256 << 20;
 /// Weight of the latest measurement in the estimate of the time for a ray.
 const LATEST: f64 = 0.5;
 
@@ -233,7 +236,7 @@ impl Artist {
     ) -> Result<(), RenderError> {
         let painter = match &mut self.painter {
             Some(painter) => painter,
-            none => none.insert(Painter::new(Device::Auto, progress)?),
+            none => none.insert(Painter::new(Device::Auto, progress)?.keeping_points(POINTS_BYTES)),
         };
         let scene = &request.scenes[pane];
         let size_px = scene.size_px.map(|side| side.div_ceil(divisor).max(1));

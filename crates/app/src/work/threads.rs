@@ -10,6 +10,23 @@ use std::thread::Builder;
 /// How many times a worker is restarted; one that fails more often would fail at everything.
 const RESTARTS: usize = 50;
 
+/// How far threads give way that compute pictures, and those that work for minutes: nice values, of which one step is a
+/// tenth of a processor's time.
+pub(super) const SOON: i32 = 2;
+pub(super) const LATER: i32 = 8;
+
+/// Whether a thread can give way. Where it cannot, a processor is left to the window.
+pub(super) const HAS_PRIORITIES: bool = cfg!(target_os = "linux");
+
+/// Lets the window and the display's driver go first on this thread.
+pub(super) fn give_way(nice: i32) {
+    // On Linux a priority belongs to a thread; it may always be lowered.
+    #[cfg(target_os = "linux")]
+    let _ = rustix::process::setpriority_process(None, nice);
+    #[cfg(not(target_os = "linux"))]
+    let _ = nice;
+}
+
 /// Starts a thread for one job. A panic in it is reported, and so is a failure to start the thread.
 pub(super) fn spawn(name: &'static str, outbox: &Outbox, job: impl FnOnce() + Send + 'static) {
     let theirs = outbox.clone();

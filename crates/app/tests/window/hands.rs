@@ -68,6 +68,28 @@ fn points_of_a_stick_are_where_they_were_clicked_and_enter_ends_it_after_them() 
     assert!(sticks[0].windows(2).all(|pair| pair[0][2] < pair[1][2]), "{sticks:?}");
 }
 
+/// A point of a stick follows the hand; the section stays where it is.
+#[test]
+fn a_point_of_a_stick_is_dragged() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = interpreting(folder.path());
+    click(&mut harness, "Sections");
+    act(&mut harness, PickingStep::Use(Tool::Sticks));
+    let middle = harness.get_by_label("Inline section").rect().center();
+    let places = [vec2(-40.0, -30.0), vec2(0.0, 0.0)].map(|off| middle + off);
+    at_once(&mut harness, places.into_iter().flat_map(clicked));
+    let before = picking(&harness).stick.clone();
+    assert_eq!(before.len(), 2);
+    let drop = places[1] + vec2(30.0, 20.0);
+    at_once(&mut harness, [Event::PointerMoved(places[1]), button(places[1], true)]);
+    at_once(&mut harness, [Event::PointerMoved(places[1] + vec2(15.0, 10.0))]);
+    at_once(&mut harness, [Event::PointerMoved(drop)]);
+    at_once(&mut harness, [button(drop, false)]);
+    let after = picking(&harness).stick.clone();
+    assert_eq!((after.len(), after[0]), (2, before[0]));
+    assert!(after[1][1] > before[1][1] && after[1][2] > before[1][2], "{before:?} {after:?}");
+}
+
 #[test]
 fn a_notch_of_the_wheel_is_one_line() {
     let folder = tempfile::tempdir().unwrap();

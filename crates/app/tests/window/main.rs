@@ -10,6 +10,7 @@ mod keyboard;
 mod page;
 mod panel;
 mod picking;
+mod present;
 mod tree;
 mod unpicked;
 mod volumes;

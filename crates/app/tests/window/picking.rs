@@ -105,7 +105,7 @@ fn a_click_on_a_section_selects_climbs_and_becomes_a_horizon_as_the_command_make
     harness.key_press(Key::ArrowUp);
     harness.run_steps(2);
     assert_eq!(picking(&harness).pick.as_ref().unwrap().up, 1);
-    wait(&mut harness, "the node is described", |harness| harness.query_by_label_contains("triangles").is_some());
+    wait(&mut harness, "the node is described", |harness| harness.query_all_by_label_contains("triangles").count() > 0);
     harness.key_press(Key::ArrowDown);
     harness.run_steps(2);
     harness.key_press(Key::H);

@@ -5,7 +5,7 @@ use super::driven::{Driven, click, document, open, state, wait};
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use formats::SurfaceKind;
-use project::command::{Command, PickFault};
+use project::command::{AddWell, Command, PickFault};
 
 fn type_path(harness: &mut Driven, path: &std::path::Path) {
     harness.get_by_label("File").focus();
@@ -40,6 +40,46 @@ fn horizons_and_faults_are_written_from_the_window() {
         // Chosen no more, so that the next row's button is the last.
         click_last(&mut harness, name);
     }
+}
+
+/// A name typed for a fault is followed by its sticks, and a horizon from a file has a colour to choose.
+#[test]
+fn faults_are_renamed_and_imported_horizons_coloured() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    let stick = |crossline: f64| vec![[9.0, crossline, 4.0], [13.0, crossline, 120.0]];
+    let fault = PickFault { name: "East".into(), sticks: vec![stick(2.0), stick(18.0)] };
+    applied(&mut harness, &Command::PickFault(fault));
+    click(&mut harness, "Data");
+    click_last(&mut harness, "East");
+    click_last(&mut harness, "Rename");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.get_by_label("New name").type_text("Border");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    wait(&mut harness, "it has its name", |harness| document(harness).faults[0].name == "Border");
+    assert_eq!(document(&harness).sticks[0].fault, "Border");
+    click_last(&mut harness, "Colour of Top");
+    click_last(&mut harness, "Colour 12");
+    let chosen = Some(ttf::Colour::new(0x30, 0x30, 0x30));
+    wait(&mut harness, "it has its colour", |harness| document(harness).horizons[0].own_colour() == chosen);
+}
+
+#[test]
+fn a_well_is_hidden_in_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    let deviation = folder.path().join("w.csv");
+    std::fs::write(&deviation, "md_m,x_m,y_m,tvdss_m\n0,50,50,0\n30,50,50,30\n").unwrap();
+    let files = formats::well::WellFiles { deviation, ..Default::default() };
+    let well = AddWell { name: "W".to_owned(), files, options: Default::default() };
+    applied(&mut harness, &Command::AddWell(well));
+    click(&mut harness, "Data");
+    let hidden = |harness: &Driven| state(harness).session.as_ref().unwrap().view.scene.hidden_wells.clone();
+    click_last(&mut harness, "Show well W");
+    assert_eq!(hidden(&harness), ["W"]);
+    click_last(&mut harness, "Show well W");
+    assert!(hidden(&harness).is_empty());
 }
 
 #[test]

@@ -15,6 +15,10 @@ use ttf::Colour;
 
 /// How far from a section sticks are drawn on it, traces or samples.
 const NEAR: f64 = 2.5;
+/// Sticks within so many lines are those of neighbouring sections.
+const GHOSTS: f64 = 25.0;
+/// How dark their ink is.
+const GHOST_OPACITY: f32 = 0.35;
 /// Diameter of the dots across holes, and from one to the next, points.
 const DOT_PT: [f64; 2] = [1.5, 3.6];
 /// Width of the selection and of the rim around it, points.
@@ -119,12 +123,12 @@ impl SeenOn<'_> {
     }
 
     /// (s, t) of a stick that lies near; none of another.
-    fn stick(&self, places: &[DVec3]) -> Option<Line> {
+    fn stick(&self, places: &[DVec3], reach: f64) -> Option<Line> {
         let place = |p: &DVec3| match *self {
-            Self::Section(kind, at) => ((p[kind.axis()] - at).abs() <= NEAR).then(|| kind.flat(*p)),
+            Self::Section(kind, at) => ((p[kind.axis()] - at).abs() <= reach).then(|| kind.flat(*p)),
             Self::Fence(corners) => {
                 let (s, off) = station_of(corners, p.truncate())?;
-                (off <= NEAR).then_some(DVec2::new(s, p.z))
+                (off <= reach).then_some(DVec2::new(s, p.z))
             }
         };
         places.iter().map(place).collect()
@@ -232,8 +236,20 @@ fn is_empty(item: &crate::list::Item) -> bool {
 
 /// The sticks that lie near a section or a fence.
 pub fn sticks(shown: &DrawnInterpretation, on: SeenOn, page: impl Fn(DVec2) -> DVec2) -> Vec<Group> {
-    let near = shown.sticks.iter().filter_map(|stick| Some((on.stick(&stick.places)?, stick.colour)));
+    let near = shown.sticks.iter().filter_map(|stick| Some((on.stick(&stick.places, NEAR)?, stick.colour)));
     near.map(|(places, colour)| stick(places.into_iter().map(&page).collect(), colour)).collect()
+}
+
+/// The sticks of neighbouring sections, in light ink: where the fault was on them.
+pub fn ghosts(shown: &DrawnInterpretation, on: SeenOn, page: impl Fn(DVec2) -> DVec2) -> Vec<Group> {
+    let others = shown.sticks.iter().filter(|stick| on.stick(&stick.places, NEAR).is_none());
+    let ghost = |stick: &crate::interpretation::Stick| {
+        let places: Vec<DVec2> = on.stick(&stick.places, GHOSTS)?.into_iter().map(&page).collect();
+        let ink = Ink::glass(stick.colour, GHOST_OPACITY);
+        let line = PathItem::stroked(Path::line(&places), Stroke::new(HORIZON_PT, ink).round());
+        Some(Group::new(GroupKind::Fault, "neighbouring stick").with([line.into()]))
+    };
+    others.filter_map(ghost).collect()
 }
 
 /// A stick on a page.

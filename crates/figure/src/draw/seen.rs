@@ -51,7 +51,9 @@ pub(crate) fn seen(scene: &Scene, geometry: &SurveyGeometry, model: &StructuralM
         sight.add_faces(scene, geometry, &mut seen);
     }
     if scene.wells.radius > 0.0 {
-        seen.wells = (0..wells.len()).filter(|well| sight.sees_well(wells[*well].path)).collect();
+        seen.wells = (0..wells.len())
+            .filter(|well| !scene.hides_well(wells[*well].name) && sight.sees_well(wells[*well].path))
+            .collect();
     }
     seen
 }

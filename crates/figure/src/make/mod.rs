@@ -258,6 +258,8 @@ impl<'a> Maker<'a> {
         }
         let names =
             BlockNames { layers: self.inputs.layers, horizons: self.inputs.horizons, faults: self.inputs.faults };
+        let shown = |well: &&Well| !part.scene.hides_well(&well.name);
+        let wells: Vec<Well> = self.inputs.wells.iter().filter(shown).cloned().collect();
         let panel = BlockPanel {
             scene: &part.scene,
             geometry: self.geometry,
@@ -271,7 +273,7 @@ impl<'a> Maker<'a> {
                 geometry: self.geometry,
                 model: self.inputs.source.data.model.filter(|_| !self.figure.interpretation),
                 names,
-                wells: self.inputs.wells,
+                wells: &wells,
             }),
             names,
         };

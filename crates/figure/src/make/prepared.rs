@@ -13,6 +13,7 @@ use crate::list::Group;
 use crate::spec::{FencePart, Part, SectionPart};
 use glam::DVec2;
 use image::RgbaImage;
+use model::section::LineKind;
 use std::sync::Arc;
 
 /// What a part shows.
@@ -100,9 +101,22 @@ impl Maker<'_> {
             marks: self.marks_on(kind)?,
             on: Place::Section(kind, at),
             image: Arc::new(cut.image),
-            lines: cut.lines,
+            lines: self.shown_lines(cut.lines),
             overlay: None,
         })
+    }
+
+    /// The lines of what is not hidden.
+    fn shown_lines(&self, mut lines: Vec<CutLine>) -> Vec<CutLine> {
+        let is_hidden = |name: Option<&str>| name.is_some_and(|name| self.figure.hides(name));
+        lines.retain(|line| match line.kind {
+            LineKind::Horizon { horizon } => {
+                !is_hidden(self.inputs.horizons.get(horizon).map(|known| known.name.as_str()))
+            }
+            LineKind::Fault { fault, .. } => !is_hidden(self.inputs.faults.get(fault).map(String::as_str)),
+            LineKind::Frame => true,
+        });
+        lines
     }
 
     fn fence(&self, part: &FencePart) -> Result<PreparedSection, FigureError> {
@@ -124,7 +138,7 @@ impl Maker<'_> {
             marks: Marks { down: along[1..along.len() - 1].to_vec(), ..Marks::default() },
             on: Place::Fence(corners),
             image: Arc::new(cut.image),
-            lines: cut.lines,
+            lines: self.shown_lines(cut.lines),
             overlay: None,
         })
     }

@@ -78,7 +78,12 @@ pub fn make(
     memory::check("the page", &figure.size_px().map(|side| side.min(LONGEST_SIDE) as usize), PIXEL_BYTES)?;
     let (loaded, model, stages) = load(project, figure, settings, progress)?;
     let picks = if figure.interpretation { Some(InterpreterPicks::read(project, view, progress)?) } else { None };
-    let shown = picks.as_ref().map(InterpreterPicks::borrowed);
+    let shown = picks.as_ref().map(|picks| {
+        let mut shown = picks.borrowed();
+        shown.horizons.retain(|horizon| !figure.hides(horizon.name));
+        shown.faults.retain(|fault| !figure.hides(fault.name));
+        shown
+    });
     let names_layers = figure.annotate.contains(&Annotation::Layers);
     let has_wells = figure.parts.iter().any(|part| matches!(part, Part::Correlation(_)));
     let names_wells = figure.annotate.contains(&Annotation::Wells);
@@ -242,7 +247,7 @@ pub fn horizons(document: &Document) -> Vec<NamedColour> {
     let entries = document.horizons.iter().enumerate();
     let named = entries.map(|(index, entry)| NamedColour {
         name: entry.name.clone(),
-        colour: figure::style::horizon_colour(entry.assembly.as_ref().map(|log| log.colour), index),
+        colour: figure::style::horizon_colour(entry.own_colour(), index),
     });
     named.collect()
 }

@@ -48,6 +48,15 @@ pub struct SetFaultExtent {
     pub grown_m: f64,
 }
 
+/// Gives a fault another name.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RenameFault {
+    /// Its name.
+    pub from: String,
+    /// Its new name.
+    pub to: String,
+}
+
 /// Removes a fault.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RemoveFault {
@@ -131,6 +140,23 @@ impl SetFaultExtent {
             grown_m => format!("fault {} reaches {grown_m} m beyond what was drawn", self.fault),
         };
         Ok(Effect::Changed { summary })
+    }
+}
+
+impl RenameFault {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let index = draft.document.position(Noun::Fault, &self.from)?;
+        // The fault's own name in another case is not a duplicate.
+        if self.from.to_lowercase() != self.to.to_lowercase() {
+            draft.document.check_new_name(Noun::Fault, &self.to)?;
+        }
+        let document = &mut draft.document;
+        document.faults[index].name.clone_from(&self.to);
+        let ends = document.faults.iter_mut().filter_map(|fault| fault.truncated_by.as_mut());
+        let drawn = document.sticks.iter_mut().map(|drawn| &mut drawn.fault);
+        ends.chain(drawn).filter(|name| **name == self.from).for_each(|name| name.clone_from(&self.to));
+        rebuild_all(draft, progress)?;
+        Ok(Effect::Changed { summary: format!("fault {} is now {}", self.from, self.to) })
     }
 }
 

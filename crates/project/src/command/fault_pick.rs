@@ -10,7 +10,7 @@ use formats::fault_of_sticks;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use survey::{Fault, Progress};
+use survey::{Fault, Progress, SurveyGeometry};
 
 /// Adds sticks to a fault; from two sticks on it has a surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -19,6 +19,19 @@ pub struct PickFault {
     pub name: String,
     /// The sticks, each of at least two points: inline, crossline, vertical value.
     pub sticks: Vec<Vec<[f64; 3]>>,
+}
+
+/// Moves a point of a stick that a fault was drawn with.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MoveStickPoint {
+    /// Name of the fault.
+    pub fault: String,
+    /// Which of its sticks, counted from 0.
+    pub stick: usize,
+    /// Which of the stick's points, counted from 0.
+    pub point: usize,
+    /// Where it goes: inline, crossline, vertical value.
+    pub to: [f64; 3],
 }
 
 /// Adds a proposed fault to the project.
@@ -36,23 +49,7 @@ impl PickFault {
         if let Some(stick) = self.sticks.iter().position(|stick| stick.len() < 2) {
             return Err(ProjectError::ShortStick { stick: stick + 1 });
         }
-        for place in self.sticks.iter().flatten() {
-            let voxel = geometry.voxel_from_lines(place[0], place[1]).extend(geometry.vertical.index_of(place[2]));
-            let size = geometry.size();
-            // A stick may end a little outside the survey; a point farther outside is a mistyped number.
-            let near = (0..3).all(|axis| {
-                let n = size[axis] as f64;
-                voxel[axis] >= -0.25 * n && voxel[axis] <= 1.25 * n
-            });
-            if !near {
-                return Err(ProjectError::PickOutside {
-                    at: *place,
-                    inlines: [geometry.inlines.first, geometry.inlines.last()],
-                    crosslines: [geometry.crosslines.first, geometry.crosslines.last()],
-                    vertical: [geometry.vertical.first, geometry.vertical.last()],
-                });
-            }
-        }
+        self.sticks.iter().flatten().try_for_each(|place| check_near(&geometry, *place))?;
         let drawn = draft.document.sticks.iter().position(|drawn| drawn.fault == self.name);
         let present = draft.document.faults.iter().position(|entry| entry.name == self.name);
         let drawn = match (drawn, present) {
@@ -65,27 +62,64 @@ impl PickFault {
             }
         };
         draft.document.sticks[drawn].sticks.extend(self.sticks.iter().cloned());
-        let sticks = draft.document.sticks[drawn].sticks.clone();
-        if sticks.len() < 2 {
-            return Ok(Effect::Changed {
-                summary: format!("fault {}: one stick; a second one makes its surface", self.name),
-            });
-        }
-        let world = |place: &[f64; 3]| -> DVec3 {
-            let voxel = geometry.voxel_from_lines(place[0], place[1]).extend(geometry.vertical.index_of(place[2]));
-            geometry.world_from_voxel(voxel)
-        };
-        let lines: Vec<Vec<DVec3>> = sticks.iter().map(|stick| stick.iter().map(world).collect()).collect();
-        let fault = fault_of_sticks(&self.name, &lines, &geometry)
-            .ok_or_else(|| ProjectError::FlatSticks { fault: self.name.clone() })?;
-        let source =
-            Source { path: PathBuf::from("picks"), bytes: 0, reading: format!("drawn with {} sticks", sticks.len()) };
-        put(draft, &fault, source)?;
-        rebuild_all(draft, progress)?;
-        Ok(Effect::Changed {
-            summary: format!("fault {}: {} sticks, {} triangles", self.name, sticks.len(), fault.mesh.triangles.len()),
-        })
+        surface(draft, drawn, progress)
     }
+}
+
+impl MoveStickPoint {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        check_near(draft.document.frame()?, self.to)?;
+        let drawn = draft.document.sticks.iter().position(|drawn| drawn.fault == self.fault);
+        let drawn = drawn.ok_or_else(|| ProjectError::NotDrawn { fault: self.fault.clone() })?;
+        let stick = draft.document.sticks[drawn].sticks.get_mut(self.stick);
+        let place = stick.and_then(|stick| stick.get_mut(self.point));
+        let missing = || ProjectError::NoStickPoint { fault: self.fault.clone(), stick: self.stick, point: self.point };
+        *place.ok_or_else(missing)? = self.to;
+        surface(draft, drawn, progress)
+    }
+}
+
+/// Refuses a point far outside the survey. A stick may end a little outside it; a point farther outside is a mistyped
+/// number.
+fn check_near(geometry: &SurveyGeometry, place: [f64; 3]) -> Result<(), ProjectError> {
+    let voxel = geometry.voxel_from_lines(place[0], place[1]).extend(geometry.vertical.index_of(place[2]));
+    let size = geometry.size();
+    let is_near = (0..3).all(|axis| {
+        let n = size[axis] as f64;
+        voxel[axis] >= -0.25 * n && voxel[axis] <= 1.25 * n
+    });
+    if is_near {
+        return Ok(());
+    }
+    Err(ProjectError::PickOutside {
+        at: place,
+        inlines: [geometry.inlines.first, geometry.inlines.last()],
+        crosslines: [geometry.crosslines.first, geometry.crosslines.last()],
+        vertical: [geometry.vertical.first, geometry.vertical.last()],
+    })
+}
+
+/// Makes the surface of the fault whose sticks these are; one stick alone has none.
+fn surface(draft: &mut Draft, drawn: usize, progress: &Progress) -> Result<Effect, ProjectError> {
+    let geometry = draft.document.frame()?.clone();
+    let FaultSticks { fault: name, sticks } = draft.document.sticks[drawn].clone();
+    if sticks.len() < 2 {
+        return Ok(Effect::Changed { summary: format!("fault {name}: one stick; a second one makes its surface") });
+    }
+    let world = |place: &[f64; 3]| -> DVec3 {
+        let voxel = geometry.voxel_from_lines(place[0], place[1]).extend(geometry.vertical.index_of(place[2]));
+        geometry.world_from_voxel(voxel)
+    };
+    let lines: Vec<Vec<DVec3>> = sticks.iter().map(|stick| stick.iter().map(world).collect()).collect();
+    let fault =
+        fault_of_sticks(&name, &lines, &geometry).ok_or_else(|| ProjectError::FlatSticks { fault: name.clone() })?;
+    let source =
+        Source { path: PathBuf::from("picks"), bytes: 0, reading: format!("drawn with {} sticks", sticks.len()) };
+    put(draft, &fault, source)?;
+    rebuild_all(draft, progress)?;
+    Ok(Effect::Changed {
+        summary: format!("fault {name}: {} sticks, {} triangles", sticks.len(), fault.mesh.triangles.len()),
+    })
 }
 
 impl AcceptFault {

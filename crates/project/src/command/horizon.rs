@@ -96,6 +96,7 @@ impl AddHorizon {
             hash,
             source: super::source_of(&self.path, reading(&report))?,
             assembly: None,
+            colour: None,
             seeds: Vec::new(),
         };
         draft.document.split_layer(position, |document| document.horizons.insert(position, entry));
@@ -190,8 +191,16 @@ pub(super) fn insert_made(
     let (file, new) = draft.generation("horizons", &horizon.name, "zarr")?;
     store::write_horizon(&new, horizon, progress)?;
     let hash = content::hash_horizon(horizon);
-    let entry =
-        HorizonEntry { name: horizon.name.clone(), contact, file, hash, source, assembly: None, seeds: Vec::new() };
+    let entry = HorizonEntry {
+        name: horizon.name.clone(),
+        contact,
+        file,
+        hash,
+        source,
+        assembly: None,
+        colour: None,
+        seeds: Vec::new(),
+    };
     draft.document.split_layer(position, |document| document.horizons.insert(position, entry));
     Ok(position)
 }

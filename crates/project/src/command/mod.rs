@@ -26,8 +26,8 @@ mod well;
 pub use attribute::{AttributeComputed, AttributeKind, ComputeAttribute};
 pub use contact::SetContact;
 pub use extract::{Extract, ProposeFaults};
-pub use fault::{AddFault, FaultAdded, RemoveFault, SetFaultExtent, SetTruncation};
-pub use fault_pick::{AcceptFault, PickFault};
+pub use fault::{AddFault, FaultAdded, RemoveFault, RenameFault, SetFaultExtent, SetTruncation};
+pub use fault_pick::{AcceptFault, MoveStickPoint, PickFault};
 pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
 pub use import::{ImportVolume, RemoveVolume, VolumeImported};
 pub use layer::{ResetLayer, SetLayer};
@@ -42,7 +42,7 @@ pub use scalar::{RemoveScalar, SetRaw, SetScalar};
 pub use scene::{AddScene, RemoveScene};
 pub use survey_frame::SetVelocity;
 pub use texture::AddTexture;
-pub use time::{ComputeTime, TimeComputed, read_time};
+pub use time::{ComputeTime, TimeComputed, has_time, read_time};
 pub use well::{AddWell, RemoveWell, RenameWell, WellAdded};
 
 use crate::document::{Document, Source};
@@ -94,7 +94,7 @@ pub enum Command {
     MovePick(MovePick),
     /// Remove a pick from its horizon's log.
     RemovePick(RemovePick),
-    /// Give an assembled horizon another colour.
+    /// Give a horizon another colour.
     SetHorizonColour(SetHorizonColour),
     /// Repeat picks on the present extraction.
     ReplayPicks(ReplayPicks),
@@ -104,6 +104,8 @@ pub enum Command {
     SmoothHorizon(SmoothHorizon),
     /// Draw a fault by sticks.
     PickFault(PickFault),
+    /// Move a point of a stick.
+    MoveStickPoint(MoveStickPoint),
     /// Accept a proposed fault.
     AcceptFault(AcceptFault),
     /// Add a fault from a file.
@@ -112,6 +114,8 @@ pub enum Command {
     SetTruncation(SetTruncation),
     /// State how far a fault reaches beyond what was drawn.
     SetFaultExtent(SetFaultExtent),
+    /// Rename a fault.
+    RenameFault(RenameFault),
     /// Remove a fault.
     RemoveFault(RemoveFault),
     /// Add a well from its files.
@@ -220,6 +224,7 @@ impl Command {
             Self::FillHorizon(change) => change.execute(draft, progress),
             Self::SmoothHorizon(change) => change.execute(draft, progress),
             Self::PickFault(change) => change.execute(draft, progress),
+            Self::MoveStickPoint(change) => change.execute(draft, progress),
             Self::AcceptFault(change) => change.execute(draft, progress),
             Self::AddFault(change) => change.execute(draft, progress),
             Self::AddWell(change) => change.execute(draft, progress),
@@ -227,6 +232,7 @@ impl Command {
             Self::RemoveWell(change) => change.execute(draft),
             Self::SetTruncation(change) => change.execute(draft, progress),
             Self::SetFaultExtent(change) => change.execute(draft, progress),
+            Self::RenameFault(change) => change.execute(draft, progress),
             Self::RemoveFault(change) => change.execute(draft, progress),
             Self::SetVelocity(change) => change.execute(draft),
             Self::SetContact(change) => change.execute(draft),

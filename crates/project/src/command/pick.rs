@@ -312,7 +312,7 @@ fn find(draft: &Draft, id: u32) -> Result<(String, Assembly, usize), ProjectErro
     })
 }
 
-/// Gives an assembled horizon another colour.
+/// Gives a horizon another colour.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SetHorizonColour {
     /// The horizon.
@@ -324,10 +324,11 @@ pub struct SetHorizonColour {
 impl SetHorizonColour {
     pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
         let index = draft.document.position(Noun::Horizon, &self.horizon)?;
-        let Some(log) = &mut draft.document.horizons[index].assembly else {
-            return Err(ProjectError::NotAssembled { horizon: self.horizon.clone() });
-        };
-        log.colour = self.colour;
+        let entry = &mut draft.document.horizons[index];
+        match &mut entry.assembly {
+            Some(log) => log.colour = self.colour,
+            None => entry.colour = Some(self.colour),
+        }
         Ok(Effect::Changed { summary: format!("colour of {}", self.horizon) })
     }
 }

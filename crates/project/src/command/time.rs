@@ -105,6 +105,11 @@ impl ComputeTime {
     }
 }
 
+/// Whether a project has a volume of geologic time, by its record alone.
+pub fn has_time(document: &Document) -> bool {
+    document.volumes.iter().any(|entry| entry.source.reading.starts_with(QUANTITY))
+}
+
 /// The newest volume of geologic time.
 pub(super) fn time_volume(root: &Path, document: &Document) -> Result<VolumeEntry, ProjectError> {
     for entry in document.volumes.iter().rev().filter(|entry| entry.geometry.is_none()) {

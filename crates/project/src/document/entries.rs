@@ -7,7 +7,7 @@ use render::Scene;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use survey::{Contact, SurveyGeometry};
-use ttf::{LayerTtf, RawColour, ScalarTtf, TransferFunctions, TtfSettings};
+use ttf::{Colour, LayerTtf, RawColour, ScalarTtf, TransferFunctions, TtfSettings};
 
 /// What a positive amplitude means.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -104,6 +104,16 @@ pub struct HorizonEntry {
     /// The places in geologic time that it was picked through: inline, crossline, vertical value.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub seeds: Vec<[f64; 3]>,
+    /// Its colour if it was imported and given one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub colour: Option<Colour>,
+}
+
+impl HorizonEntry {
+    /// The colour that it was given, by its picks or by hand; `None`: it is drawn in the one of its place in the list.
+    pub fn own_colour(&self) -> Option<Colour> {
+        self.assembly.as_ref().map(|log| log.colour).or(self.colour)
+    }
 }
 
 /// A fault of the project.

@@ -110,6 +110,7 @@ mod tests {
             hash: String::new(),
             source: Source { path: "x".into(), bytes: 0, reading: String::new() },
             assembly: None,
+            colour: None,
             seeds: Vec::new(),
         }
     }

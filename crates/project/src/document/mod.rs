@@ -326,6 +326,7 @@ mod tests {
             hash: "00".into(),
             source: Source { path: "a b.csv".into(), bytes: 10, reading: "csv".into() },
             assembly: None,
+            colour: None,
             seeds: Vec::new(),
         }
     }

@@ -78,6 +78,7 @@ impl ProjectError {
             | Self::NotATruth { .. }
             | Self::NotAssembled { .. }
             | Self::NotDrawn { .. }
+            | Self::NoStickPoint { .. }
             | Self::NotExtracted
             | Self::NotFound { .. }
             | Self::NotPicked { .. }

@@ -378,7 +378,8 @@ pub(crate) fn put(
     };
     let contact = old.map_or(Contact::default(), |old| document.horizons[old].contact);
     let seeds = old.map_or(Vec::new(), |old| document.horizons[old].seeds.clone());
-    let entry = HorizonEntry { name: name.clone(), contact, file, hash, source, assembly: log, seeds };
+    let colour = old.and_then(|old| document.horizons[old].colour);
+    let entry = HorizonEntry { name: name.clone(), contact, file, hash, source, assembly: log, colour, seeds };
     match old {
         Some(old) if old == position => document.horizons[old] = entry,
         Some(old) => {

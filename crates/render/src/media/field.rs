@@ -82,7 +82,7 @@ impl<'a> MediaField<'a> {
         let mut resolve = |name: &str, function: &ttf::RgbaFunction, zone: Zone| {
             function.validate(&format!("the medium `{name}`"))?;
             let volume = NamedVolume::find(inputs.volumes, name)?;
-            let prepared = kept.of(inputs.version, &volume);
+            let prepared = kept.of(inputs.data_version, &volume);
             Ok::<_, RenderError>(FieldMedium::new(volume, prepared, FunctionTable::new(function), zone))
         };
         let model = inputs.model;

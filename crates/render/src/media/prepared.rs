@@ -24,7 +24,7 @@ pub struct Prepared {
     ranges: Vec<[f32; 2]>,
 }
 
-/// A cache of prepared volumes by name, for one version of the data.
+/// A cache of prepared volumes by name, for one version of the data; 0 stands for none.
 #[derive(Debug, Default)]
 pub struct Preparations {
     version: Option<u64>,
@@ -34,7 +34,7 @@ pub struct Preparations {
 impl Preparations {
     /// The preparation of a volume of these inputs; it is computed if it is not in the cache.
     pub fn of(&mut self, version: u64, volume: &NamedVolume) -> Arc<Prepared> {
-        if self.version != Some(version) {
+        if version == 0 || self.version != Some(version) {
             self.volumes.clear();
             self.version = Some(version);
         }

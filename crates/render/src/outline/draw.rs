@@ -174,13 +174,17 @@ fn seen_edge(resolved: &ResolvedScene, edge: &EdgeLine) -> Vec<Vec<DVec2>> {
 
 /// Strokes the outlines of a picture over it, anti-aliased, on sRGB-encoded values.
 pub(crate) fn draw(resolved: &ResolvedScene, image: &mut RgbaImage) {
+    draw_lines(resolved, &OutlineLines::of(resolved), image);
+}
+
+/// Strokes these lines over a picture.
+pub(crate) fn draw_lines(resolved: &ResolvedScene, lines: &OutlineLines, image: &mut RgbaImage) {
     let outlines = resolved.scene.outlines;
     if resolved.scene.has_back_edges() {
         underlay(resolved, image);
     }
-    let lines = OutlineLines::of(resolved);
-    let points = |lines: Vec<OutlineLine>| lines.into_iter().map(|line| line.points).collect::<Vec<_>>();
-    stroke_lines(image, &outlines.horizons, &points(lines.horizons));
-    stroke_lines(image, &outlines.faults, &points(lines.faults));
+    let points = |lines: &[OutlineLine]| lines.iter().map(|line| line.points.clone()).collect::<Vec<_>>();
+    stroke_lines(image, &outlines.horizons, &points(&lines.horizons));
+    stroke_lines(image, &outlines.faults, &points(&lines.faults));
     stroke_lines(image, &outlines.edges, &lines.edges);
 }

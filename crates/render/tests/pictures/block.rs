@@ -62,6 +62,7 @@ impl Block {
             candidates: None,
             wells: &[],
             version: 1,
+            data_version: 1,
         }
     }
 }

@@ -200,11 +200,11 @@ fn one_place_looks_the_same_in_a_mirrored_and_in_an_exchanged_survey() {
     let mut swapped = straight.clone();
     (swapped.inline_vector, swapped.crossline_vector) = (straight.crossline_vector, straight.inline_vector);
     for geometry in [mirrored, swapped] {
-        let found = render::compare::compare(&expected, &picture(&geometry)).unwrap();
+        let found = crate::compare::compare(&expected, &picture(&geometry)).unwrap();
         assert!(found.agrees(), "{found:?}");
     }
     let flipped = image::imageops::flip_horizontal(&expected);
-    assert!(!render::compare::compare(&expected, &flipped).unwrap().agrees());
+    assert!(!crate::compare::compare(&expected, &flipped).unwrap().agrees());
 }
 
 #[test]

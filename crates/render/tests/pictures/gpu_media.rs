@@ -1,8 +1,8 @@
 //! The GPU renders media as the CPU reference does: at most 2/255 apart off the edges.
 
 use crate::block::Block;
+use crate::compare::compare;
 use crate::media::medium;
-use render::compare::compare;
 use render::media::{Colouring, LayerOpacity, MediumColour, Paint, white_ramp};
 use render::{
     Background, Camera, CandidateVolume, DrawnWell, FaceData, Faces, Ground, Interleaved, Isosurface, IsosurfaceSource,

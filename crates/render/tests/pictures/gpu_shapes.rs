@@ -1,9 +1,9 @@
 //! The GPU draws horizons of any shape as the CPU reference does: bodies, overturned beds, the ground over them.
 
 use crate::block::Block;
+use crate::compare::compare;
 use crate::gpu::skipped;
 use glam::{DVec2, DVec3};
-use render::compare::compare;
 use render::{Ground, Inputs, Renderer, Scene, VoxelBox};
 use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
 use survey::stratigraphy::{Contact, StratigraphicHorizon, Stratigraphy};

@@ -2,10 +2,10 @@
 
 mod block;
 mod closed_form;
+mod compare;
 mod gpu;
 mod gpu_media;
 mod gpu_shapes;
 mod kept;
 mod media;
-mod motion;
 mod vector;

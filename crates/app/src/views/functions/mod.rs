@@ -173,7 +173,7 @@ impl Functions {
             };
             ui.horizontal(|ui| {
                 ui.strong(&present.volume);
-                if ui.small_button("Remove").on_hover_text(format!("No textures of {}", present.volume)).clicked() {
+                if ui.button("Remove").on_hover_text(format!("No textures of {}", present.volume)).clicked() {
                     let command = RemoveScalar { volume: present.volume.clone() };
                     actions.push(Action::Apply(Box::new(Command::RemoveScalar(command))));
                 }

@@ -40,10 +40,10 @@ pub(super) fn intervals(ui: &mut Ui, function: &mut ScalarTtf, swatches: &Swatch
             let drag = percent::drag(&mut interval.opacity);
             ui.name_inputs(format!("Opacity of {} {ordinal}", function.volume), |ui| ui.add(drag))
                 .on_hover_text("Opacity over the layer's pattern");
-            if ui.small_button("Split").on_hover_text("Split this range in two").clicked() {
+            if ui.button("Split").on_hover_text("Split this range in two").clicked() {
                 split = Some(index);
             }
-            if count > 1 && ui.small_button("−").on_hover_text("Remove this range").clicked() {
+            if count > 1 && ui.button("−").on_hover_text("Remove this range").clicked() {
                 gone = Some(index);
             }
         });

@@ -12,6 +12,7 @@ use ttf::Colour;
 use widgets::colour_well;
 use widgets::histogram::Histogram;
 use widgets::opacity_curve::OpacityCurve;
+use widgets::percent;
 
 /// The volume that is rendered, or that would be.
 pub(super) fn volume(session: &Session) -> Option<String> {
@@ -127,8 +128,11 @@ fn horizons(ui: &mut Ui, session: &Session, next: &mut Scene) {
 fn numbers(ui: &mut Ui, name: &str, horizon: &mut PickedHorizon) {
     ui.horizontal_wrapped(|ui| {
         colour_well(ui, &format!("Light of {name}"), &mut horizon.colour.rgb);
+        ui.weak("opacity");
+        let opacity = percent::drag(&mut horizon.opacity);
+        ui.name_inputs(format!("{name}: opacity"), |ui| ui.add(opacity))
+            .on_hover_text("For each voxel of its thickness");
         for (word, value, range, hint) in [
-            ("opacity", &mut horizon.opacity, 0.0..=1.0, "For each voxel of its thickness"),
             ("thickness", &mut horizon.thickness, 0.2..=9.0, "Voxels on either side"),
             (
                 "glow",

@@ -1,7 +1,7 @@
 //! The style of a layer: colours, repeats, beds, patterns by depth.
 
 use crate::state::{Action, Dialogue};
-use eframe::egui::{ComboBox, DragValue, Slider, Ui};
+use eframe::egui::{ComboBox, DragValue, Ui};
 use param::KDefinition;
 use project::command::{Command, SetLayer};
 use project::document::Document;
@@ -103,10 +103,10 @@ pub(super) fn intervals(ui: &mut Ui, layer: &str, style: &mut LayerStyle, action
             let opacity = percent::drag(&mut style.intervals[index].opacity);
             ui.name_inputs(format!("Opacity of pattern {ordinal}"), |ui| ui.add(opacity))
                 .on_hover_text("Opacity of the pattern");
-            if ui.small_button("Split").on_hover_text("Split this part of the layer in two").clicked() {
+            if ui.button("Split").on_hover_text("Split this part of the layer in two").clicked() {
                 split = Some(index);
             }
-            if count > 1 && ui.small_button("Remove").clicked() {
+            if count > 1 && ui.button("Remove").clicked() {
                 join = Some(index);
             }
         });
@@ -114,7 +114,7 @@ pub(super) fn intervals(ui: &mut Ui, layer: &str, style: &mut LayerStyle, action
             let low = style.intervals[index - 1].k[0] + 0.01;
             let high = style.intervals[index].k[1] - 0.01;
             let mut k = style.intervals[index].k[0];
-            let slider = Slider::new(&mut k, low..=high).max_decimals(2);
+            let slider = percent::slider_within(&mut k, low..=high);
             let is_moved = ui.horizontal(|ui| {
                 let slider = ui.name_inputs(format!("Base of pattern {ordinal}"), |ui| ui.add(slider));
                 ui.label("from the base");

@@ -122,14 +122,14 @@ impl FaultsPanel {
         ui.horizontal(|ui| {
             let label = format!("Name of proposal {}", proposal.id);
             ui.name_inputs(label, |ui| ui.add(TextEdit::singleline(name).desired_width(76.0)));
-            if ui.small_button("Accept").on_hover_text(format!("Accept proposal {}", proposal.id)).clicked() {
+            if ui.button("Accept").on_hover_text(format!("Accept proposal {}", proposal.id)).clicked() {
                 let command = AcceptFault { id: proposal.id, name: name.trim().to_owned() };
                 actions.push(Action::Apply(Box::new(Command::AcceptFault(command))));
             }
-            if ui.small_button("Dismiss").on_hover_text(format!("Dismiss proposal {}", proposal.id)).clicked() {
+            if ui.button("Dismiss").on_hover_text(format!("Dismiss proposal {}", proposal.id)).clicked() {
                 actions.push(Action::Picking(PickingStep::Dismiss(proposal.id)));
             }
-            if ui.small_button("Go").on_hover_text(format!("Go to proposal {}", proposal.id)).clicked() {
+            if ui.button("Go").on_hover_text(format!("Go to proposal {}", proposal.id)).clicked() {
                 let [a, b] = proposal.ends;
                 let z = 0.5 * (proposal.depth[0] + proposal.depth[1]);
                 go(geometry, [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), z], actions);

@@ -3,9 +3,8 @@
 use super::go;
 use super::palette::palette;
 use crate::state::{Action, PickingStep, Session};
-use crate::views::sections::horizon_colour;
 use crate::work::{Interpreted, InterpretedHorizon};
-use eframe::egui::{Button, DragValue, RichText, Sense, TextEdit, Ui, vec2};
+use eframe::egui::{Button, DragValue, RichText, TextEdit, Ui};
 use interp::assembly::Operation;
 use interp::holes::FillSettings;
 use project::command::{
@@ -50,8 +49,14 @@ impl HorizonList {
             let is_current = picking.horizon.as_deref() == Some(&entry.name);
             ui.horizontal(|ui| {
                 swatch(ui, entry, index, actions);
-                let label = ui.selectable_label(is_current, RichText::new(&entry.name).strong());
-                if label.on_hover_text("Picks go to this horizon").clicked() {
+                // Room for the coverage and the sign that something is wrong.
+                let room = (ui.available_width() - 78.0).max(40.0);
+                let label = Button::selectable(is_current, RichText::new(&entry.name).strong()).truncate();
+                let label = ui.scope(|ui| {
+                    ui.set_max_width(room);
+                    ui.add(label)
+                });
+                if label.inner.on_hover_text(format!("{}: picks go to this horizon", entry.name)).clicked() {
                     actions.push(Action::Picking(PickingStep::Choose(entry.name.clone())));
                 }
                 if let Some(facts) = facts {
@@ -113,10 +118,10 @@ impl HorizonList {
                     self.renaming = None;
                 }
             } else {
-                if ui.small_button("Rename…").clicked() {
+                if ui.button("Rename…").clicked() {
                     self.renaming = Some(Renaming::of(&entry.name));
                 }
-                if ui.small_button("Remove").on_hover_text(format!("Remove horizon {}", entry.name)).clicked() {
+                if ui.button("Remove").on_hover_text(format!("Remove horizon {}", entry.name)).clicked() {
                     let command = RemoveHorizon { name: entry.name.clone() };
                     actions.push(apply(Command::RemoveHorizon(command)));
                 }
@@ -155,7 +160,7 @@ impl HorizonList {
                 ui.visuals().warn_fg_color,
                 format!("Overlaps itself at {} traces, by up to {:.0} samples.", overlap.traces, overlap.apart),
             );
-            if ui.small_button("Show the overlap").clicked() {
+            if ui.button("Show the overlap").clicked() {
                 go(geometry, overlap.at, actions);
             }
         }
@@ -186,7 +191,7 @@ impl HorizonList {
         ui.horizontal_wrapped(|ui| {
             for hole in holes.iter().take(HOLES) {
                 let hint = "Move the sections through this hole";
-                if ui.small_button(counted(hole.traces, "trace")).on_hover_text(hint).clicked() {
+                if ui.button(counted(hole.traces, "trace")).on_hover_text(hint).clicked() {
                     let [x, y] = hole.at.map(|at| at as f64);
                     actions.push(Action::Slices([x, y, session.view.slices[2]]));
                 }
@@ -231,7 +236,7 @@ impl HorizonList {
         if let Some(SmoothSettings { radius, passes }) = entry.assembly.as_ref().and_then(|log| log.smooth) {
             ui.horizontal(|ui| {
                 ui.weak(format!("Smoothed over {radius} traces, passes: {passes}"));
-                if ui.small_button("Not smoothed").on_hover_text("Show it as it was picked").clicked() {
+                if ui.button("Not smoothed").on_hover_text("Show it as it was picked").clicked() {
                     order(SmoothSettings { radius: 0, passes: 1 });
                 }
             });
@@ -239,19 +244,12 @@ impl HorizonList {
     }
 }
 
-/// The colour of a horizon; it can be changed if the horizon was assembled from picks.
+/// The colour of a horizon, which can be changed.
 pub fn swatch(ui: &mut Ui, entry: &HorizonEntry, index: usize, actions: &mut Vec<Action>) {
-    match &entry.assembly {
-        Some(log) => {
-            if let Some(colour) = palette(ui, log.colour, &format!("Colour of {}", entry.name)) {
-                let command = SetHorizonColour { horizon: entry.name.clone(), colour };
-                actions.push(Action::Apply(Box::new(Command::SetHorizonColour(command))));
-            }
-        }
-        None => {
-            let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
-            ui.painter().circle_filled(rect.center(), 6.0, horizon_colour(None, index));
-        }
+    let present = figure::style::horizon_colour(entry.own_colour(), index);
+    if let Some(colour) = palette(ui, present, &format!("Colour of {}", entry.name)) {
+        let command = SetHorizonColour { horizon: entry.name.clone(), colour };
+        actions.push(Action::Apply(Box::new(Command::SetHorizonColour(command))));
     }
 }
 
@@ -281,7 +279,7 @@ fn picks(ui: &mut Ui, entry: &HorizonEntry, geometry: &SurveyGeometry, actions: 
                 } else {
                     "The horizon has no other pick: remove it instead"
                 };
-                let button = unless(ui, needs(can, why), Button::new(name).small());
+                let button = unless(ui, needs(can, why), Button::new(name));
                 if button.on_hover_text(format!("{hint} pick {}", pick.id)).clicked() {
                     actions.push(apply(command));
                 }

@@ -14,6 +14,7 @@ use crate::work::RunningLine;
 use eframe::egui::{Button, ScrollArea, Ui};
 use faults::FaultsPanel;
 use horizons::HorizonList;
+use project::command::has_time;
 use render::FaceData;
 use std::sync::Arc;
 use survey::SurveyGeometry;
@@ -84,8 +85,16 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         for (tool, name, hint) in [
             (Tool::Pick, "Pick", "Click a reflection: its leaf is selected"),
             (Tool::Lasso, "Lasso", "Drag around what is to be erased (or hold A and drag)"),
+            (
+                Tool::Time,
+                "One click",
+                "Click a reflection: the horizon of its geologic time, over the whole survey; a second click corrects it",
+            ),
         ] {
-            if ui.selectable_label(picking.tool == tool, name).on_hover_text(hint).clicked() {
+            let can = tool != Tool::Time || has_time(&session.document);
+            let label = Button::selectable(picking.tool == tool, name);
+            let button = unless(ui, needs(can, "Needs geologic time: compute it under Candidates"), label);
+            if button.on_hover_text(hint).clicked() {
                 actions.push(Action::Picking(PickingStep::Use(tool)));
             }
         }
@@ -146,7 +155,7 @@ fn selected(ui: &mut Ui, session: &Session, overlay: &Overlay, geometry: &Survey
                 way_out(pick.up)
             ),
         );
-        if ui.small_button("Show where").clicked() {
+        if ui.button("Show where").clicked() {
             go(geometry, overlap.at, actions);
         }
     }

@@ -1,7 +1,7 @@
 //! Colours of horizons, which lines are shown, and the positions of the other sections.
 
 use crate::state::{Layout, SectionKind, Session};
-use eframe::egui::Color32;
+use eframe::egui::{Align2, Color32, FontId, Rect, Ui, Vec2, pos2, vec2};
 use figure::cut::CutLine;
 use figure::draw::section::Marks;
 use formats::SurfaceKind;
@@ -9,6 +9,7 @@ use glam::DVec2;
 use model::section::LineKind;
 use project::document::HorizonEntry;
 use std::borrow::Cow;
+use survey::{SurveyGeometry, VerticalUnit};
 
 /// The colour of a horizon: its own, or else the default of its place in the list.
 pub fn horizon_colour(own: Option<ttf::Colour>, index: usize) -> Color32 {
@@ -18,7 +19,7 @@ pub fn horizon_colour(own: Option<ttf::Colour>, index: usize) -> Color32 {
 
 /// The colour that an entry is drawn in.
 pub fn entry_colour(entry: &HorizonEntry, index: usize) -> Color32 {
-    horizon_colour(entry.assembly.as_ref().map(|log| log.colour), index)
+    horizon_colour(entry.own_colour(), index)
 }
 
 /// The positions of the other two sections, and on the slice also the fence.
@@ -45,4 +46,33 @@ pub(super) fn visible<'a>(session: &Session, lines: &'a [CutLine]) -> Cow<'a, [C
         _ => false,
     };
     Cow::Owned(lines.iter().filter(|line| !is_hidden(line)).cloned().collect())
+}
+
+/// What is counted along an axis, with its unit.
+pub fn axis_name(geometry: &SurveyGeometry, axis: usize) -> String {
+    match (axis, geometry.vertical.unit) {
+        (0, _) => "inline".to_owned(),
+        (1, _) => "crossline".to_owned(),
+        (_, VerticalUnit::Milliseconds) => "two-way time (ms)".to_owned(),
+        (_, VerticalUnit::Metres) => "depth (m)".to_owned(),
+    }
+}
+
+/// The name of the axis across, before its first number.
+pub fn name_across(ui: &Ui, whole: Rect, body: Rect, name: &str) {
+    let at = pos2(body.left() - 14.0, body.top() - 4.0);
+    let colour = ui.visuals().text_color().gamma_multiply(0.8);
+    ui.painter_at(whole).text(at, Align2::RIGHT_BOTTOM, name, FontId::proportional(10.0), colour);
+}
+
+/// Shares of a view that a section takes at the chosen proportions; a slice has the proportions of the map.
+pub(super) fn fitted(session: &Session, geometry: &SurveyGeometry, kind: SectionKind, view: Vec2) -> Vec2 {
+    let Some(factor) = session.view.proportions else { return Vec2::splat(1.0) };
+    let spacing = [geometry.inline_vector.length(), geometry.crossline_vector.length(), geometry.sample_m() * factor];
+    let [s, t] = kind.axes();
+    let size = kind.extent(geometry.size()) * DVec2::new(spacing[s], spacing[t]);
+    let room = DVec2::new(f64::from(view.x), f64::from(view.y));
+    let scale = (room / size.max(DVec2::splat(1e-9))).min_element();
+    let share = size * scale / room;
+    vec2(share.x as f32, share.y as f32)
 }

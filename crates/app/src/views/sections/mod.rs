@@ -5,18 +5,19 @@
 //! the next section.
 
 mod lines;
+mod wells;
 
-pub use lines::{entry_colour, horizon_colour};
+pub use lines::{axis_name, entry_colour, horizon_colour, name_across};
 
 use super::lasso::{self, LassoLine};
-use super::overlay::Overlay;
+use super::overlay::{Overlay, stick_point};
 use super::pointed::{self, Pointed};
 use super::texture;
-use crate::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, SectionKind, Session};
+use crate::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, SectionKind, Session, StickPoint, Tool};
 use crate::work::{Rocks, SliceRequest, Slices};
 use eframe::egui::{
-    Align2, Color32, Context, DragValue, FontId, Painter, Pos2, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo,
-    vec2,
+    Align2, Color32, Context, DragValue, FontId, Painter, Pos2, Rect, Response, Role, Sense, Stroke, TextureHandle, Ui,
+    Vec2, WidgetInfo, vec2,
 };
 use figure::cut::SectionCut;
 use figure::cut::{CutLine, value_at};
@@ -52,10 +53,14 @@ struct Pane {
     /// When another was requested than the picture shows.
     behind: Option<Instant>,
     zoom: f32,
+    /// Shares of the view that the whole section takes at zoom 1.
+    fit: Vec2,
     /// The point of the section that is in the middle of the view, shares of its width and height.
     middle: Vec2,
     /// The part of a line of the wheel that has not changed the section yet.
     wheel: f32,
+    /// The point of a stick that is being dragged.
+    held: Option<StickPoint>,
     lasso: LassoLine,
 }
 
@@ -68,8 +73,10 @@ impl Default for Pane {
             of: None,
             behind: None,
             zoom: 1.0,
+            fit: Vec2::splat(1.0),
             middle: vec2(0.5, 0.5),
             wheel: 0.0,
+            held: None,
             lasso: LassoLine::default(),
         }
     }
@@ -120,18 +127,24 @@ impl Sections {
         if !body.is_positive() {
             return None;
         }
+        pane.fit = lines::fitted(session, geometry, kind, body.size());
         let has_lasso = lasso::is_held(ui, session);
         if !has_lasso {
+            pane.drag_point(ui, session, kind, &response, body, actions);
             pane.touch(ui, &response, body);
         }
         let image = pane.paint(ui, session, kind, whole, overlay)?;
         let painter = ui.painter_at(body);
-        pane.cover(ui, &painter, kind, body);
         let extent = kind.extent(geometry.size());
         let to_section = |pointer: Pos2| {
             let share = (pointer - image.min) / image.size();
             DVec2::new(f64::from(share.x) * extent.x, f64::from(share.y) * extent.y)
         };
+        if let Some(loaded) = rocks.and_then(|(rocks, _)| rocks.try_read().ok()) {
+            let page = |st: DVec2| image.min + vec2((st.x / extent.x) as f32, (st.y / extent.y) as f32) * image.size();
+            wells::draw(&painter, session, (kind, body), &loaded.wells, page);
+        }
+        pane.cover(ui, &painter, kind, body);
         if let Some(line) = pane.lasso.draw(ui, &painter, &response, has_lasso) {
             let corners = line.into_iter().map(to_section).collect();
             let on = LassoOn::Section(kind, at);
@@ -206,7 +219,7 @@ impl Pane {
         let painter = ui.painter_at(body);
         painter.rect_filled(body, 0.0, super::block::paper(ui));
         let is_interpreting = session.view.panel == Panel::Interpret;
-        let (on_page, seen) = (canvas::page_rect(image), canvas::page_rect(body));
+        let (on_page, seen) = (canvas::page_rect(image), canvas::page_rect(body.intersect(image)));
         if let (Some((pixels, lines)), Some(texture)) = (&self.shown, &self.texture) {
             let lines = if is_interpreting { Cow::Borrowed(&[][..]) } else { lines::visible(session, lines) };
             let horizons = pictures::figures::horizons(&session.document);
@@ -218,7 +231,7 @@ impl Pane {
         }
         let [s, t] = kind.axes();
         let axis = |axis: usize, last: f64, at: [f64; 2]| Axis {
-            name: String::new(),
+            name: axis_name(geometry, axis),
             ends: [0.0, last].map(|index| value_at(geometry, axis, index)),
             at,
             least_step: if axis < 2 { 1.0 } else { 0.0 },
@@ -226,19 +239,20 @@ impl Pane {
         let across = axis(s, extent.x, [on_page.min.x, on_page.max.x]);
         let down = axis(t, extent.y, [on_page.min.y, on_page.max.y]);
         let drawn = axes::drawn(canvas::page_rect(whole), seen, [&across, &down]);
-        canvas::paint(&ui.painter_at(whole), &drawn, None);
+        canvas::paint(&ui.painter_at(whole), &canvas::on_window(drawn, ui.visuals()), None);
+        name_across(ui, whole, body, &across.name);
         Some(image)
     }
 
     /// The rectangle of the whole section on the screen.
     fn image_rect(&self, body: Rect) -> Rect {
-        let size = body.size() * self.zoom;
+        let size = body.size() * self.fit * self.zoom;
         Rect::from_min_size(body.center() - self.middle * size, size)
     }
 
-    fn touch(&mut self, ui: &Ui, response: &eframe::egui::Response, body: Rect) {
-        if response.dragged() {
-            self.middle -= response.drag_delta() / (body.size() * self.zoom);
+    fn touch(&mut self, ui: &Ui, response: &Response, body: Rect) {
+        if response.dragged() && self.held.is_none() {
+            self.middle -= response.drag_delta() / (body.size() * self.fit * self.zoom);
         }
         if let Some(pointer) = response.hover_pos() {
             let factor = ui.input(|input| input.zoom_delta());
@@ -246,14 +260,53 @@ impl Pane {
                 let before = self.image_rect(body);
                 let share = (pointer - before.min) / before.size();
                 self.zoom = (self.zoom * factor).clamp(ZOOM[0], ZOOM[1]);
-                self.middle = share - (pointer - body.center()) / (body.size() * self.zoom);
+                self.middle = share - (pointer - body.center()) / (body.size() * self.fit * self.zoom);
             }
         }
         if response.double_clicked() {
             (self.zoom, self.middle) = (1.0, vec2(0.5, 0.5));
         }
-        let half = 0.5 / self.zoom;
-        self.middle = self.middle.clamp(Vec2::splat(half), Vec2::splat(1.0 - half));
+        // What is smaller than the view stays in its middle.
+        let half = (Vec2::splat(0.5) / (self.fit * self.zoom)).min(Vec2::splat(0.5));
+        self.middle = self.middle.clamp(half, Vec2::splat(1.0) - half);
+    }
+
+    /// Drags a point of a stick, while sticks are drawn: one of a fault that exists is moved when it is let go.
+    fn drag_point(
+        &mut self,
+        ui: &Ui,
+        session: &Session,
+        kind: SectionKind,
+        response: &Response,
+        body: Rect,
+        actions: &mut Vec<Action>,
+    ) {
+        let is_drawing = session.view.panel == Panel::Interpret && session.view.picking.tool == Tool::Sticks;
+        let Some(geometry) = session.document.geometry.as_ref().filter(|_| is_drawing) else {
+            self.held = None;
+            return;
+        };
+        let (image, extent) = (self.image_rect(body), kind.extent(geometry.size()));
+        let page = |st: DVec2| image.min + vec2((st.x / extent.x) as f32, (st.y / extent.y) as f32) * image.size();
+        if response.drag_started()
+            && let Some(at) = ui.input(|input| input.pointer.press_origin())
+        {
+            self.held = stick_point(session, kind, at, page);
+        }
+        let Some(held) = &self.held else { return };
+        if let Some(at) = response.interact_pointer_pos() {
+            let share = (at - image.min) / image.size();
+            let st = DVec2::new(f64::from(share.x) * extent.x, f64::from(share.y) * extent.y);
+            let to = kind.voxel(session.view.slices[kind.axis()], st.clamp(DVec2::ZERO, extent));
+            if held.fault.is_none() || response.drag_stopped() {
+                actions.push(Action::Picking(PickingStep::MovePoint(held.clone(), to)));
+            } else {
+                ui.painter_at(body).circle(at, 4.0, Color32::WHITE, Stroke::new(1.5, Color32::BLACK));
+            }
+        }
+        if response.drag_stopped() {
+            self.held = None;
+        }
     }
 
     /// Goes to the next section by the wheel.
@@ -305,14 +358,35 @@ fn header(ui: &mut Ui, session: &Session, kind: SectionKind, geometry: &SurveyGe
         }
         for (word, step) in [("Previous", -1.0), ("Next", 1.0)] {
             let sign = if step < 0.0 { "‹" } else { "›" };
-            let button = ui.small_button(sign).on_hover_text(format!("{word} {}", kind.name().to_lowercase()));
+            let button = ui.button(sign).on_hover_text(format!("{word} {}", kind.name().to_lowercase()));
             if button.clicked() {
                 let mut slices = session.view.slices;
                 slices[axis] += step;
                 actions.push(Action::Slices(slices));
             }
         }
+        proportions(ui, session, kind, actions);
     });
+}
+
+/// The choice of the sections' proportions.
+fn proportions(ui: &mut Ui, session: &Session, kind: SectionKind, actions: &mut Vec<Action>) {
+    let present = session.view.proportions;
+    let words = |factor: Option<f64>| match factor {
+        None => "Fill".to_owned(),
+        Some(factor) => format!("{factor} : 1"),
+    };
+    let button = ui.menu_button(words(present), |ui| {
+        for choice in [None, Some(1.0), Some(2.0), Some(5.0), Some(10.0)] {
+            let name = choice.map_or_else(|| "Fill the view".to_owned(), |_| words(choice));
+            if ui.radio(present == choice, name).clicked() {
+                actions.push(Action::Proportions(choice));
+                ui.close();
+            }
+        }
+    });
+    let hint = format!("Proportions of sections, vertical to horizontal ({})", kind.name());
+    button.response.on_hover_text(hint);
 }
 
 #[cfg(test)]

@@ -410,7 +410,7 @@ impl Keeper {
             let mine = conflicts.iter().filter(|conflict| conflict.horizons().contains(&entry.name));
             InterpretedHorizon {
                 name: entry.name.clone(),
-                colour: log.map(|log| log.colour),
+                colour: entry.own_colour(),
                 sheets: sheets.clone(),
                 leaves: chosen
                     .as_ref()

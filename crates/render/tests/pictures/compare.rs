@@ -38,15 +38,6 @@ impl PictureComparison {
 }
 
 /// Compares a picture with the reference. Returns `None` if their sizes differ or they are empty.
-///
-/// ```
-/// use image::{Rgba, RgbaImage};
-/// use render::compare::compare;
-/// let grey = |v: u8| RgbaImage::from_pixel(8, 8, Rgba([v, v, v, 255]));
-/// assert!(compare(&grey(100), &grey(102)).unwrap().agrees());
-/// assert_eq!(compare(&grey(100), &grey(103)).unwrap().worst_off_edges, 3);
-/// assert!(compare(&grey(100), &RgbaImage::new(8, 9)).is_none());
-/// ```
 pub fn compare(reference: &RgbaImage, picture: &RgbaImage) -> Option<PictureComparison> {
     if reference.dimensions() != picture.dimensions() || reference.is_empty() {
         return None;

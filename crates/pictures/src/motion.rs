@@ -4,10 +4,8 @@
 //! A motion is a function from a share of the way, 0 to 1, to a scene. It depends on nothing else, so frames can be drawn
 //! in any order. Voxels, degrees.
 
-use crate::camera::View;
-use crate::scene::Scene;
+use render::{Scene, View, VoxelBox};
 use survey::SurveyGeometry;
-use survey::block::VoxelBox;
 
 /// How much of the block a sweep leaves at its end.
 const LEFT_OVER: f64 = 0.06;
@@ -44,7 +42,8 @@ impl Motion {
     /// The scene at a share of the way from `start`, both valid.
     ///
     /// ```
-    /// use render::{Motion, Scene};
+    /// use pictures::Motion;
+    /// use render::Scene;
     /// use survey::{SurveyGeometry, VerticalUnit};
     /// let geometry = SurveyGeometry::regular([41, 31, 21], 25.0, 10.0, VerticalUnit::Metres);
     /// let half = Motion::Blend.scene(&Scene::default(), &geometry, 0.5);

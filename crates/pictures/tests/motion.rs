@@ -1,6 +1,7 @@
 //! Motions between scenes.
 
-use render::{Corner, Ground, Motion, Projection, Scene, VoxelBox};
+use pictures::Motion;
+use render::{Corner, Ground, Projection, Scene, VoxelBox};
 use survey::{SurveyGeometry, VerticalUnit};
 
 fn geometry() -> SurveyGeometry {

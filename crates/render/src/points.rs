@@ -1,0 +1,291 @@
+//! The points that stop rays, as far as they do not depend on colours and patterns, and their colours.
+//!
+//! A point is found once: where the ray hits, its layer, its flat coordinates (i, j, k) and how these change over a
+//! pixel. After a change of style alone, points that were kept ([`PicturePoints`]) are coloured again, by the same
+//! function that colours them first, so the picture is the same bit by bit.
+//!
+//! A point of a face gets its colour from its region, flat coordinates, texture, scalar functions and raw data (P-illus
+//! 3.5, 4, 5).
+
+use crate::camera::ViewRay;
+use crate::distortion;
+use crate::ground::GroundHit;
+use crate::inputs::{Inputs, NamedVolume};
+use crate::leaves::{FaceData, cover, distance_tone, leaf_colour};
+use crate::outline::Outlines;
+use crate::outline::draw::OutlineLines;
+use crate::resolved::ResolvedScene;
+use crate::scene::{Background, PatternSize, Scene};
+use crate::shade::{RayHit, pixel_shift};
+use crate::visible::FaceHit;
+use glam::{Vec3, Vec4};
+use std::sync::{Arc, OnceLock};
+use survey::block::BodyPlane;
+use ttf::{FaceFrame, FlatFootprint, LayerPoint, Preset, ShadePoint};
+
+/// Points of rays that are neighbours in the picture.
+#[derive(Debug, Default)]
+pub(crate) struct Points {
+    /// The planes on which they lie.
+    planes: Vec<BodyPlane>,
+    points: Vec<SurfacePoint>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum SurfacePoint {
+    Background,
+    Face(FacePoint),
+    Ground(GroundPoint),
+    /// A colour that no style changes.
+    Fixed(Vec3),
+}
+
+/// A point of a face.
+#[derive(Debug, Clone, Copy)]
+struct FacePoint {
+    point: Vec3,
+    plane: u16,
+    layer: u16,
+    /// (i, j, k); NaN where no illustration is visible.
+    flat: [f32; 3],
+    footprint: FlatFootprint,
+    grad_k: [f32; 3],
+}
+
+/// A point of the ground.
+#[derive(Debug, Clone, Copy)]
+struct GroundPoint {
+    point: Vec3,
+    layer: u16,
+    k: f32,
+    /// Factor of the hill shading.
+    shade: f32,
+}
+
+impl Points {
+    /// The points of hits.
+    pub fn of<'r>(resolved: &ResolvedScene, hits: impl Iterator<Item = (&'r ViewRay, RayHit)>) -> Self {
+        let mut planes = Vec::new();
+        let points = hits
+            .map(|(ray, hit)| match hit {
+                RayHit::Background => SurfacePoint::Background,
+                RayHit::Face(hit) => face_point(resolved, ray, &hit, &mut planes),
+                RayHit::Ground(hit) => ground_point(resolved, &hit),
+                RayHit::Well(hit) => SurfacePoint::Fixed(hit.colour),
+            })
+            .collect();
+        Self { planes, points }
+    }
+
+    /// Straight RGBA of the points.
+    pub fn colours(&self, resolved: &ResolvedScene) -> Vec<Vec4> {
+        let planes: Vec<(FaceFrame, f32)> =
+            self.planes.iter().map(|plane| (resolved.frame(plane), resolved.tone(plane))).collect();
+        let opacity = resolved.relief.as_ref().map_or(1.0, |relief| relief.opacity);
+        let mut scalars = vec![f32::NAN; resolved.volumes.len()];
+        let colour = |point: &SurfacePoint| match point {
+            SurfacePoint::Background => Vec4::from_array(resolved.background),
+            SurfacePoint::Fixed(colour) => colour.extend(1.0),
+            SurfacePoint::Ground(point) => ground_colour(resolved, point).extend(opacity),
+            SurfacePoint::Face(point) => {
+                let (frame, tone) = planes[usize::from(point.plane)];
+                face_colour(resolved, point, frame, &mut scalars).extend(1.0) * Vec4::new(tone, tone, tone, 1.0)
+            }
+        };
+        self.points.iter().map(colour).collect()
+    }
+
+    /// The same without the points, where all of them are background.
+    fn packed(mut self) -> Self {
+        if self.points.iter().all(|point| matches!(point, SurfacePoint::Background)) {
+            self.points = Vec::new();
+        }
+        self.points.shrink_to_fit();
+        self
+    }
+}
+
+fn face_point(resolved: &ResolvedScene, ray: &ViewRay, hit: &FaceHit, planes: &mut Vec<BodyPlane>) -> SurfacePoint {
+    if resolved.scene.face_data == FaceData::Distortion
+        && let Some(interpretation) = resolved.interpretation
+    {
+        return SurfacePoint::Fixed(distortion::colour_at(resolved, &interpretation, hit));
+    }
+    let plane = planes.iter().position(|known| *known == hit.plane).unwrap_or_else(|| {
+        planes.push(hit.plane);
+        planes.len() - 1
+    }) as u16;
+    let Some(interpretation) = resolved.interpretation.filter(|_| resolved.illustrated) else {
+        let footprint = FlatFootprint::default();
+        let (flat, grad_k) = ([f32::NAN; 3], [0.0; 3]);
+        return SurfacePoint::Face(FacePoint { point: hit.point, plane, layer: 0, flat, footprint, grad_k });
+    };
+    let (flat, jacobian) = interpretation.flat_at(hit.point, None);
+    let step = |n: usize| {
+        let shift = pixel_shift(ray, hit, n) / resolved.scene.samples as f32;
+        jacobian.map(|row| Vec3::from_array(row).dot(shift))
+    };
+    SurfacePoint::Face(FacePoint {
+        point: hit.point,
+        plane,
+        layer: flat.region.layer,
+        flat: [flat.i, flat.j, flat.k],
+        footprint: FlatFootprint { dx: step(0), dy: step(1) },
+        grad_k: (Vec3::from_array(jacobian[2]) / resolved.voxel_m).to_array(),
+    })
+}
+
+/// The colour of a point of a face, without the tone of the face; `scalars` has room for a value of each volume.
+fn face_colour(resolved: &ResolvedScene, point: &FacePoint, face: FaceFrame, scalars: &mut [f32]) -> Vec3 {
+    for (value, volume) in scalars.iter_mut().zip(&resolved.volumes) {
+        *value = sampled(volume.as_ref(), point.point);
+    }
+    let [i, j, k] = point.flat;
+    let flat = LayerPoint { i, j, k, layer: u32::from(point.layer) };
+    let shaded = ShadePoint { flat, footprint: point.footprint, face, grad_k: point.grad_k };
+    let rock = Vec4::from_array(ttf::shade(&resolved.tables, &shaded, scalars)).truncate();
+    with_candidates(resolved, point.point, rock)
+}
+
+fn sampled(volume: Option<&NamedVolume>, p: Vec3) -> f32 {
+    volume.map_or(f32::NAN, |volume| volume.sample(p))
+}
+
+/// The colour of a face, with horizon candidates if the scene shows them.
+fn with_candidates(resolved: &ResolvedScene, p: Vec3, rock: Vec3) -> Vec3 {
+    let Some(candidates) = &resolved.candidates else { return rock };
+    let distance = candidates.distance_at(p);
+    if resolved.scene.face_data == FaceData::Distance {
+        return Vec3::splat(distance_tone(distance));
+    }
+    match candidates.group(candidates.leaf_at(p)) {
+        0 => rock,
+        group => rock.lerp(leaf_colour(group), cover(distance)),
+    }
+}
+
+fn ground_point(resolved: &ResolvedScene, hit: &GroundHit) -> SurfacePoint {
+    let (Some(relief), Some(interpretation)) = (&resolved.relief, resolved.interpretation) else {
+        unreachable!("only a scene with a ground has hits of it")
+    };
+    let (layer, k) = if resolved.illustrated {
+        let (flat, _) = interpretation.flat_at(hit.point, Some(hit.region));
+        (flat.region.layer, flat.k)
+    } else {
+        (hit.region.layer, 1.0)
+    };
+    SurfacePoint::Ground(GroundPoint { point: hit.point, layer, k, shade: relief.shade(hit.normal) })
+}
+
+/// The colour of the ground: the average of the texture just below it, hill-shaded and blended with the raw
+/// data (P-illus 5, 5.2).
+fn ground_colour(resolved: &ResolvedScene, ground: &GroundPoint) -> Vec3 {
+    let average = Vec3::from_array(resolved.tables.average_colour(u32::from(ground.layer), ground.k));
+    let lit = (average * ground.shade).min(Vec3::ONE);
+    let slot = resolved.tables.globals.raw_volume as usize;
+    let value = sampled(resolved.volumes.get(slot).and_then(Option::as_ref), ground.point);
+    Vec3::from_array(ttf::blend_raw(&resolved.tables, lit.to_array(), value))
+}
+
+/// The points of a whole picture, in blocks of pixels, and its lines. A block is known once it has been drawn.
+#[derive(Debug)]
+pub(crate) struct PicturePoints {
+    of: PointsOf,
+    blocks_across: u32,
+    side_px: u32,
+    blocks: Vec<OnceLock<Points>>,
+    lines: OnceLock<OutlineLines>,
+}
+
+/// What the points of a picture depend on.
+#[derive(Debug, PartialEq)]
+struct PointsOf {
+    data_version: u64,
+    is_illustrated: bool,
+    /// The scene in the colours of any other.
+    scene: Scene,
+}
+
+impl PointsOf {
+    fn new(resolved: &ResolvedScene, data_version: u64) -> Self {
+        let outlines = resolved.scene.outlines;
+        let mut shapes = Outlines::none();
+        shapes.edges.width_px = outlines.edges.width_px;
+        shapes.unpicked = outlines.unpicked;
+        let scene = Scene {
+            blend: 0.0,
+            global_frequency: 1.0,
+            pattern_size: PatternSize::default(),
+            preset: Preset::Colour,
+            background: Background::Transparent,
+            face_tone: 0.0,
+            raw: None,
+            outlines: shapes,
+            labels: Vec::new(),
+            ..resolved.scene.clone()
+        };
+        Self { data_version, is_illustrated: resolved.illustrated, scene }
+    }
+}
+
+impl PicturePoints {
+    /// The points of a block of pixels, which are looked for unless they are known.
+    pub fn block(&self, [left, top]: [u32; 2], find: impl FnOnce() -> Points) -> &Points {
+        let index = top / self.side_px * self.blocks_across + left / self.side_px;
+        self.blocks[index as usize].get_or_init(|| find().packed())
+    }
+
+    /// The lines over the picture.
+    pub fn lines(&self, find: impl FnOnce() -> OutlineLines) -> &OutlineLines {
+        self.lines.get_or_init(find)
+    }
+}
+
+/// Points of the last pictures, while they need no more than so many bytes together.
+#[derive(Debug, Default)]
+pub(crate) struct KeptPoints {
+    max_bytes: usize,
+    pictures: Vec<Arc<PicturePoints>>,
+}
+
+impl KeptPoints {
+    /// None yet.
+    pub fn within(max_bytes: usize) -> Self {
+        Self { max_bytes, pictures: Vec::new() }
+    }
+
+    /// The points of a picture, in blocks of `side_px` pixels; `None` where they are not kept: in volume rendering, behind
+    /// a translucent ground, for data without a version, and where they need too much memory.
+    pub fn of(&mut self, resolved: &ResolvedScene, inputs: &Inputs, side_px: u32) -> Option<Arc<PicturePoints>> {
+        let is_clear = resolved.relief.as_ref().is_none_or(|relief| relief.opacity >= 1.0);
+        let [width, height] = resolved.scene.size_px;
+        let bytes = |[width, height]: [u32; 2], samples: u32| {
+            let rays = width as usize * height as usize * (samples * samples) as usize;
+            rays * size_of::<SurfacePoint>()
+        };
+        let needed = bytes([width, height], resolved.scene.samples);
+        let is_fixed = resolved.scene.face_data == FaceData::Distortion;
+        if resolved.field.is_some() || !is_clear || is_fixed || inputs.data_version == 0 || needed > self.max_bytes {
+            return None;
+        }
+        let of = PointsOf::new(resolved, inputs.data_version);
+        if let Some(known) = self.pictures.iter().position(|known| known.of == of) {
+            let known = self.pictures.remove(known);
+            self.pictures.push(known.clone());
+            return Some(known);
+        }
+        self.pictures.retain(|known| known.of.data_version == of.data_version);
+        let held = |pictures: &[Arc<PicturePoints>]| -> usize {
+            pictures.iter().map(|known| bytes(known.of.scene.size_px, known.of.scene.samples)).sum()
+        };
+        while held(&self.pictures) + needed > self.max_bytes {
+            self.pictures.remove(0);
+        }
+        let blocks_across = width.div_ceil(side_px);
+        let count = blocks_across * height.div_ceil(side_px);
+        let blocks = (0..count).map(|_| OnceLock::new()).collect();
+        let picture = Arc::new(PicturePoints { of, blocks_across, side_px, blocks, lines: OnceLock::new() });
+        self.pictures.push(picture.clone());
+        Some(picture)
+    }
+}
