@@ -202,7 +202,8 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
         peak_bytes_per_voxel: peak.map(|bytes| bytes / count),
     };
     let packed = PackedVolume::from_voxels(&voxels, [side; 3], model.layer_count(), model.block_count());
-    let rock = Rock { model, parameterization, key: String::new(), stages: Vec::new() };
+    let rock =
+        Rock { model, parameterization, key: String::new(), stages: Vec::new(), thicknesses_m: Default::default() };
     let tables = model::tables(&geometry, &rock)?;
     Ok((
         cube,

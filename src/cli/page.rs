@@ -137,6 +137,7 @@ impl PageRequest {
             credit: self.credit.clone(),
             title: self.title.clone(),
             caption: self.caption.clone(),
+            hidden: Vec::new(),
             interpretation: self.is_interpretation,
             preset: Some(scene.preset),
         })

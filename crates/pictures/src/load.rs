@@ -54,7 +54,7 @@ pub struct Rock {
     /// The stages and their durations; empty for results that were stored before.
     pub stages: Vec<Stage>,
     /// Metres that k = 0 … 1 spans in each layer, once they were measured.
-    thicknesses_m: OnceLock<Vec<f32>>,
+    pub thicknesses_m: OnceLock<Vec<f32>>,
 }
 
 /// Builds the model alone, from which sections and maps are cut; `None` for a project without horizons.
