@@ -11,6 +11,7 @@ mod page;
 mod panel;
 mod picking;
 mod present;
+mod time;
 mod tree;
 mod unpicked;
 mod volumes;

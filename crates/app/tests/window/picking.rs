@@ -46,7 +46,7 @@ pub fn picking(harness: &Driven) -> &state::Picking {
 }
 
 /// A click into the middle of what has a label, moved by points.
-fn click_in(harness: &mut Driven, label: &str, off: [f32; 2], modifiers: Modifiers) {
+pub fn click_in(harness: &mut Driven, label: &str, off: [f32; 2], modifiers: Modifiers) {
     let at = harness.get_by_label(label).rect().center() + vec2(off[0], off[1]);
     press(harness, at, modifiers);
 }
