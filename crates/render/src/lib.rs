@@ -23,6 +23,7 @@
 pub mod accuracy;
 pub mod camera;
 pub mod compare;
+pub mod cover;
 pub mod distortion;
 pub mod error;
 pub mod faces;

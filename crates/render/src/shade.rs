@@ -181,7 +181,7 @@ pub(crate) fn first_hit(resolved: &ResolvedScene, ray: &Ray, start: f32) -> RayH
 }
 
 /// The colour of a point of a face.
-fn face_colour(resolved: &ResolvedScene, view_ray: &ViewRay, hit: &FaceHit) -> Vec3 {
+pub(crate) fn face_colour(resolved: &ResolvedScene, view_ray: &ViewRay, hit: &FaceHit) -> Vec3 {
     if resolved.scene.face_data == FaceData::Distortion
         && let Some(interpretation) = resolved.interpretation
     {

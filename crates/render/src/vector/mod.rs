@@ -20,6 +20,7 @@ mod pattern;
 mod sections;
 mod visible;
 
+pub(crate) use visible::rock_cells;
 pub use sections::{SeenSection, seen_sections};
 
 use crate::error::RenderError;
