@@ -45,7 +45,7 @@ impl CoverMaker<'_> {
             (Some(_), None) => Some(self.ground(&rectangle, scene, size)?),
         };
         let data = self.data(&rectangle, ground.filter(|_| wanted.plane.is_none()));
-        Ok(Cover { rectangle, illustrated, data })
+        Ok(Cover { rectangle, illustrated, is_smooth: wanted.plane.is_none(), data })
     }
 
     /// Texels of a rectangle: square on the exaggerated block.

@@ -6,8 +6,8 @@
 //! could end it are written as escapes; the viewer puts words on the page as text alone.
 
 use crate::model::Model;
-use crate::page::{data_uri, page, pictures};
-use crate::picture::{jpeg, shrunk};
+use crate::page::{self, data_uri};
+use crate::picture::jpeg;
 use project::error::ProjectError;
 use project::folder::refuse_inside_project;
 use std::fmt::Write as _;
@@ -46,27 +46,18 @@ pub struct WrittenPage {
 pub fn write(model: &Model, path: &Path, limit: u64, progress: &Progress) -> Result<WrittenPage, ProjectError> {
     refuse_inside_project(path)?;
     progress.begin("page", 2);
-    let data: Vec<Vec<u8>> =
-        pictures(model.covers.iter().map(|cover| Some(&cover.data)).collect())?.into_iter().flatten().collect();
+    let data = page::data(&model.covers)?;
     progress.step(1)?;
     let mut share = 1.0;
     let mut text = String::new();
     for _ in 0..ATTEMPTS {
-        let small: Vec<Option<image::RgbImage>> = match share < 1.0 {
-            true => model.covers.iter().map(|cover| cover.illustrated.as_ref().map(|image| shrunk(image, share))).collect(),
-            false => Vec::new(),
-        };
-        let images = match share < 1.0 {
-            true => small.iter().map(Option::as_ref).collect(),
-            false => model.covers.iter().map(|cover| cover.illustrated.as_ref()).collect(),
-        };
-        let illustrated = pictures(images)?;
+        let illustrated = page::illustrations(&model.covers, share)?;
         progress.check()?;
-        text = whole(model, &page(model, &illustrated, &data)?)?;
+        text = whole(model, &page::page(model, &illustrated, &data)?)?;
         if text.len() as u64 <= limit {
             break;
         }
-        let pictures: usize = illustrated.iter().flatten().map(|bytes| bytes.len() * 4 / 3).sum();
+        let pictures: usize = illustrated.iter().flatten().map(String::len).sum();
         let fixed = text.len() - pictures;
         let room = (limit as f64 - fixed as f64).max(0.0) / (pictures as f64).max(1.0);
         let next = share * (0.96 * room).sqrt();

@@ -72,6 +72,8 @@ pub struct Cover {
     pub rectangle: SectionPlane,
     /// The illustration; absent without an interpretation.
     pub illustrated: Option<RgbImage>,
+    /// Whether the illustration has no drawn lines, as that of the ground.
+    pub is_smooth: bool,
     /// Nodes from corner to corner: raw value (0 = none, 1 to 255 over the domain), layer + 1 (0 = none), and 255
     /// where the horizon nearest within the layer was not picked.
     pub data: RgbImage,

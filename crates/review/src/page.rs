@@ -4,7 +4,7 @@
 
 use crate::base64::encode;
 use crate::model::{Block, Cover, LineKind, Mesh, Model, SceneModel, Surface};
-use crate::picture::png;
+use crate::picture::{drawing, jpeg, png, shrunk};
 use glam::DVec3;
 use project::error::ProjectError;
 use rayon::prelude::*;
@@ -21,12 +21,11 @@ pub(crate) fn data_uri(kind: &str, bytes: &[u8]) -> String {
 /// The model without the pictures of its faces, which come as files of PNG: those of the illustration, then the data.
 pub(crate) fn page(
     model: &Model,
-    illustrated: &[Option<Vec<u8>>],
+    illustrated: &[Option<String>],
     data: &[Vec<u8>],
 ) -> Result<Value, ProjectError> {
     let covers: Vec<Value> = model.covers.iter().enumerate().map(|(n, cover)| {
-        let picture = illustrated[n].as_ref().map(|bytes| data_uri("png", bytes));
-        self::cover(cover, picture, data_uri("png", &data[n]))
+        self::cover(cover, illustrated[n].clone(), data_uri("png", &data[n]))
     }).collect();
     let mut layers = Vec::new();
     for layer in &model.layers {
@@ -46,6 +45,9 @@ pub(crate) fn page(
     let notes: Vec<Value> = model.notes.iter().map(|note| {
         json!({ "text": note.text, "at": note.at.to_array(), "scene": note.scene })
     }).collect();
+    let mut blocks = Blocks::default();
+    let scenes: Vec<Value> =
+        model.scenes.iter().map(|scene| self::scene(scene, &model.geometry, &mut blocks)).collect();
     Ok(json!({
         "title": model.title,
         "provenance": model.provenance,
@@ -60,18 +62,36 @@ pub(crate) fn page(
         "faults": model.faults.iter().map(surface).collect::<Vec<_>>(),
         "wells": wells,
         "covers": covers,
-        "scenes": model.scenes.iter().map(|scene| self::scene(scene, &model.geometry)).collect::<Vec<_>>(),
+        "scenes": scenes,
+        "blocks": blocks.made,
         "sections": sections,
         "notes": notes,
     }))
 }
 
-/// All pictures of faces as PNG.
+/// The illustrations of all faces as parts of the page, their sides multiplied.
 ///
 /// # Errors
 /// A picture has no pixels.
-pub(crate) fn pictures<'a>(images: Vec<Option<&'a image::RgbImage>>) -> Result<Vec<Option<Vec<u8>>>, ProjectError> {
-    images.into_par_iter().map(|image| image.map(png).transpose()).collect()
+pub(crate) fn illustrations(covers: &[Cover], share: f64) -> Result<Vec<Option<String>>, ProjectError> {
+    let one = |cover: &Cover| {
+        let Some(image) = &cover.illustrated else { return Ok(None) };
+        let small = (share < 1.0).then(|| shrunk(image, share));
+        let image = small.as_ref().unwrap_or(image);
+        Ok(Some(match cover.is_smooth {
+            true => data_uri("jpeg", &jpeg(image)?),
+            false => data_uri("png", &drawing(image)?),
+        }))
+    };
+    covers.par_iter().map(one).collect()
+}
+
+/// The data of all faces as PNG.
+///
+/// # Errors
+/// A picture has no pixels.
+pub(crate) fn data(covers: &[Cover]) -> Result<Vec<Vec<u8>>, ProjectError> {
+    covers.par_iter().map(|cover| png(&cover.data)).collect()
 }
 
 fn geometry(geometry: &SurveyGeometry) -> Value {
@@ -115,7 +135,7 @@ fn cover(cover: &Cover, illustrated: Option<String>, data: String) -> Value {
     })
 }
 
-fn scene(model: &SceneModel, geometry: &SurveyGeometry) -> Value {
+fn scene(model: &SceneModel, geometry: &SurveyGeometry, blocks: &mut Blocks) -> Value {
     let scene = &model.scene;
     let block = scene.box_in(geometry);
     let Camera { elevation_deg, projection, target, zoom, pan, margin, .. } = scene.camera;
@@ -142,9 +162,25 @@ fn scene(model: &SceneModel, geometry: &SurveyGeometry) -> Value {
             "radius": scene.wells.radius, "colour": scene.wells.colour.to_string(),
             "top": scene.wells.top_colour.to_string(),
         },
-        "cut": self::block(&model.cut),
-        "whole": model.whole.as_ref().map(self::block),
+        "cut": blocks.index(&model.cut),
+        "whole": model.whole.as_ref().map(|block| blocks.index(block)),
     })
+}
+
+/// The blocks of all scenes; scenes that differ by their cameras alone share them.
+#[derive(Default)]
+struct Blocks {
+    made: Vec<Value>,
+}
+
+impl Blocks {
+    fn index(&mut self, block: &Block) -> usize {
+        let made = self::block(block);
+        self.made.iter().position(|known| *known == made).unwrap_or_else(|| {
+            self.made.push(made);
+            self.made.len() - 1
+        })
+    }
 }
 
 fn block(block: &Block) -> Value {

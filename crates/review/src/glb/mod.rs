@@ -10,7 +10,7 @@ mod ink;
 use crate::make::{ReviewSettings, make};
 use crate::model::{Cover, Model, Surface};
 use crate::page;
-use crate::picture::{jpeg, png};
+use crate::picture::{drawing, jpeg};
 use file::{Covered, GlbFile};
 use glam::DVec3;
 use image::RgbImage;
@@ -140,7 +140,10 @@ fn encoded(model: &Model) -> Result<(Vec<u8>, WrittenModel), ProjectError> {
         let cover = &model.covers[face.cover];
         let raw = model.raw.as_ref().map(|raw| raw_picture(cover, &page::map(&raw.function)));
         let shown = match &cover.illustrated {
-            Some(image) => file.picture(&face.name, "image/png", &png(&inked(image, cover, scene))?),
+            Some(image) if cover.is_smooth => {
+                file.picture(&face.name, "image/jpeg", &jpeg(&inked(image, cover, scene))?)
+            }
+            Some(image) => file.picture(&face.name, "image/png", &drawing(&inked(image, cover, scene))?),
             None => file.picture(&face.name, "image/jpeg", &jpeg(raw.as_ref().unwrap_or(&cover.data))?),
         };
         let material = file.material(&face.name, [1.0; 4], Some(shown));
