@@ -19,8 +19,7 @@ use ttf::RawColour;
 
 /// Samples a texel along each axis.
 const SAMPLES: u32 = 2;
-/// Nodes of the data to a voxel, and most of them along an axis.
-const NODES_PER_VOXEL: f64 = 2.0;
+/// Most nodes of the data along an axis.
 const MOST_NODES: f64 = 1024.0;
 /// Largest side of a picture: what every device of the last years takes.
 const MOST_TEXELS: f64 = 4096.0;
@@ -32,6 +31,8 @@ pub(crate) struct CoverMaker<'a> {
     pub progress: &'a Progress,
     /// Texels to a metre of the exaggerated block.
     pub texels_per_m: f64,
+    /// Nodes of the data to a voxel.
+    pub nodes_per_voxel: f64,
 }
 
 impl CoverMaker<'_> {
@@ -103,7 +104,7 @@ impl CoverMaker<'_> {
     fn data(&self, rectangle: &SectionPlane, ground: Option<&Ground>) -> RgbImage {
         let nodes = |extent: f64, axis: DVec3| {
             let voxels = extent * axis.length();
-            (voxels * NODES_PER_VOXEL).round().clamp(1.0, MOST_NODES) + 1.0
+            (voxels * self.nodes_per_voxel).round().clamp(1.0, MOST_NODES) + 1.0
         };
         let size = [nodes(rectangle.extent[0], rectangle.s_axis), nodes(rectangle.extent[1], rectangle.t_axis)];
         let step = DVec2::from(rectangle.extent) / (DVec2::from(size) - 1.0);

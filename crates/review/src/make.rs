@@ -46,15 +46,15 @@ pub struct ReviewSettings {
 }
 
 /// Texels along the longest side of the block, unless stated.
-pub const DENSITY: f64 = 1400.0;
+pub const DENSITY: f64 = 1100.0;
 /// Pixels of the pictures for readers without 3D.
-const PICTURE_PX: [u32; 2] = [1280, 960];
+const PICTURE_PX: [u32; 2] = [1120, 840];
 /// Pixels of a swatch of the legend.
 const SWATCH_PX: [u32; 2] = [96, 52];
 /// Pixels to a millimetre of a pattern's tile in a swatch.
 const SWATCH_PX_PER_MM: f32 = 9.0;
 /// Share of the texels that sections get along each axis.
-const SECTION_DENSITY: f64 = 0.5;
+const SECTION_DENSITY: f64 = 0.4;
 /// Colours of faults.
 const FAULT: Colour = Colour::new(0x6b, 0x2a, 0x1a);
 
@@ -229,6 +229,7 @@ impl Maker<'_> {
             painter: &mut self.painter,
             progress: self.progress,
             texels_per_m,
+            nodes_per_voxel: if share < 1.0 { 1.0 } else { 2.0 },
         };
         self.covers.push(maker.make(wanted, scene, ground)?);
         self.known.insert(key, self.covers.len() - 1);

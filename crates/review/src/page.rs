@@ -1,6 +1,7 @@
 //! What the viewer reads: the model as JSON, with pictures and numbers in base64.
 //!
-//! Triangles are 16-bit shares of the box that a mesh fills; positions of lines are 32-bit floats. Voxels everywhere.
+//! Corners and ends of lines are 16-bit shares of the box that they fill; paths of wells are 32-bit floats. Voxels
+//! everywhere.
 
 use crate::base64::encode;
 use crate::model::{Block, Cover, LineKind, Mesh, Model, SceneModel, Surface};
@@ -187,7 +188,10 @@ fn block(block: &Block) -> Value {
     let faces: Vec<Value> = block.faces.iter().map(|face| {
         json!({ "cover": face.cover, "name": face.name, "mesh": mesh(&face.mesh) })
     }).collect();
-    let lines = |wanted: LineKind| floats(block.lines.iter().filter(|(kind, _)| *kind == wanted).flat_map(|(_, ends)| ends));
+    let lines = |wanted: LineKind| {
+        let pieces = block.lines.iter().filter(|(kind, _)| *kind == wanted);
+        shares(&pieces.flat_map(|(_, ends)| *ends).collect::<Vec<_>>())
+    };
     json!({
         "faces": faces,
         "edges": lines(LineKind::Edge),
@@ -211,21 +215,26 @@ fn floats<'a>(points: impl Iterator<Item = &'a DVec3>) -> String {
     encode(&bytes)
 }
 
-/// Corners as 16-bit shares of their box, and indices of 16 or 32 bits.
-fn mesh(mesh: &Mesh) -> Value {
+/// Points as 16-bit shares of their box.
+fn shares(points: &[DVec3]) -> Value {
     let start = (DVec3::MAX, DVec3::MIN);
-    let (low, high) = mesh.points.iter().fold(start, |(low, high), p| (low.min(*p), high.max(*p)));
+    let (low, high) = points.iter().fold(start, |(low, high), p| (low.min(*p), high.max(*p)));
     let size = (high - low).max(DVec3::splat(1e-9));
     let share = |p: &DVec3| ((*p - low) / size * 65535.0).round().to_array().map(|c| c as u16);
-    let points: Vec<u8> = mesh.points.iter().flat_map(share).flat_map(u16::to_le_bytes).collect();
+    let bytes: Vec<u8> = points.iter().flat_map(share).flat_map(u16::to_le_bytes).collect();
+    let [low, size] = if points.is_empty() { [DVec3::ZERO, DVec3::ONE] } else { [low, size] };
+    json!({ "low": low.to_array(), "size": size.to_array(), "points": encode(&bytes) })
+}
+
+/// Corners as shares of their box, and indices of 16 or 32 bits.
+fn mesh(mesh: &Mesh) -> Value {
     let is_small = mesh.points.len() <= 65536;
     let indices: Vec<u8> = match is_small {
         true => mesh.triangles.iter().flatten().flat_map(|n| (*n as u16).to_le_bytes()).collect(),
         false => mesh.triangles.iter().flatten().flat_map(|n| n.to_le_bytes()).collect(),
     };
-    let [low, size] = if mesh.points.is_empty() { [DVec3::ZERO, DVec3::ONE] } else { [low, size] };
-    json!({
-        "low": low.to_array(), "size": size.to_array(), "points": encode(&points), "indices": encode(&indices),
-        "bits": if is_small { 16 } else { 32 },
-    })
+    let mut value = shares(&mesh.points);
+    value["indices"] = encode(&indices).into();
+    value["bits"] = if is_small { 16 } else { 32 }.into();
+    value
 }

@@ -7,7 +7,7 @@ import {
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
-import { bytes, floats, mesh, picture, pixels } from "./data.js";
+import { bytes, floats, mesh, picture, pixels, points } from "./data.js";
 import { faceFragment, faceVertex, surfaceFragment, surfaceVertex } from "./shaders.js";
 
 /** Uniforms that all faces and surfaces share. */
@@ -120,11 +120,12 @@ export function sectionMesh(cover) {
 }
 
 /** Straight pieces as lines of a width in pixels. */
-export function lines(points, { width, colour }, isDashed = false) {
-  if (points.length < 6 || width <= 0) return null;
+export function lines(ends, { width, colour }) {
+  if (ends.length < 6 || width <= 0) return null;
   const geometry = new LineSegmentsGeometry();
-  geometry.setPositions(points);
-  const material = new LineMaterial({ color: colour, linewidth: width, transparent: isDashed, opacity: isDashed ? 0.45 : 1 });
+  geometry.setPositions(ends);
+  // Voxels are mirrored in the display, lines are not: both sides are drawn.
+  const material = new LineMaterial({ color: colour, linewidth: width, side: DoubleSide });
   const object = new LineSegments2(geometry, material);
   object.matrixAutoUpdate = false;
   object.userData.width = width;
@@ -143,7 +144,7 @@ export async function blockGroup(model, source, scene, covers) {
     ["edges", scene.edges, false],
   ];
   for (const [kind, stroke, isDoubtful] of strokes) {
-    const object = lines(floats(source[kind]), stroke);
+    const object = lines(points(source[kind]), stroke);
     if (object) {
       object.userData.isDoubtful = isDoubtful;
       object.renderOrder = 2;

@@ -11,11 +11,18 @@ export function bytes(text) {
 /** 32-bit numbers. */
 export const floats = (text) => new Float32Array(bytes(text).buffer);
 
-/** A mesh: corners in voxels and indices. */
-export function mesh({ low, size, points, indices, bits }) {
+/** Points in voxels, of shares of their box. */
+export function points({ low, size, points }) {
   const shares = new Uint16Array(bytes(points).buffer);
-  const corners = new Float32Array(shares.length);
-  for (let n = 0; n < shares.length; n++) corners[n] = low[n % 3] + (size[n % 3] * shares[n]) / 65535;
+  const voxels = new Float32Array(shares.length);
+  for (let n = 0; n < shares.length; n++) voxels[n] = low[n % 3] + (size[n % 3] * shares[n]) / 65535;
+  return voxels;
+}
+
+/** A mesh: corners in voxels and indices. */
+export function mesh(source) {
+  const corners = points(source);
+  const { indices, bits } = source;
   const buffer = bytes(indices).buffer;
   return { corners, indices: bits === 16 ? new Uint16Array(buffer) : new Uint32Array(buffer) };
 }
