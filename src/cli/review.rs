@@ -21,9 +21,9 @@ const SIZES_MB: [f64; 2] = [0.5, 2000.0];
 /// Limits of the triangles of a model.
 const TRIANGLES: [usize; 2] = [1000, 5_000_000];
 /// Nodes along each axis on which the horizons of a page are sampled.
-const SURFACE_NODES: usize = 64;
+const SURFACE_NODES: usize = 56;
 /// Most cells along each axis on which the ground of a page is sampled.
-const GROUND_CELLS: usize = 90;
+const GROUND_CELLS: usize = 80;
 /// Most triangles of a fault in a page.
 const SURFACE_TRIANGLES: usize = 4_000;
 

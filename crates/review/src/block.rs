@@ -3,7 +3,7 @@
 use crate::ground::{Ground, mesh_of};
 use crate::model::{Block, Face, LineKind};
 use crate::polygon::{borders, within};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use model::StructuralModel;
 use model::section::{self, LineQuality, Section, SectionPlane};
 use render::Scene;
@@ -13,6 +13,8 @@ use survey::block::BodyPlane;
 
 /// Pieces into which an edge is cut where it may run above the ground.
 const EDGE_PIECES: usize = 256;
+/// How far a line may be from its points, voxels.
+const STRAIGHT: f64 = 0.02;
 /// How far above the ground a line still lies on it, voxels.
 const ON_GROUND: f64 = 0.05;
 
@@ -162,7 +164,7 @@ fn add_lines(block: &mut Block, model: &StructuralModel, face: &RockFace, ground
             }
             section::LineKind::Frame => continue,
         };
-        for ends in line.points.windows(2) {
+        for ends in straightened(&line.points).windows(2) {
             let ends = [ends[0], ends[1]].map(|st| face.rectangle.voxel(st));
             for part in face.cells.iter().filter_map(|cell| within(ends, cell, normal)) {
                 let middle = (part[0] + part[1]) * 0.5;
@@ -172,4 +174,20 @@ fn add_lines(block: &mut Block, model: &StructuralModel, face: &RockFace, ground
             }
         }
     }
+}
+
+/// A polyline without the points that lie on the way between others, but for [`STRAIGHT`].
+fn straightened(points: &[DVec2]) -> Vec<DVec2> {
+    let mut kept: Vec<DVec2> = points.first().copied().into_iter().collect();
+    let mut from = 0;
+    for to in 2..points.len() {
+        let along = (points[to] - points[from]).normalize_or_zero();
+        let off = |p: &DVec2| along.perp_dot(*p - points[from]).abs();
+        if points[from + 1..to].iter().any(|p| off(p) > STRAIGHT) || along == DVec2::ZERO {
+            from = to - 1;
+            kept.push(points[from]);
+        }
+    }
+    kept.extend(points.last().filter(|_| points.len() > 1));
+    kept
 }

@@ -179,7 +179,10 @@ impl Ground {
     pub fn fault_traces(&self, mesh: &Mesh, model: &StructuralModel) -> Vec<[DVec3; 2]> {
         let faults = model.faults();
         let traces = mesh.triangles.par_iter().flat_map_iter(|triangle| {
+            // The trace runs along the upper edge of the scarp, where it can be seen from both sides.
             let corners = triangle.map(|n| mesh.points[n as usize]);
+            let top = corners.iter().map(|p| p.z).fold(f64::MAX, f64::min);
+            let corners = corners.map(|p| p.truncate().extend(top));
             (0..faults.surfaces().len()).filter_map(move |fault| {
                 let side = corners.map(|p| f64::from(faults.side(fault, p.as_vec3())));
                 let cut = |n: usize, m: usize| {

@@ -46,7 +46,7 @@ pub struct ReviewSettings {
 }
 
 /// Texels along the longest side of the block, unless stated.
-pub const DENSITY: f64 = 1100.0;
+pub const DENSITY: f64 = 1000.0;
 /// Pixels of the pictures for readers without 3D.
 const PICTURE_PX: [u32; 2] = [1120, 840];
 /// Pixels of a swatch of the legend.

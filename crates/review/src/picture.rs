@@ -10,7 +10,7 @@ use std::io;
 use std::path::Path;
 
 /// Quality of JPEG pictures, percent.
-const JPEG_QUALITY: u8 = 86;
+const JPEG_QUALITY: u8 = 82;
 
 fn failed(error: image::ImageError) -> ProjectError {
     failed_with(io::Error::other(error))
