@@ -168,7 +168,10 @@ pub(super) fn export_model(request: &ModelRequest, progress: &Progress) -> anyho
         "  metres, Y up, X east, Z south; origin at {:.1}, {:.1}; vertical exaggeration {}",
         written.origin[0], written.origin[1], written.exaggeration
     ));
-    report.say(format!("  surfaces are true to {:.2} m after decimation", written.deviation_m));
+    report.say(format!(
+        "  99 % of every surface is within {:.1} m of the interpretation, and all of it within {:.1} m",
+        written.usual_deviation_m, written.deviation_m
+    ));
     report.field("file", &request.out).fields(&written).field("seconds", seconds);
     Ok(report)
 }

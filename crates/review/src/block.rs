@@ -153,9 +153,21 @@ fn add_curved(block: &mut Block, walls: &[(usize, [DVec3; 2])], ground: Option<&
 
 /// Adds the horizons and faults on a face.
 fn add_lines(block: &mut Block, model: &StructuralModel, face: &RockFace, ground: Option<&Ground>) {
-    let section = Section::new(model, &face.rectangle);
     let normal = face.plane.normal.as_dvec3();
-    for line in &section.lines {
+    for (kind, ends) in lines_on(model, &face.rectangle) {
+        for part in face.cells.iter().filter_map(|cell| within(ends, cell, normal)) {
+            let middle = (part[0] + part[1]) * 0.5;
+            if ground.is_none_or(|ground| ground.is_rock(middle + DVec3::Z * ON_GROUND)) {
+                block.lines.push((kind, part));
+            }
+        }
+    }
+}
+
+/// The horizons and faults on a rectangle.
+pub(crate) fn lines_on(model: &StructuralModel, rectangle: &SectionPlane) -> Vec<(LineKind, [DVec3; 2])> {
+    let mut lines = Vec::new();
+    for line in &Section::new(model, rectangle).lines {
         let kind = match line.kind {
             section::LineKind::Fault { real: true, .. } => LineKind::Fault,
             section::LineKind::Fault { .. } => LineKind::Horizon { is_picked: true },
@@ -164,16 +176,10 @@ fn add_lines(block: &mut Block, model: &StructuralModel, face: &RockFace, ground
             }
             section::LineKind::Frame => continue,
         };
-        for ends in straightened(&line.points).windows(2) {
-            let ends = [ends[0], ends[1]].map(|st| face.rectangle.voxel(st));
-            for part in face.cells.iter().filter_map(|cell| within(ends, cell, normal)) {
-                let middle = (part[0] + part[1]) * 0.5;
-                if ground.is_none_or(|ground| ground.is_rock(middle + DVec3::Z * ON_GROUND)) {
-                    block.lines.push((kind, part));
-                }
-            }
-        }
+        let points: Vec<DVec3> = straightened(&line.points).into_iter().map(|st| rectangle.voxel(st)).collect();
+        lines.extend(points.windows(2).map(|ends| (kind, [ends[0], ends[1]])));
     }
+    lines
 }
 
 /// A polyline without the points that lie on the way between others, but for [`STRAIGHT`].

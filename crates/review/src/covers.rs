@@ -21,6 +21,8 @@ use ttf::RawColour;
 const SAMPLES: u32 = 2;
 /// Most nodes of the data along an axis.
 const MOST_NODES: f64 = 1024.0;
+/// Depths below the triangles of the ground at which its layer is looked for, voxels.
+const INTO_GROUND: [f32; 6] = [0.05, 0.5, 1.0, 2.0, 4.0, 8.0];
 /// Largest side of a picture: what every device of the last years takes.
 const MOST_TEXELS: f64 = 4096.0;
 
@@ -119,8 +121,11 @@ impl CoverMaker<'_> {
                 p.z = ground.z_at(p.truncate());
             }
             let p = p.as_vec3();
-            let beneath = if ground.is_some() { p + Vec3::Z * render::ground::INTO_ROCK } else { p };
-            let (layer, unsure) = model.map_or((0, 0), |model| layer_at(model, beneath));
+            let (layer, unsure) = match (model, ground) {
+                (None, _) => (0, 0),
+                (Some(model), None) => layer_at(model, p),
+                (Some(model), Some(_)) => layer_at(model, beneath(model, p)),
+            };
             [raw.zip(volume).map_or(0, |(raw, volume)| byte_of(raw, volume, p)), layer, unsure]
         };
         let texels: Vec<[u8; 3]> = (0..width * height).into_par_iter().map(texel).collect();
@@ -133,6 +138,14 @@ fn byte_of(raw: &RawColour, volume: &NamedVolume, p: Vec3) -> u8 {
     let value = volume.sample(p);
     let [low, high] = raw.function.domain;
     if value.is_nan() { 0 } else { (1.0 + 254.0 * ((value - low) / (high - low)).clamp(0.0, 1.0)).round() as u8 }
+}
+
+/// A place just below the ground near a point of its triangles, which may lie in the air.
+fn beneath(model: &StructuralModel, p: Vec3) -> Vec3 {
+    let air = model.layer_count() - 1;
+    let places = INTO_GROUND.map(|depth| p + Vec3::Z * depth);
+    let rock = places.into_iter().find(|place| usize::from(model.region_at(*place).layer) != air);
+    rock.unwrap_or(p)
 }
 
 /// Layer + 1, and 255 where the nearest horizon of the layer was not picked.

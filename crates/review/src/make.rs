@@ -1,9 +1,9 @@
 //! Makes the model of a project: what a scene needs is loaded once, and each picture of a face is made once.
 
-use crate::block::{Wanted, block_of};
+use crate::block::{Wanted, block_of, lines_on};
 use crate::covers::CoverMaker;
 use crate::ground::Ground;
-use crate::model::{Block, Cover, Layer, Model, Note, RawScale, SceneModel, Stack, Surface, WellPath};
+use crate::model::{Block, Cover, Layer, Model, Note, RawScale, SceneModel, SectionPlace, Stack, Surface, WellPath};
 use crate::surfaces;
 use figure::draw::swatch;
 use glam::DVec3;
@@ -260,7 +260,9 @@ impl Maker<'_> {
                 };
                 let plane = Some(BodyPlane::of_axis(axis, at as f32, 1.0));
                 let cover = self.cover(&Wanted { plane, rectangle }, scene, None, SECTION_DENSITY)?;
-                stack.places.push((at, cover));
+                let model = self.loaded.rock.as_ref().map(|rock| &rock.model);
+                let lines = model.map_or_else(Vec::new, |model| lines_on(model, &rectangle));
+                stack.places.push(SectionPlace { at, cover, lines });
             }
             stacks.push(stack);
         }

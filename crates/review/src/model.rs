@@ -149,6 +149,8 @@ pub struct Surface {
     pub picked_share: f64,
     /// Largest distance between the triangles and the surface, m.
     pub deviation_m: f64,
+    /// The distance within which 99 % of the places are that were compared, m.
+    pub usual_deviation_m: f64,
 }
 
 /// A well.
@@ -165,8 +167,18 @@ pub struct WellPath {
 pub struct Stack {
     /// 0 = inlines, 1 = crosslines, 2 = slices.
     pub axis: usize,
-    /// Voxel position and index of the cover of each.
-    pub places: Vec<(f64, usize)>,
+    /// The sections, in order.
+    pub places: Vec<SectionPlace>,
+}
+
+/// A section of a stack.
+pub struct SectionPlace {
+    /// Its voxel position along the axis.
+    pub at: f64,
+    /// Index of its cover.
+    pub cover: usize,
+    /// Horizons and faults on it, as pieces of two points.
+    pub lines: Vec<(LineKind, [DVec3; 2])>,
 }
 
 /// A note on a place.

@@ -40,7 +40,12 @@ pub(crate) fn page(
         json!({ "name": well.name, "path": floats(well.path.iter()), "tops": tops })
     }).collect();
     let sections: Vec<Value> = model.sections.iter().map(|stack| {
-        let places: Vec<Value> = stack.places.iter().map(|(at, cover)| json!({ "at": at, "cover": cover })).collect();
+        let places: Vec<Value> = stack.places.iter().map(|place| {
+            let mut value = lines(&place.lines);
+            value["at"] = place.at.into();
+            value["cover"] = place.cover.into();
+            value
+        }).collect();
         json!({ "axis": stack.axis, "places": places })
     }).collect();
     let notes: Vec<Value> = model.notes.iter().map(|note| {
@@ -188,16 +193,22 @@ fn block(block: &Block) -> Value {
     let faces: Vec<Value> = block.faces.iter().map(|face| {
         json!({ "cover": face.cover, "name": face.name, "mesh": mesh(&face.mesh) })
     }).collect();
-    let lines = |wanted: LineKind| {
-        let pieces = block.lines.iter().filter(|(kind, _)| *kind == wanted);
+    let mut value = lines(&block.lines);
+    value["faces"] = faces.into();
+    value
+}
+
+/// Lines by kind.
+fn lines(lines: &[(LineKind, [DVec3; 2])]) -> Value {
+    let of = |wanted: LineKind| {
+        let pieces = lines.iter().filter(|(kind, _)| *kind == wanted);
         shares(&pieces.flat_map(|(_, ends)| *ends).collect::<Vec<_>>())
     };
     json!({
-        "faces": faces,
-        "edges": lines(LineKind::Edge),
-        "horizons": lines(LineKind::Horizon { is_picked: true }),
-        "unpicked": lines(LineKind::Horizon { is_picked: false }),
-        "faults": lines(LineKind::Fault),
+        "edges": of(LineKind::Edge),
+        "horizons": of(LineKind::Horizon { is_picked: true }),
+        "unpicked": of(LineKind::Horizon { is_picked: false }),
+        "faults": of(LineKind::Fault),
     })
 }
 

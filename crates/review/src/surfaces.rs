@@ -42,7 +42,7 @@ pub(crate) fn horizon(
         };
         let there: Vec<bool> =
             (0..counts[0] * counts[1]).map(|n| is_there(DVec2::new(at(n / counts[1], 0), at(n % counts[1], 1)))).collect();
-        let (mut welder, mut deviation) = (Welder::default(), 0.0f64);
+        let (mut welder, mut deviations) = (Welder::default(), Vec::new());
         for x in 0..counts[0] - 1 {
             for y in 0..counts[1] - 1 {
                 let node = |dx: usize, dy: usize| {
@@ -53,10 +53,10 @@ pub(crate) fn horizon(
                     let piece: Vec<DVec3> = cut(&corners, &is_there).into_iter().map(place).collect();
                     if piece.len() > 2 {
                         let middle: DVec3 = piece.iter().sum::<DVec3>() / piece.len() as f64;
-                        deviation = deviation.max((place(middle.truncate()).z - middle.z).abs());
+                        deviations.push((place(middle.truncate()).z - middle.z).abs());
                         for n in 0..piece.len() {
                             let between = (piece[n] + piece[(n + 1) % piece.len()]) * 0.5;
-                            deviation = deviation.max((place(between.truncate()).z - between.z).abs());
+                            deviations.push((place(between.truncate()).z - between.z).abs());
                         }
                         welder.add(&piece);
                     }
@@ -66,7 +66,7 @@ pub(crate) fn horizon(
         let quality = |p: &DVec3| model.quality_at(index, block, p.x as f32, p.y as f32);
         let is_picked: Vec<bool> =
             welder.mesh.points.iter().map(|p| matches!(quality(p), Quality::Picked | Quality::Tracked)).collect();
-        (welder.mesh, is_picked, deviation)
+        (welder.mesh, is_picked, deviations)
     });
     let mut surface = Surface {
         name: name.to_owned(),
@@ -75,12 +75,19 @@ pub(crate) fn horizon(
         is_picked: Vec::new(),
         picked_share: 1.0,
         deviation_m: 0.0,
+        usual_deviation_m: 0.0,
     };
-    for (mesh, is_picked, deviation) in parts.collect::<Vec<_>>() {
+    let mut all = Vec::new();
+    for (mesh, is_picked, deviations) in parts.collect::<Vec<_>>() {
         append(&mut surface.mesh, mesh);
         surface.is_picked.extend(is_picked);
-        surface.deviation_m = surface.deviation_m.max(deviation * geometry.sample_m());
+        all.extend(deviations);
     }
+    all.retain(|deviation| deviation.is_finite());
+    all.sort_by(f64::total_cmp);
+    let at = |share: f64| all.get((share * (all.len().max(1) - 1) as f64) as usize).copied().unwrap_or(0.0);
+    surface.usual_deviation_m = at(0.99) * geometry.sample_m();
+    surface.deviation_m = at(1.0) * geometry.sample_m();
     surface
 }
 
@@ -135,7 +142,7 @@ pub(crate) fn triangles(
         side *= 1.3;
     }
     let is_picked = vec![true; mesh.points.len()];
-    Surface { name: name.to_owned(), colour, mesh, is_picked, picked_share: 1.0, deviation_m }
+    Surface { name: name.to_owned(), colour, mesh, is_picked, picked_share: 1.0, deviation_m, usual_deviation_m: deviation_m }
 }
 
 /// A mesh whose corners within a cube of so many voxels are one, in their middle; and the farthest that one was moved, m.

@@ -50,6 +50,8 @@ pub struct WrittenModel {
     pub exaggeration: f64,
     /// Largest distance between triangles of horizons and faults and what they stand for, m.
     pub deviation_m: f64,
+    /// The distance within which 99 % of the places of each of them are, m.
+    pub usual_deviation_m: f64,
 }
 
 /// Writes the block of the first of the settings' scenes (or of the project) with at most so many triangles; completely or
@@ -171,12 +173,13 @@ fn encoded(model: &Model) -> Result<(Vec<u8>, WrittenModel), ProjectError> {
         faces.extend(file.mesh(&face.name, covered, &Value::Null));
     }
     let mut groups: Vec<usize> = file.group("Block", &faces).into_iter().collect();
-    let mut deviation_m = 0.0f64;
+    let (mut deviation_m, mut usual_deviation_m) = (0.0f64, 0.0f64);
     for (title, surfaces) in [("Horizons", &model.horizons), ("Faults", &model.faults)] {
         let mut nodes = Vec::new();
         for surface in surfaces {
             triangles += surface.mesh.triangles.len();
             deviation_m = deviation_m.max(surface.deviation_m);
+            usual_deviation_m = usual_deviation_m.max(surface.usual_deviation_m);
             nodes.extend(add_surface(&mut file, surface, &frame));
         }
         groups.extend(file.group(title, &nodes));
@@ -213,7 +216,7 @@ fn encoded(model: &Model) -> Result<(Vec<u8>, WrittenModel), ProjectError> {
     let nodes = file.node_count() + 1;
     let bytes = file.finish(&root, &groups, exaggeration, extras, has_raw);
     let written =
-        WrittenModel { bytes: bytes.len() as u64, triangles, nodes, origin, exaggeration, deviation_m };
+        WrittenModel { bytes: bytes.len() as u64, triangles, nodes, origin, exaggeration, deviation_m, usual_deviation_m };
     Ok((bytes, written))
 }
 

@@ -111,8 +111,15 @@ export function faceMesh(geometry, cover, name) {
   return object;
 }
 
-/** The rectangle of a section. */
-export function sectionMesh(cover) {
+/** The rectangle of a section with its lines. */
+export function sectionGroup(cover, place, scene) {
+  const group = new Group();
+  group.matrixAutoUpdate = false;
+  group.add(sectionMesh(cover), ...strokes(place, scene));
+  return group;
+}
+
+function sectionMesh(cover) {
   const { origin, s, t } = cover.source;
   const add = (...parts) => origin.map((part, n) => parts.reduce((sum, other) => sum + other[n], part));
   const corners = new Float32Array([origin, add(s), add(s, t), add(t)].flat());
@@ -132,6 +139,22 @@ export function lines(ends, { width, colour }) {
   return object;
 }
 
+/** The lines of a block or section, those that were not picked marked as doubtful. */
+function strokes(source, scene) {
+  const kinds = [
+    ["horizons", scene.lines], ["unpicked", scene.lines], ["faults", scene.faults], ["edges", scene.edges],
+  ];
+  const objects = kinds.map(([kind, stroke]) => {
+    const object = lines(points(source[kind]), stroke);
+    if (object) {
+      object.userData.isDoubtful = kind === "unpicked";
+      object.renderOrder = 2;
+    }
+    return object;
+  });
+  return objects.filter(Boolean);
+}
+
 /** The faces and lines of a block. */
 export async function blockGroup(model, source, scene, covers) {
   const group = new Group();
@@ -139,18 +162,8 @@ export async function blockGroup(model, source, scene, covers) {
   for (const face of source.faces) {
     group.add(faceMesh(geometryOf(mesh(face.mesh)), covers[face.cover], face.name));
   }
-  const strokes = [
-    ["horizons", scene.lines, false], ["unpicked", scene.lines, true], ["faults", scene.faults, false],
-    ["edges", scene.edges, false],
-  ];
-  for (const [kind, stroke, isDoubtful] of strokes) {
-    const object = lines(points(source[kind]), stroke);
-    if (object) {
-      object.userData.isDoubtful = isDoubtful;
-      object.renderOrder = 2;
-      group.add(object);
-    }
-  }
+  const drawn = strokes(source, scene);
+  if (drawn.length) group.add(...drawn);
   await Promise.all(source.faces.map((face) => covers[face.cover].load()));
   return group;
 }

@@ -75,7 +75,11 @@ function shown(model, stage) {
       stage.ask();
     },
   );
-  return part("Show", make("div", { class: "ticks" }, ...ticks), opacity.element);
+  const isDoubtful = model.horizons.some((surface) => surface.picked < 0.995);
+  const hint = isDoubtful
+    ? make("p", { class: "hint" }, "Lines of horizons are pale where they were filled or extrapolated.")
+    : null;
+  return part("Show", make("div", { class: "ticks" }, ...ticks), opacity.element, hint);
 }
 
 function surfaces(model, stage) {
@@ -143,7 +147,7 @@ export class Scrubber {
   }
 
   go(n) {
-    this.stage.setSection(this.stacks[this.stack].places[n].cover);
+    this.stage.setSection(this.stacks[this.stack].places[n]);
   }
 
   /** Turns the camera square to the section, on the side it looks from now. */

@@ -1,7 +1,7 @@
 // The drawn part of the page: scenes, cameras, what is switched on, and what lies under a pixel.
 
 import { Color, ColorManagement, LinearSRGBColorSpace, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from "three";
-import { Cover, blockGroup, lines, sectionMesh, sharedUniforms, surfaceMesh, wellLine } from "./block.js";
+import { Cover, blockGroup, lines, sectionGroup, sharedUniforms, surfaceMesh, wellLine } from "./block.js";
 import { View, between, poseOf } from "./view.js";
 
 ColorManagement.enabled = false;
@@ -101,13 +101,14 @@ export class Stage {
   }
 
   /** Shows a section instead of the block, or the block again. */
-  async setSection(cover) {
+  async setSection(place) {
     const asked = (this.asked = (this.asked ?? 0) + 1);
     let object = null;
-    if (cover !== null) {
-      await this.covers[cover].load();
-      if (!this.sections.has(cover)) this.sections.set(cover, sectionMesh(this.covers[cover]));
-      object = this.sections.get(cover);
+    if (place !== null) {
+      const cover = this.covers[place.cover];
+      await cover.load();
+      if (!this.sections.has(place)) this.sections.set(place, sectionGroup(cover, place, this.scene));
+      object = this.sections.get(place);
     }
     if (asked !== this.asked) return;
     if (this.section) this.world.remove(this.section);
@@ -225,18 +226,19 @@ export class Stage {
         object.material.linewidth *= this.pixelRatio;
       }
     };
-    this.group.matrix.copy(view.matrix);
-    this.group.matrixWorldNeedsUpdate = true;
     this.group.visible = show.block && !this.section;
-    for (const object of this.group.children) {
+    const shown = this.section ?? this.group;
+    shown.matrix.copy(view.matrix);
+    shown.matrixWorldNeedsUpdate = true;
+    for (const object of shown.children) {
       if (object.material.isLineMaterial) {
         place(object);
         object.matrix.identity();
         object.visible = show.lines || object.renderOrder === 0;
-        object.material.opacity = (object.userData.isDoubtful ? 0.45 : 1) * (this.blockOpacity < 1 ? 0.5 : 1);
+        object.material.opacity = (object.userData.isDoubtful ? 0.45 : 1) * (this.blockOpacity < 1 && !this.section ? 0.5 : 1);
         object.material.transparent = object.material.opacity < 1;
       } else {
-        const isClear = this.blockOpacity < 1;
+        const isClear = this.blockOpacity < 1 && !this.section;
         object.material.transparent = isClear;
         object.material.depthWrite = !isClear;
         object.renderOrder = isClear ? 3 : 0;
@@ -255,10 +257,7 @@ export class Stage {
       place(well);
       well.visible = show.wells;
     }
-    if (this.section) {
-      place(this.section);
-      place(this.frame);
-    }
+    if (this.section) place(this.frame);
   }
 
   /** What lies under a place of the window, in pixels of the page. */
@@ -268,7 +267,7 @@ export class Stage {
     const inHalf = this.compare === "pair" && x >= width ? x - width : x;
     const ray = new Raycaster();
     ray.setFromCamera(new Vector2((2 * inHalf) / width - 1, 1 - (2 * y) / this.height), this.lastView.camera);
-    const faces = this.section ? [this.section] : this.group.visible ? this.group.children.filter((o) => o.isMesh && !o.isLineSegments2) : [];
+    const faces = (this.section ?? this.group).children.filter((object) => object.userData.cover);
     const shown = this.surfaces.filter((object) => object.visible);
     const hits = ray.intersectObjects(this.blockOpacity < 0.5 && !this.section ? shown : [...faces, ...shown], false);
     for (const hit of hits) {
@@ -292,7 +291,7 @@ export class Stage {
     const ndc = place.clone().project(view.camera);
     const ray = new Raycaster();
     ray.setFromCamera(new Vector2(ndc.x, ndc.y), view.camera);
-    const [hit] = ray.intersectObjects(this.group.children.filter((o) => o.isMesh && !o.isLineSegments2), false);
+    const [hit] = ray.intersectObjects(this.group.children.filter((object) => object.userData.cover), false);
     return !hit || hit.distance > ray.ray.origin.distanceTo(place) - view.radius * 0.004;
   }
 }
