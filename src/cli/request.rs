@@ -2,8 +2,8 @@
 
 use super::animate::AnimateRequest;
 use super::args::{
-    Action, DrawingArgs, IllustrateArgs, LayerAction, LayerSetArgs, NoteAction, RawArgs, RenderArgs, ScalarAction, SceneAction,
-    SynthArgs, VolumeAction,
+    Action, DrawingArgs, IllustrateArgs, LayerAction, LayerSetArgs, NoteAction, RawArgs, RenderArgs, ScalarAction,
+    SceneAction, SynthArgs, VolumeAction,
 };
 use super::frame::frame;
 use super::page::PageRequest;
@@ -21,8 +21,8 @@ use pictures::Device;
 use pictures::figures::FigureFormat;
 use pictures::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use project::command::{
-    AddNote, AddTexture, Command, ImportVolume, RemoveNote, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer, SetLayer,
-    SetParameterization, SetScalar, SetVelocity,
+    AddNote, AddTexture, Command, ImportVolume, RemoveNote, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer,
+    SetLayer, SetParameterization, SetScalar, SetVelocity,
 };
 use project::document::NoteEntry;
 use project::memory_budget;

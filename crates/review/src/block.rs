@@ -91,7 +91,8 @@ fn is_left_out(face: &RockFace, scene: &Scene, ground: Option<&Ground>) -> bool 
     }
     let is_box = |at: f64| (face.rectangle.origin.z - at).abs() < 1e-6;
     let is_underside = face.rock.z < 0.0 && scene.camera.elevation_deg >= 0.0;
-    let is_top = face.rock.z > 0.0 && scene.roaming_box.map_or(0.0, |block| block.min[2]) + 1e-6 > face.rectangle.origin.z;
+    let is_top =
+        face.rock.z > 0.0 && scene.roaming_box.map_or(0.0, |block| block.min[2]) + 1e-6 > face.rectangle.origin.z;
     is_underside || (is_top && is_box(face.rectangle.origin.z) && ground.is_some())
 }
 
@@ -171,9 +172,7 @@ pub(crate) fn lines_on(model: &StructuralModel, rectangle: &SectionPlane) -> Vec
         let kind = match line.kind {
             section::LineKind::Fault { real: true, .. } => LineKind::Fault,
             section::LineKind::Fault { .. } => LineKind::Horizon { is_picked: true },
-            section::LineKind::Horizon { .. } => {
-                LineKind::Horizon { is_picked: line.quality == LineQuality::Certain }
-            }
+            section::LineKind::Horizon { .. } => LineKind::Horizon { is_picked: line.quality == LineQuality::Certain },
             section::LineKind::Frame => continue,
         };
         let points: Vec<DVec3> = straightened(&line.points).into_iter().map(|st| rectangle.voxel(st)).collect();

@@ -6,12 +6,12 @@ use crate::model::Mesh;
 use crate::polygon::{Welder, fan, outside};
 use glam::{DVec2, DVec3, Vec3};
 use model::StructuralModel;
+use rayon::prelude::*;
 use render::ground::Relief;
 use render::visible::{Ray, Solid};
 use render::{Ground as GroundStyle, Scene};
 use survey::SurveyGeometry;
 use survey::block::part_behind;
-use rayon::prelude::*;
 
 /// Heights of the ground over the roaming box.
 pub(crate) struct Ground {
@@ -133,7 +133,8 @@ impl Ground {
             }
             for m in 0..piece.len() {
                 let ends = [piece[m], piece[(m + 1) % piece.len()]];
-                if ends.iter().all(|p| (p.z - ground(*p)).abs() < 1e-7) && (s_of(ends[1]) - s_of(ends[0])).abs() > 1e-9 {
+                if ends.iter().all(|p| (p.z - ground(*p)).abs() < 1e-7) && (s_of(ends[1]) - s_of(ends[0])).abs() > 1e-9
+                {
                     rims.push(ends);
                 }
             }

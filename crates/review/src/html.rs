@@ -143,7 +143,11 @@ fn still_legend(model: &Model, page: &mut String) -> Result<(), ProjectError> {
             let words = [&layer.name, &layer.rock, &layer.age];
             let words: Vec<String> =
                 words.into_iter().filter(|word| !word.is_empty()).map(|word| escaped(word)).collect();
-            let _ = writeln!(page, "<li><img src=\"{swatch}\" alt=\"\" width=\"48\" height=\"26\"> {}</li>", words.join(", "));
+            let _ = writeln!(
+                page,
+                "<li><img src=\"{swatch}\" alt=\"\" width=\"48\" height=\"26\"> {}</li>",
+                words.join(", ")
+            );
         }
         page.push_str("</ul>\n");
     }

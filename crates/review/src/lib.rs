@@ -29,5 +29,6 @@ mod surfaces;
 
 pub use make::{DENSITY, ReviewSettings, make};
 pub use model::{
-    Block, Cover, Face, Layer, LineKind, Mesh, Model, Note, RawScale, SceneModel, SectionPlace, Stack, Surface, WellPath,
+    Block, Cover, Face, Layer, LineKind, Mesh, Model, Note, RawScale, SceneModel, SectionPlace, Stack, Surface,
+    WellPath,
 };

@@ -132,7 +132,8 @@ fn scenes(
     for (name, scene) in &mut named {
         scene::prepare(document, scene, &progress.muted())?;
         if scene.media.faces != Faces::All || scene.media.all().next().is_some() {
-            progress.warn(format!("scene {name} is volume rendering: the model shows its block, its picture the volume"));
+            progress
+                .warn(format!("scene {name} is volume rendering: the model shows its block, its picture the volume"));
         }
         if document.horizons.is_empty() {
             scene.ground = None;
@@ -163,7 +164,7 @@ impl Maker<'_> {
             (Some(style), Some(rock)) => {
                 let cells = self.settings.ground_cells;
                 Some(Ground::of((style, &solid), &self.loaded.geometry, &rock.model, cells))
-            },
+            }
             _ => None,
         };
         let cut = self.block(&solid, ground.as_ref())?;
@@ -214,7 +215,11 @@ impl Maker<'_> {
         };
         let key = format!(
             "{:?} {:?} {} {:?} {} {share} {light}",
-            wanted.rectangle, wanted.plane.map(|plane| plane.wall), scene.exaggeration, scene.preset, scene.global_frequency
+            wanted.rectangle,
+            wanted.plane.map(|plane| plane.wall),
+            scene.exaggeration,
+            scene.preset,
+            scene.global_frequency
         );
         if let Some(&known) = self.known.get(&key) {
             return Ok(known);
@@ -285,7 +290,9 @@ impl Maker<'_> {
                     let mesh = horizon.any_shape().cloned().unwrap_or_default();
                     surfaces::triangles(geometry, label, &mesh, self.settings.surface_triangles)
                 }
-                false => surfaces::horizon(&rock.model, geometry, (index, label.0, label.1), self.settings.surface_nodes),
+                false => {
+                    surfaces::horizon(&rock.model, geometry, (index, label.0, label.1), self.settings.surface_nodes)
+                }
             };
             surface.picked_share = shares.get(index).copied().filter(|share| share.is_finite()).unwrap_or(1.0);
             horizons.push(surface);
@@ -306,7 +313,8 @@ impl Maker<'_> {
         for entry in &self.project.document().wells {
             let well = content::read_well(self.project.root(), entry)?;
             let inside = |p: &DVec3| surfaces::is_inside(*p, geometry.size());
-            let tops = well.tops.iter().filter_map(|top| Some((top.name.clone(), well.voxel_at_md(top.md_m, geometry)?)));
+            let tops =
+                well.tops.iter().filter_map(|top| Some((top.name.clone(), well.voxel_at_md(top.md_m, geometry)?)));
             wells.push(WellPath {
                 name: entry.name.clone(),
                 tops: tops.filter(|(_, p)| inside(p)).collect(),
@@ -327,14 +335,17 @@ impl Maker<'_> {
             cover.data.pixels().for_each(|pixel| seen[usize::from(pixel.0[1])] = true);
         }
         let styles = figures::layer_styles(document, self.library);
+        // Patterns of what nobody interpreted say nothing of rocks.
+        let is_interpreted = warning(document).is_none();
         let layer = |(number, style): (usize, &LayerStyle)| {
             let drawn = swatch::draw(style, self.library, SWATCH_PX, SWATCH_PX_PER_MM)?;
             let rocks = style.intervals.iter().filter_map(|interval| self.library.find(&interval.texture));
             let mut rocks: Vec<String> = rocks.map(|index| self.library.pattern(index).title.clone()).collect();
             rocks.dedup();
-            let age = ttf::ages().filter(|age| age.colour == style.colour).max_by(|a, b| {
-                (a.base_ma - a.top_ma).total_cmp(&(b.base_ma - b.top_ma))
-            });
+            rocks.truncate(if is_interpreted { rocks.len() } else { 0 });
+            let age = ttf::ages()
+                .filter(|age| is_interpreted && age.colour == style.colour)
+                .max_by(|a, b| (a.base_ma - a.top_ma).total_cmp(&(b.base_ma - b.top_ma)));
             Ok(Layer {
                 name: style.layer.clone(),
                 rock: rocks.join(", "),
@@ -371,10 +382,7 @@ fn provenance(document: &Document, loaded: &Loaded) -> Vec<String> {
         unit.symbol()
     )];
     if unit == VerticalUnit::Milliseconds {
-        lines.push(format!(
-            "two-way time, drawn at {} m/s, one velocity for the whole survey",
-            geometry.velocity_m_s
-        ));
+        lines.push(format!("two-way time, drawn at {} m/s, one velocity for the whole survey", geometry.velocity_m_s));
     }
     if let Some(raw) = &loaded.raw {
         lines.push(format!("raw data: volume {}", raw.volume));

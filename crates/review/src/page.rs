@@ -20,14 +20,13 @@ pub(crate) fn data_uri(kind: &str, bytes: &[u8]) -> String {
 }
 
 /// The model without the pictures of its faces, which come as files of PNG: those of the illustration, then the data.
-pub(crate) fn page(
-    model: &Model,
-    illustrated: &[Option<String>],
-    data: &[Vec<u8>],
-) -> Result<Value, ProjectError> {
-    let covers: Vec<Value> = model.covers.iter().enumerate().map(|(n, cover)| {
-        self::cover(cover, illustrated[n].clone(), data_uri("png", &data[n]))
-    }).collect();
+pub(crate) fn page(model: &Model, illustrated: &[Option<String>], data: &[Vec<u8>]) -> Result<Value, ProjectError> {
+    let covers: Vec<Value> = model
+        .covers
+        .iter()
+        .enumerate()
+        .map(|(n, cover)| self::cover(cover, illustrated[n].clone(), data_uri("png", &data[n])))
+        .collect();
     let mut layers = Vec::new();
     for layer in &model.layers {
         layers.push(json!({
@@ -35,22 +34,37 @@ pub(crate) fn page(
             "swatch": data_uri("png", &png(&layer.swatch)?), "seen": layer.is_seen,
         }));
     }
-    let wells: Vec<Value> = model.wells.iter().map(|well| {
-        let tops: Vec<Value> = well.tops.iter().map(|(name, at)| json!({ "name": name, "at": at.to_array() })).collect();
-        json!({ "name": well.name, "path": floats(well.path.iter()), "tops": tops })
-    }).collect();
-    let sections: Vec<Value> = model.sections.iter().map(|stack| {
-        let places: Vec<Value> = stack.places.iter().map(|place| {
-            let mut value = lines(&place.lines);
-            value["at"] = place.at.into();
-            value["cover"] = place.cover.into();
-            value
-        }).collect();
-        json!({ "axis": stack.axis, "places": places })
-    }).collect();
-    let notes: Vec<Value> = model.notes.iter().map(|note| {
-        json!({ "text": note.text, "at": note.at.to_array(), "scene": note.scene })
-    }).collect();
+    let wells: Vec<Value> = model
+        .wells
+        .iter()
+        .map(|well| {
+            let tops: Vec<Value> =
+                well.tops.iter().map(|(name, at)| json!({ "name": name, "at": at.to_array() })).collect();
+            json!({ "name": well.name, "path": floats(well.path.iter()), "tops": tops })
+        })
+        .collect();
+    let sections: Vec<Value> = model
+        .sections
+        .iter()
+        .map(|stack| {
+            let places: Vec<Value> = stack
+                .places
+                .iter()
+                .map(|place| {
+                    let mut value = lines(&place.lines);
+                    value["at"] = place.at.into();
+                    value["cover"] = place.cover.into();
+                    value
+                })
+                .collect();
+            json!({ "axis": stack.axis, "places": places })
+        })
+        .collect();
+    let notes: Vec<Value> = model
+        .notes
+        .iter()
+        .map(|note| json!({ "text": note.text, "at": note.at.to_array(), "scene": note.scene }))
+        .collect();
     let mut blocks = Blocks::default();
     let scenes: Vec<Value> =
         model.scenes.iter().map(|scene| self::scene(scene, &model.geometry, &mut blocks)).collect();
@@ -190,9 +204,11 @@ impl Blocks {
 }
 
 fn block(block: &Block) -> Value {
-    let faces: Vec<Value> = block.faces.iter().map(|face| {
-        json!({ "cover": face.cover, "name": face.name, "mesh": mesh(&face.mesh) })
-    }).collect();
+    let faces: Vec<Value> = block
+        .faces
+        .iter()
+        .map(|face| json!({ "cover": face.cover, "name": face.name, "mesh": mesh(&face.mesh) }))
+        .collect();
     let mut value = lines(&block.lines);
     value["faces"] = faces.into();
     value

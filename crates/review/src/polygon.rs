@@ -150,17 +150,21 @@ mod tests {
         let around: f64 = borders(&pieces).iter().map(|[a, b]| a.distance(*b)).sum();
         // Two strips of 1 × 4 and 2 × 4.
         assert!((around - 22.0).abs() < 1e-6, "{around}");
-        let whole: f64 = borders(&outside(square(0.0, 4.0), &Body::of_box([Vec3::new(3.0, 3.0, -1.0), Vec3::splat(9.0)])))
-            .iter()
-            .map(|[a, b]| a.distance(*b))
-            .sum();
+        let whole: f64 =
+            borders(&outside(square(0.0, 4.0), &Body::of_box([Vec3::new(3.0, 3.0, -1.0), Vec3::splat(9.0)])))
+                .iter()
+                .map(|[a, b]| a.distance(*b))
+                .sum();
         assert!((whole - 16.0).abs() < 1e-6, "{whole}");
     }
 
     #[test]
     fn a_line_is_cut_at_a_polygon() {
-        let ends = within([DVec3::new(-2.0, 1.0, 0.0), DVec3::new(6.0, 1.0, 0.0)], &square(0.0, 4.0), DVec3::Z).unwrap();
-        assert!(ends[0].distance(DVec3::new(0.0, 1.0, 0.0)) < 1e-5 && ends[1].distance(DVec3::new(4.0, 1.0, 0.0)) < 1e-5);
+        let ends =
+            within([DVec3::new(-2.0, 1.0, 0.0), DVec3::new(6.0, 1.0, 0.0)], &square(0.0, 4.0), DVec3::Z).unwrap();
+        assert!(
+            ends[0].distance(DVec3::new(0.0, 1.0, 0.0)) < 1e-5 && ends[1].distance(DVec3::new(4.0, 1.0, 0.0)) < 1e-5
+        );
         assert!(within([DVec3::new(-2.0, 5.0, 0.0), DVec3::new(6.0, 5.0, 0.0)], &square(0.0, 4.0), DVec3::Z).is_none());
     }
 

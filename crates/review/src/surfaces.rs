@@ -40,8 +40,9 @@ pub(crate) fn horizon(
             let [above, below] = [beside(-BESIDE), beside(BESIDE)];
             above.block == block && above.layer != below.layer
         };
-        let there: Vec<bool> =
-            (0..counts[0] * counts[1]).map(|n| is_there(DVec2::new(at(n / counts[1], 0), at(n % counts[1], 1)))).collect();
+        let there: Vec<bool> = (0..counts[0] * counts[1])
+            .map(|n| is_there(DVec2::new(at(n / counts[1], 0), at(n % counts[1], 1))))
+            .collect();
         let (mut welder, mut deviations) = (Welder::default(), Vec::new());
         for x in 0..counts[0] - 1 {
             for y in 0..counts[1] - 1 {
@@ -142,7 +143,15 @@ pub(crate) fn triangles(
         side *= 1.3;
     }
     let is_picked = vec![true; mesh.points.len()];
-    Surface { name: name.to_owned(), colour, mesh, is_picked, picked_share: 1.0, deviation_m, usual_deviation_m: deviation_m }
+    Surface {
+        name: name.to_owned(),
+        colour,
+        mesh,
+        is_picked,
+        picked_share: 1.0,
+        deviation_m,
+        usual_deviation_m: deviation_m,
+    }
 }
 
 /// A mesh whose corners within a cube of so many voxels are one, in their middle; and the farthest that one was moved, m.

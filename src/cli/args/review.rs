@@ -35,7 +35,9 @@ pub(in crate::cli) enum NoteAction {
         project: PathBuf,
     },
     /// Write a note on a place
-    #[command(after_help = "Example:\n  petroglyph note add north.petro --at 1250,1302,948 \"Gas chimney?\" --scene corner")]
+    #[command(
+        after_help = "Example:\n  petroglyph note add north.petro --at 1250,1302,948 \"Gas chimney?\" --scene corner"
+    )]
     Add {
         /// Project folder
         project: PathBuf,

@@ -20,8 +20,8 @@ mod pattern;
 mod sections;
 mod visible;
 
-pub(crate) use visible::rock_cells;
 pub use sections::{SeenSection, seen_sections};
+pub(crate) use visible::rock_cells;
 
 use crate::error::RenderError;
 use crate::inputs::Inputs;

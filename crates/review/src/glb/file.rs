@@ -101,8 +101,14 @@ impl GlbFile {
         });
         if !covered.uv.is_empty() {
             let bytes = covered.uv.iter().flatten().flat_map(|c| c.to_le_bytes()).collect();
-            let values =
-                Accessor { kind: "VEC2", component: FLOAT, count: covered.uv.len(), target: ARRAY_BUFFER, range: None, bytes };
+            let values = Accessor {
+                kind: "VEC2",
+                component: FLOAT,
+                count: covered.uv.len(),
+                target: ARRAY_BUFFER,
+                range: None,
+                bytes,
+            };
             attributes["TEXCOORD_0"] = self.accessor(&values).into();
         }
         let bytes = covered.triangles.iter().flatten().flat_map(|n| n.to_le_bytes()).collect();
@@ -147,8 +153,16 @@ impl GlbFile {
     }
 
     /// The whole file. The root is scaled along Y.
-    pub fn finish(mut self, root: &str, children: &[usize], exaggeration: f64, extras: Value, has_raw: bool) -> Vec<u8> {
-        self.nodes.push(json!({ "name": root, "children": children, "scale": [1.0, exaggeration, 1.0], "extras": extras }));
+    pub fn finish(
+        mut self,
+        root: &str,
+        children: &[usize],
+        exaggeration: f64,
+        extras: Value,
+        has_raw: bool,
+    ) -> Vec<u8> {
+        self.nodes
+            .push(json!({ "name": root, "children": children, "scale": [1.0, exaggeration, 1.0], "extras": extras }));
         while !self.bytes.len().is_multiple_of(4) {
             self.bytes.push(0);
         }

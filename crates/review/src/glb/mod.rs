@@ -215,8 +215,15 @@ fn encoded(model: &Model) -> Result<(Vec<u8>, WrittenModel), ProjectError> {
     let root = format!("{} (vertical exaggeration {exaggeration}{warning})", model.title);
     let nodes = file.node_count() + 1;
     let bytes = file.finish(&root, &groups, exaggeration, extras, has_raw);
-    let written =
-        WrittenModel { bytes: bytes.len() as u64, triangles, nodes, origin, exaggeration, deviation_m, usual_deviation_m };
+    let written = WrittenModel {
+        bytes: bytes.len() as u64,
+        triangles,
+        nodes,
+        origin,
+        exaggeration,
+        deviation_m,
+        usual_deviation_m,
+    };
     Ok((bytes, written))
 }
 
@@ -224,8 +231,7 @@ fn add_surface(file: &mut GlbFile, surface: &Surface, frame: &Frame) -> Option<u
     let [r, g, b] = surface.colour.to_unit().map(ttf::linear_from_srgb);
     let material = file.material(&surface.name, [r, g, b, SURFACE_OPACITY], None);
     let points = frame.places(&surface.mesh.points);
-    let covered =
-        Covered { points: &points, triangles: &surface.mesh.triangles, uv: Vec::new(), material, raw: None };
+    let covered = Covered { points: &points, triangles: &surface.mesh.triangles, uv: Vec::new(), material, raw: None };
     let extras = json!({ "pickedShare": surface.picked_share, "deviation_m": surface.deviation_m });
     file.mesh(&surface.name, covered, &extras)
 }
@@ -236,7 +242,9 @@ fn raw_picture(cover: &Cover, map: &[u8]) -> RgbImage {
         let at = usize::from(value) * 4;
         if value == 0 { [220, 220, 218] } else { [map[at], map[at + 1], map[at + 2]] }
     };
-    RgbImage::from_fn(cover.data.width(), cover.data.height(), |x, y| image::Rgb(colour(cover.data.get_pixel(x, y).0[0])))
+    RgbImage::from_fn(cover.data.width(), cover.data.height(), |x, y| {
+        image::Rgb(colour(cover.data.get_pixel(x, y).0[0]))
+    })
 }
 
 /// A tube along a path.

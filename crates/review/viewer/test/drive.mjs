@@ -273,8 +273,8 @@ async function hostile(browser) {
   const file = join(out, "hostile.html");
   petroglyph("review", copy, file, "--sections", "0", "--density", "300");
   const page = await open(browser, file);
-  assert.equal(await page.locator(".note").last().innerText(), HOSTILE.replace("\u2028", " "));
-  assert.equal(await page.locator("h1").last().innerText(), "<img src=x onerror=window.hit=1>");
+  assert.equal(await page.locator(".note").last().textContent(), HOSTILE.replace("\u2028", " "));
+  assert.equal(await page.locator("h1").last().textContent(), "<img src=x onerror=window.hit=1>");
   assert.ok(await page.getByRole("tab", { name: "</script><script>window.hit=1</script>" }).isVisible());
   await page.locator(".layer").first().click();
   await settle(page);
