@@ -176,14 +176,19 @@ impl Ground {
         (pieces, rims)
     }
 
+    /// A point over the highest ground within a step: where the upper edge of a scarp is seen from both sides.
+    fn upper(&self, p: DVec3) -> DVec3 {
+        let around = (0..9).map(|n| DVec2::new(f64::from(n % 3 - 1), f64::from(n / 3 - 1)) * self.step);
+        let xy = p.truncate();
+        let inside = |at: DVec2| at.clamp(self.low.truncate(), self.high.truncate());
+        xy.extend(around.map(|off| self.z_at(inside(xy + off))).fold(p.z, f64::min))
+    }
+
     /// The lines in which faults cut the ground outside of what is cut out.
     pub fn fault_traces(&self, mesh: &Mesh, model: &StructuralModel) -> Vec<[DVec3; 2]> {
         let faults = model.faults();
         let traces = mesh.triangles.par_iter().flat_map_iter(|triangle| {
-            // The trace runs along the upper edge of the scarp, where it can be seen from both sides.
-            let corners = triangle.map(|n| mesh.points[n as usize]);
-            let top = corners.iter().map(|p| p.z).fold(f64::MAX, f64::min);
-            let corners = corners.map(|p| p.truncate().extend(top));
+            let corners = triangle.map(|n| self.upper(mesh.points[n as usize]));
             (0..faults.surfaces().len()).filter_map(move |fault| {
                 let side = corners.map(|p| f64::from(faults.side(fault, p.as_vec3())));
                 let cut = |n: usize, m: usize| {

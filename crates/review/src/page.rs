@@ -25,7 +25,7 @@ pub(crate) fn page(model: &Model, illustrated: &[Option<String>], data: &[Vec<u8
         .covers
         .iter()
         .enumerate()
-        .map(|(n, cover)| self::cover(cover, illustrated[n].clone(), data_uri("png", &data[n])))
+        .map(|(n, cover)| self::cover(cover, illustrated[n].as_ref(), &data_uri("png", &data[n])))
         .collect();
     let mut layers = Vec::new();
     for layer in &model.layers {
@@ -141,7 +141,7 @@ pub(crate) fn map(function: &RgbaFunction) -> Vec<u8> {
     (0..256).flat_map(entry).collect()
 }
 
-fn cover(cover: &Cover, illustrated: Option<String>, data: String) -> Value {
+fn cover(cover: &Cover, illustrated: Option<&String>, data: &str) -> Value {
     let plane = &cover.rectangle;
     let share = |axis: DVec3, extent: f64| (axis / (axis.length_squared() * extent)).to_array();
     json!({

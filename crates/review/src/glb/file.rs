@@ -87,7 +87,7 @@ impl GlbFile {
     }
 
     /// Adds a mesh under a node of its own and gives the node's index; `None` of no triangles.
-    pub fn mesh(&mut self, name: &str, covered: Covered, extras: &Value) -> Option<usize> {
+    pub fn mesh(&mut self, name: &str, covered: &Covered, extras: &Value) -> Option<usize> {
         if covered.triangles.is_empty() {
             return None;
         }
@@ -158,7 +158,7 @@ impl GlbFile {
         root: &str,
         children: &[usize],
         exaggeration: f64,
-        extras: Value,
+        extras: &Value,
         has_raw: bool,
     ) -> Vec<u8> {
         self.nodes

@@ -170,7 +170,7 @@ fn encoded(model: &Model) -> Result<(Vec<u8>, WrittenModel), ProjectError> {
             raw: variant,
         };
         triangles += face.mesh.triangles.len();
-        faces.extend(file.mesh(&face.name, covered, &Value::Null));
+        faces.extend(file.mesh(&face.name, &covered, &Value::Null));
     }
     let mut groups: Vec<usize> = file.group("Block", &faces).into_iter().collect();
     let (mut deviation_m, mut usual_deviation_m) = (0.0f64, 0.0f64);
@@ -197,7 +197,7 @@ fn encoded(model: &Model) -> Result<(Vec<u8>, WrittenModel), ProjectError> {
         let tops: Vec<Value> =
             well.tops.iter().map(|(name, at)| json!({ "name": name, "at": frame.place(*at).to_array() })).collect();
         let covered = Covered { points: &points, triangles: &tube, uv: Vec::new(), material, raw: None };
-        nodes.extend(file.mesh(&well.name, covered, &json!({ "tops": tops })));
+        nodes.extend(file.mesh(&well.name, &covered, &json!({ "tops": tops })));
     }
     groups.extend(file.group("Wells", &nodes));
     let exaggeration = scene.scene.exaggeration;
@@ -214,7 +214,7 @@ fn encoded(model: &Model) -> Result<(Vec<u8>, WrittenModel), ProjectError> {
     let warning = model.warning.as_ref().map_or_else(String::new, |_| ", uninterpreted".to_owned());
     let root = format!("{} (vertical exaggeration {exaggeration}{warning})", model.title);
     let nodes = file.node_count() + 1;
-    let bytes = file.finish(&root, &groups, exaggeration, extras, has_raw);
+    let bytes = file.finish(&root, &groups, exaggeration, &extras, has_raw);
     let written = WrittenModel {
         bytes: bytes.len() as u64,
         triangles,
@@ -233,7 +233,7 @@ fn add_surface(file: &mut GlbFile, surface: &Surface, frame: &Frame) -> Option<u
     let points = frame.places(&surface.mesh.points);
     let covered = Covered { points: &points, triangles: &surface.mesh.triangles, uv: Vec::new(), material, raw: None };
     let extras = json!({ "pickedShare": surface.picked_share, "deviation_m": surface.deviation_m });
-    file.mesh(&surface.name, covered, &extras)
+    file.mesh(&surface.name, &covered, &extras)
 }
 
 /// The raw values of a face in their colours.

@@ -31,7 +31,7 @@ void main() {
   vec2 at = clamp(place, 0.0, 1.0);
   // Values lie on nodes from corner to corner, pictures on texels.
   vec2 node = (at * (nodes - 1.0) + 0.5) / nodes;
-  vec3 colour = texture2D(illustrated, at).rgb;
+  vec3 colour = texture2D(illustrated, at, -0.7).rgb;
   float share = wipe < 0.0 ? blend : step(wipe, gl_FragCoord.x);
   if (hasIllustration < 0.5) share = 1.0;
   if (hasRaw > 0.5 && share > 0.0) {

@@ -222,8 +222,6 @@ export class Stage {
       object.matrixWorldNeedsUpdate = true;
       if (object.material?.isLineMaterial) {
         object.material.linewidth = Math.max(object.userData.width * scale, 0.75);
-        object.material.resolution.set(width * this.pixelRatio, this.height * this.pixelRatio);
-        object.material.linewidth *= this.pixelRatio;
       }
     };
     this.group.visible = show.block && !this.section;
