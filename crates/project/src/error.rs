@@ -216,25 +216,18 @@ pub enum ProjectError {
         /// What is wrong with it.
         fact: &'static str,
     },
-    /// A note that cannot be written or removed.
-    #[error("the note cannot be used: {fact}")]
-    BadNote {
-        /// What is wrong with it.
-        fact: String,
-    },
-    /// A review that cannot be as small as was asked for.
-    #[error("the review has {:.1} MB, more than the {:.1} MB that it may have", *bytes as f64 / 1e6, *limit as f64 / 1e6)]
-    TooLargeReview {
-        /// Its size with the smallest pictures.
-        bytes: u64,
+    /// A note that cannot be written or removed, and what is wrong with it.
+    #[error("the note cannot be used: {0}")]
+    BadNote(String),
+    /// A review or model that cannot be as small as was asked for.
+    #[error("{what} has {found}, more than the {limit} that it may have")]
+    OverBudget {
+        /// The file.
+        what: &'static str,
+        /// Its size at its smallest.
+        found: String,
         /// The limit.
-        limit: u64,
-    },
-    /// A block that has no model of so few triangles.
-    #[error("the block cannot be shown with {wanted} triangles")]
-    TooFewTriangles {
-        /// The most that there may be.
-        wanted: usize,
+        limit: String,
     },
     /// A survey geometry that conversions cannot work with.
     #[error("the survey geometry cannot be used: {0}")]

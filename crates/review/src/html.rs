@@ -68,7 +68,9 @@ pub fn write(model: &Model, path: &Path, limit: u64, progress: &Progress) -> Res
     }
     let bytes = text.len() as u64;
     if bytes > limit {
-        return Err(ProjectError::TooLargeReview { bytes, limit });
+        let megabytes = |bytes: u64| format!("{:.1} MB", bytes as f64 / 1e6);
+        let (found, limit) = (megabytes(bytes), megabytes(limit));
+        return Err(ProjectError::OverBudget { what: "the review", found, limit });
     }
     if share < 1.0 {
         progress.warn(format!(

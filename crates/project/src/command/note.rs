@@ -26,7 +26,7 @@ pub struct RemoveNote {
 impl AddNote {
     pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
         let NoteEntry { text, at, scene } = &self.note;
-        let bad = |fact: String| Err(ProjectError::BadNote { fact });
+        let bad = |fact: String| Err(ProjectError::BadNote(fact));
         if text.trim().is_empty() {
             return bad("it is empty".to_owned());
         }
@@ -76,7 +76,7 @@ impl RemoveNote {
                 0 => format!("there is no note {}: the project has none", self.number),
                 _ => format!("there is no note {}: they are numbered 1 to {count}", self.number),
             };
-            return Err(ProjectError::BadNote { fact });
+            return Err(ProjectError::BadNote(fact));
         }
         draft.document.notes.remove(self.number - 1);
         Ok(Effect::Changed { summary: format!("removed note {}", self.number) })

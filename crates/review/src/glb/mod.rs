@@ -78,7 +78,7 @@ pub fn export(
         scene::choose(document, Some(name))?;
     }
     let (horizons, faults) = (document.horizons.len().max(1) as f64, document.faults.len() as f64);
-    let mut share = 1.0;
+    let (mut share, mut least) = (1.0, 0);
     for _ in 0..ATTEMPTS {
         let budget = share * triangles as f64;
         let fault_budget = if faults > 0.0 { 0.15 * budget } else { 0.0 };
@@ -97,9 +97,11 @@ pub fn export(
             save(path, &bytes)?;
             return Ok(written);
         }
+        least = written.triangles;
         share *= 0.9 * triangles as f64 / written.triangles as f64;
     }
-    Err(ProjectError::TooFewTriangles { wanted: triangles })
+    let [found, limit] = [least, triangles].map(|count| format!("{count} triangles"));
+    Err(ProjectError::OverBudget { what: "the model", found, limit })
 }
 
 fn save(path: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
