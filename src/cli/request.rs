@@ -197,14 +197,7 @@ impl TryFrom<Action> for Request {
             Action::Render(typed) => Self::Render(render_request(*typed)?),
             Action::Animate(typed) => Self::Animate((*typed).try_into()?),
             Action::Review(typed) => Self::Review(typed.try_into()?),
-            Action::Note(NoteAction::List { project }) => Self::List { project, what: Listing::Notes },
-            Action::Note(NoteAction::Add { project, text, at, scene }) => {
-                let at = numbers::<3>("--at", &at, ',')?;
-                change(project, Command::AddNote(AddNote { note: NoteEntry { text, at, scene } }))
-            }
-            Action::Note(NoteAction::Remove { project, number }) => {
-                change(project, Command::RemoveNote(RemoveNote { number }))
-            }
+            Action::Note(action) => note(action)?,
             Action::Figures(typed) => {
                 let (device, volume_bytes) = drawing(&typed.drawing)?;
                 Self::Figures { project: typed.project, out: typed.out, device, volume_bytes }
@@ -264,6 +257,19 @@ impl TryFrom<Action> for Request {
             Action::Prune { project } => Self::Prune(project),
         })
     }
+}
+
+fn note(action: NoteAction) -> Result<Request, Usage> {
+    Ok(match action {
+        NoteAction::List { project } => Request::List { project, what: Listing::Notes },
+        NoteAction::Add { project, text, at, scene } => {
+            let at = numbers::<3>("--at", &at, ',')?;
+            Request::Change { project, command: Command::AddNote(AddNote { note: NoteEntry { text, at, scene } }) }
+        }
+        NoteAction::Remove { project, number } => {
+            Request::Change { project, command: Command::RemoveNote(RemoveNote { number }) }
+        }
+    })
 }
 
 fn set_layer(typed: LayerSetArgs) -> Result<(PathBuf, SetLayer), Usage> {

@@ -7,8 +7,8 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`make`] | from a project to a model |
-//! | [`model`] | the model |
+//! | [`make()`] | from a project to a model |
+//! | [`Model`] | the model |
 //! | [`html`] | the page; its viewer is built from `viewer/` and kept in `viewer/dist` |
 //! | [`glb`] | glTF 2.0 in one binary file |
 //!
