@@ -9,6 +9,8 @@
 #   make attack  names, links, damage, kills, full disks, false claims: the real program in minutes (docs/reliability.md)
 #   make fuzz    a second of fuzzing for every parser; make fuzz-long ten minutes each
 #   make scenario   an interpreter's session by mouse and keys in the real window (Xvfb, xdotool, ImageMagick)
+#   make viewer  bundles the viewer of reviews (node, npm); the bundle is committed
+#   make check-review   drives reviews in Chromium, compares them with drawn pictures, validates the model (node, npm, chromium)
 #   make gallery the pictures of docs/gallery.md
 #   make screenshots   every panel of the window, without a display (SIZES, APPEARANCES)
 #   make accuracy   measures the accuracy again, for docs/accuracy.md
@@ -31,7 +33,7 @@ SIZES ?= 1280x800 2560x1440
 APPEARANCES ?= light dark
 PYTHON ?= python3
 
-.PHONY: demo gallery screenshots test check bench accuracy extraction picks time speed check-peers scenario attack fuzz fuzz-long setup build
+.PHONY: demo gallery screenshots test check bench accuracy extraction picks time speed check-peers check-review viewer scenario attack fuzz fuzz-long setup build
 
 build: setup
 	cargo build --locked
@@ -65,6 +67,13 @@ accuracy: setup
 
 check-peers: build
 	$(PYTHON) bench/check_formats.py $(PETROGLYPH)
+
+viewer:
+	crates/review/viewer/build.sh
+
+check-review: demo
+	cd crates/review/viewer/test && npm ci --no-audit --no-fund --loglevel=error
+	node crates/review/viewer/test/drive.mjs $(PETROGLYPH) $(OUT)/demo.petro out/review
 
 extraction: setup
 	cargo run --locked -p petroglyph-interp --example extraction > $(OUT_EXTRACTION).part && mv $(OUT_EXTRACTION).part $(OUT_EXTRACTION)

@@ -216,6 +216,9 @@ pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
 }
 
 pub(super) fn export(typed: ExportArgs) -> Result<Request, Usage> {
+    if typed.model {
+        return Ok(Request::ExportModel(typed.try_into()?));
+    }
     if let Some(volume) = typed.volume {
         let formats = [
             (1, WriteFormat::Ibm32),

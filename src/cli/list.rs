@@ -24,6 +24,7 @@ pub(super) fn list(project: &Project, what: Listing) -> anyhow::Result<Report> {
         Listing::Layers => layers(project),
         Listing::Scalars => Ok(scalars(project)),
         Listing::Scenes => Ok(scenes(project)),
+        Listing::Notes => Ok(notes(project)),
         Listing::Scene(name) => show_scene(project, name.as_deref()),
     }
 }
@@ -39,6 +40,21 @@ fn volumes(project: &Project) -> Report {
         report.say("no volumes");
     }
     report.field("volumes", &document.volumes);
+    report
+}
+
+fn notes(project: &Project) -> Report {
+    let document = project.document();
+    let mut report = Report::default();
+    for (number, entry) in (1..).zip(&document.notes) {
+        let [inline, crossline, z] = entry.at;
+        let scene = entry.scene.as_ref().map_or_else(String::new, |scene| format!(", in scene {scene}"));
+        report.say(format!("{number}: {} (at {inline},{crossline},{z}{scene})", entry.text));
+    }
+    if document.notes.is_empty() {
+        report.say("no notes");
+    }
+    report.field("notes", &document.notes);
     report
 }
 

@@ -24,6 +24,7 @@ mod page;
 mod plain;
 mod report;
 mod request;
+mod review;
 mod run;
 mod segy;
 mod terminal;

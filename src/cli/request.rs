@@ -2,11 +2,12 @@
 
 use super::animate::AnimateRequest;
 use super::args::{
-    Action, DrawingArgs, IllustrateArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction, SceneAction,
-    SynthArgs, VolumeAction,
+    Action, DrawingArgs, IllustrateArgs, LayerAction, LayerSetArgs, NoteAction, RawArgs, RenderArgs, ScalarAction,
+    SceneAction, SynthArgs, VolumeAction,
 };
 use super::frame::frame;
 use super::page::PageRequest;
+use super::review::{ModelRequest, ReviewRequest};
 use super::view::ViewChanges;
 use super::well;
 use super::{assembly, extraction, interpretation};
@@ -20,9 +21,10 @@ use pictures::Device;
 use pictures::figures::FigureFormat;
 use pictures::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use project::command::{
-    AddTexture, Command, ImportVolume, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer, SetLayer,
-    SetParameterization, SetScalar, SetVelocity,
+    AddNote, AddTexture, Command, ImportVolume, RemoveNote, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer,
+    SetLayer, SetParameterization, SetScalar, SetVelocity,
 };
+use project::document::NoteEntry;
 use project::memory_budget;
 use render::{IsosurfaceSource, Scope};
 use segy::{SegyOptions, WriteFormat};
@@ -70,6 +72,10 @@ pub(super) enum Request {
     Export { project: PathBuf, out: PathBuf, surface: (SurfaceKind, String), format: Format, options: ExportOptions },
     /// Write a volume as SEG-Y, by default in the type it is stored in.
     ExportVolume { project: PathBuf, out: PathBuf, volume: String, format: Option<WriteFormat> },
+    /// Write a scene's block as a 3D model.
+    ExportModel(ModelRequest),
+    /// Write a page for browsers.
+    Review(ReviewRequest),
     /// Compute i, j, k.
     Parameterize { project: PathBuf, size: Option<[usize; 3]>, change: Option<SetParameterization> },
     /// Draw a picture.
@@ -141,6 +147,8 @@ pub(super) enum Listing {
     Scenes,
     /// One scene as TOML; `None`: the one that rendering starts from.
     Scene(Option<String>),
+    /// Notes on places.
+    Notes,
 }
 
 /// What is wrong with the usage.
@@ -179,7 +187,7 @@ impl TryFrom<Action> for Request {
             Action::Climb(typed) => assembly::climb(typed),
             Action::Descend(typed) => assembly::descend(typed),
             Action::Evaluate { project, truth } => Self::Evaluate { project, truth },
-            Action::Export(typed) => interpretation::export(typed)?,
+            Action::Export(typed) => interpretation::export(*typed)?,
             Action::Parameterize(typed) => {
                 let size = typed.size.as_deref().map(|size| counts::<3>("--size", size)).transpose()?;
                 let change =
@@ -188,6 +196,8 @@ impl TryFrom<Action> for Request {
             }
             Action::Render(typed) => Self::Render(render_request(*typed)?),
             Action::Animate(typed) => Self::Animate((*typed).try_into()?),
+            Action::Review(typed) => Self::Review(typed.try_into()?),
+            Action::Note(action) => note(action)?,
             Action::Figures(typed) => {
                 let (device, volume_bytes) = drawing(&typed.drawing)?;
                 Self::Figures { project: typed.project, out: typed.out, device, volume_bytes }
@@ -247,6 +257,19 @@ impl TryFrom<Action> for Request {
             Action::Prune { project } => Self::Prune(project),
         })
     }
+}
+
+fn note(action: NoteAction) -> Result<Request, Usage> {
+    Ok(match action {
+        NoteAction::List { project } => Request::List { project, what: Listing::Notes },
+        NoteAction::Add { project, text, at, scene } => {
+            let at = numbers::<3>("--at", &at, ',')?;
+            Request::Change { project, command: Command::AddNote(AddNote { note: NoteEntry { text, at, scene } }) }
+        }
+        NoteAction::Remove { project, number } => {
+            Request::Change { project, command: Command::RemoveNote(RemoveNote { number }) }
+        }
+    })
 }
 
 fn set_layer(typed: LayerSetArgs) -> Result<(PathBuf, SetLayer), Usage> {

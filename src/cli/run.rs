@@ -3,7 +3,7 @@
 use super::report::Report;
 use super::request::{Request, Usage};
 use super::terminal::Terminal;
-use super::{animate, assembly, check, draw, info, list, option};
+use super::{animate, assembly, check, draw, info, list, option, review};
 use crate::bench;
 use anyhow::Context;
 use chains::demo::{self, survey_files};
@@ -99,6 +99,8 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
         Request::Parameterize { project, size, change } => parameterize(open(&project)?, size, change, &progress)?,
         Request::Render(request) => draw::draw(&request, &progress)?,
         Request::Animate(request) => animate::animate(&request, &progress)?,
+        Request::Review(request) => review::review(&request, &progress)?,
+        Request::ExportModel(request) => review::export_model(&request, &progress)?,
         Request::Figures { project, out, device, volume_bytes } => {
             draw::figures(&project, &out, device, volume_bytes, &progress)?
         }

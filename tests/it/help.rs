@@ -37,13 +37,6 @@ fn the_help_of_every_command_shows_an_example() {
 }
 
 #[test]
-fn no_command_review_is_promised() {
-    let help = run(["--help"]).done().stdout;
-    let later = "review";
-    assert!(!help.lines().any(|line| line.trim_start().starts_with(later)), "{later}: {help}");
-}
-
-#[test]
 fn wrong_usage_is_2_and_failure_is_1() {
     assert_eq!(run(["frobnicate"]).code, 2);
     assert_eq!(run(["render"]).code, 2);

@@ -25,6 +25,7 @@ mod legibility;
 mod memory;
 mod program;
 mod proposed_faults;
+mod review;
 mod safety;
 mod shapes;
 #[cfg(target_os = "linux")]

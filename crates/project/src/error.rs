@@ -1,8 +1,10 @@
 //! What can go wrong with a project, with the facts as fields and a hint for what to do next.
 
 mod advice;
+mod noun;
 
 pub use advice::remedy_of;
+pub use noun::Noun;
 
 use crate::placement::PlacementError;
 use formats::FormatError;
@@ -11,42 +13,6 @@ use segy::SegyError;
 use std::io;
 use std::path::{Path, PathBuf};
 use store::StoreError;
-
-/// Kinds of named things in a project.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Noun {
-    /// A seismic or attribute volume.
-    Volume,
-    /// An interpreted horizon.
-    Horizon,
-    /// An interpreted fault.
-    Fault,
-    /// A well.
-    Well,
-    /// A layer between two horizons.
-    Layer,
-    /// A picture to tile a layer with.
-    Texture,
-    /// i, j, k from another program.
-    Parameterization,
-    /// A named view.
-    Scene,
-}
-
-impl std::fmt::Display for Noun {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Volume => "volume",
-            Self::Horizon => "horizon",
-            Self::Fault => "fault",
-            Self::Well => "well",
-            Self::Layer => "layer",
-            Self::Texture => "texture",
-            Self::Parameterization => "parameterization",
-            Self::Scene => "scene",
-        })
-    }
-}
 
 /// Why something could not be done with a project. The project is as it was before.
 #[derive(Debug, thiserror::Error)]
@@ -215,6 +181,19 @@ pub enum ProjectError {
         name: String,
         /// What is wrong with it.
         fact: &'static str,
+    },
+    /// A note that cannot be written or removed, and what is wrong with it.
+    #[error("the note cannot be used: {0}")]
+    BadNote(String),
+    /// A review or model that cannot be as small as was asked for.
+    #[error("{what} has {found}, more than the {limit} that it may have")]
+    OverBudget {
+        /// The file.
+        what: &'static str,
+        /// Its size at its smallest.
+        found: String,
+        /// The limit.
+        limit: String,
     },
     /// A survey geometry that conversions cannot work with.
     #[error("the survey geometry cannot be used: {0}")]

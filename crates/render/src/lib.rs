@@ -22,6 +22,7 @@
 
 pub mod accuracy;
 pub mod camera;
+pub mod cover;
 pub mod distortion;
 pub mod error;
 pub mod faces;

@@ -301,7 +301,7 @@ pub(in crate::cli) struct ExportArgs {
     /// File to write
     pub(in crate::cli) out: PathBuf,
     /// Horizon to write
-    #[arg(long, value_name = "NAME", required_unless_present_any = ["candidates", "fault", "volume"], conflicts_with_all = ["fault", "volume"])]
+    #[arg(long, value_name = "NAME", required_unless_present_any = ["candidates", "fault", "volume", "model"], conflicts_with_all = ["fault", "volume"])]
     pub(in crate::cli) horizon: Option<String>,
     /// Fault to write, as opendtect (sticks) or tsurf (triangles)
     #[arg(long, value_name = "NAME", conflicts_with = "volume")]
@@ -322,4 +322,18 @@ pub(in crate::cli) struct ExportArgs {
     /// ZMAP+ and CPS-3, which hold no rotated grids: resample such a grid, or refuse it [default: resample]
     #[arg(long, value_name = "resample|refuse")]
     pub(in crate::cli) when_rotated: Option<String>,
+    /// Write the block as a 3D model for slides (.glb): faces with their pictures, horizons, faults, wells
+    #[arg(long, conflicts_with_all = ["horizon", "fault", "candidates", "volume", "format", "when_rotated"])]
+    pub(in crate::cli) model: bool,
+    /// Scene whose block is the model [default: the first of the project, or the default view]
+    #[arg(long, value_name = "NAME", requires = "model")]
+    pub(in crate::cli) scene: Option<String>,
+    /// Most triangles of the model; Office takes 100000
+    #[arg(long, value_name = "N", default_value_t = 100_000, requires = "model")]
+    pub(in crate::cli) triangles: usize,
+    /// Texels along the longest side of the model's block
+    #[arg(long, value_name = "TEXELS", default_value_t = review::DENSITY, requires = "model")]
+    pub(in crate::cli) density: f64,
+    #[command(flatten)]
+    pub(in crate::cli) drawing: super::DrawingArgs,
 }

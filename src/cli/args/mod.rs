@@ -8,6 +8,7 @@ mod figure;
 mod interpretation;
 mod layer;
 mod output;
+mod review;
 mod scene;
 mod segy;
 mod well;
@@ -26,6 +27,7 @@ pub(super) use layer::{LayerAction, LayerSetArgs, RawArgs, ScalarAction, Texture
 pub(super) use output::{
     BenchArgs, DemoArgs, DrawingArgs, FiguresArgs, IllustrateArgs, ParameterizeArgs, RenderArgs, SynthArgs,
 };
+pub(super) use review::{NoteAction, ReviewArgs};
 pub(super) use scene::{SceneAction, ViewArgs};
 pub(super) use segy::SegyArgs;
 pub(super) use well::{WellAction, WellAddArgs};
@@ -135,11 +137,12 @@ pub(super) enum Action {
         /// Folder that `petroglyph synth` wrote
         truth: PathBuf,
     },
-    /// Write a horizon, the points of all candidates or a volume to a file
+    /// Write a horizon, a fault, the points of all candidates, a volume or a 3D model to a file
     #[command(after_help = "Examples:\n  petroglyph export north.petro top.irap --horizon \"Top Chalk\" --format irap\
                       \n  petroglyph export north.petro points.csv --candidates\
-                      \n  petroglyph export north.petro out.sgy --volume seismic")]
-    Export(ExportArgs),
+                      \n  petroglyph export north.petro out.sgy --volume seismic\
+                      \n  petroglyph export north.petro block.glb --model --scene corner")]
+    Export(Box<ExportArgs>),
     /// State the velocity that turns two-way time into metres
     #[command(after_help = "Example:\n  petroglyph velocity north.petro 2500")]
     Velocity {
@@ -194,6 +197,14 @@ pub(super) enum Action {
                       \n  petroglyph animate north.petro sections.gif --motion section --along crossline\
                       \n  petroglyph animate north.petro frames --scene overview --to corner --once")]
     Animate(Box<AnimateArgs>),
+    /// Write a page for any browser: the block in 3D, to turn, cut, blend and read, without a network
+    #[command(after_help = "Examples:\n  petroglyph review north.petro north.html\
+                      \n  petroglyph review north.petro small.html --scene corner --sections 0 --size-limit 3\
+                      \n\nThe page is one file. It shows its pictures also where scripts are not allowed, and on paper.")]
+    Review(ReviewArgs),
+    /// Notes on places, which reviews show
+    #[command(subcommand)]
+    Note(NoteAction),
     /// Open the window, for the whole work from volume to picture
     #[command(after_help = "Examples:\n  petroglyph view\n  petroglyph view north.petro")]
     View {

@@ -169,7 +169,7 @@ pub const PICKING: [Scenario; 12] = [
 ];
 
 /// What changes how it looks.
-pub const LOOKING: [Scenario; 9] = [
+pub const LOOKING: [Scenario; 11] = [
     of(Imported, "layer set p.petro 'Top - Base' --name Chalk --pattern chalk"),
     of(Imported, "layer set p.petro 'Top - Base' --rock 'oolitic limestone' --age Campanian"),
     of(Imported, "layer reset p.petro 'Top - Base'"),
@@ -179,10 +179,12 @@ pub const LOOKING: [Scenario; 9] = [
     of(Imported, "texture p.petro tile.png"),
     of(Imported, "scene add p.petro front --blend 0.5"),
     after(Imported, |at| all(at, &["scene add p.petro front"]), "scene remove p.petro front"),
+    of(Imported, "note add p.petro 'Look here' --at 4,4,24"),
+    after(Imported, |at| all(at, &["note add p.petro Here --at 4,4,24"]), "note remove p.petro 1"),
 ];
 
 /// What is computed, drawn and exported.
-pub const COMPUTING: [Scenario; 10] = [
+pub const COMPUTING: [Scenario; 12] = [
     of(Imported, "attribute p.petro --kind envelope --name strength"),
     of(Imported, "parameterize p.petro --size 6x6x6"),
     after(Imported, with_arrays, "parameterize p.petro --from own.zarr --size 6x6x6"),
@@ -193,6 +195,8 @@ pub const COMPUTING: [Scenario; 10] = [
     of(Imported, "export p.petro top.irap --horizon Top --format irap"),
     of(Imported, "export p.petro out.sgy --volume seismic"),
     of(Extracted, "export p.petro c.csv --candidates"),
+    of(Imported, "review p.petro a.html --density 64 --sections 1 --device cpu"),
+    of(Imported, "export p.petro a.glb --model --density 64 --triangles 4000 --device cpu"),
 ];
 
 /// What leads back, and what repairs.
@@ -255,7 +259,7 @@ fn damaged(at: &Path) {
 }
 
 /// Commands that change no file.
-const READING: [&str; 15] = [
+const READING: [&str; 16] = [
     "info p.petro",
     "volume list p.petro",
     "horizon list p.petro",
@@ -265,6 +269,7 @@ const READING: [&str; 15] = [
     "well show p.petro A-1",
     "layer list p.petro",
     "scalar list p.petro",
+    "note list p.petro",
     "scene list p.petro",
     "scene show p.petro front",
     "check p.petro",

@@ -287,7 +287,9 @@ impl Window {
         match command.as_ref() {
             _ if self.state.dialogue.is_some() => Place::Dialogue,
             Command::SetLayer(_) | Command::ResetLayer(_) | Command::SetContact(_) => Place::Layers,
-            Command::AddScene(_) | Command::RemoveScene(_) => Place::Scenes,
+            Command::AddScene(_) | Command::RemoveScene(_) | Command::AddNote(_) | Command::RemoveNote(_) => {
+                Place::Scenes
+            }
             Command::Pick(_)
             | Command::PickSeveral(_)
             | Command::MovePick(_)

@@ -8,6 +8,8 @@
 mod gif;
 mod palette;
 
+pub use palette::{Paletted, reduced};
+
 use gif::GifWriter;
 use image::RgbaImage;
 use std::io::{self, Write};

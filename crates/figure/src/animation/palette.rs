@@ -10,7 +10,7 @@ const BITS: u32 = 5;
 const BINS: usize = 1 << (3 * BITS);
 
 /// Colours, and which of them each pixel has.
-pub(super) struct Paletted {
+pub struct Paletted {
     /// The colours.
     pub colours: Vec<[u8; 3]>,
     /// The index of the clear pixels' entry, if there are such pixels: the one after the last colour.
@@ -47,7 +47,7 @@ fn is_clear(rgba: [u8; 4]) -> bool {
 }
 
 /// Reduces an image to at most 256 colours, clear among them.
-pub(super) fn reduced(image: &RgbaImage) -> Paletted {
+pub fn reduced(image: &RgbaImage) -> Paletted {
     let mut bins = vec![Bin::default(); BINS];
     let mut has_clear = false;
     for pixel in image.pixels() {

@@ -12,6 +12,7 @@ mod fault_pick;
 mod horizon;
 mod import;
 mod layer;
+mod note;
 mod parameterization;
 pub(crate) mod pick;
 mod pick_by_time;
@@ -31,6 +32,7 @@ pub use fault_pick::{AcceptFault, MoveStickPoint, PickFault};
 pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
 pub use import::{ImportVolume, RemoveVolume, VolumeImported};
 pub use layer::{ResetLayer, SetLayer};
+pub use note::{AddNote, RemoveNote};
 pub use parameterization::SetParameterization;
 pub use pick::{
     Climb, Move, MovePick, PickNode, PickNodes, Picked, RemovePick, ReplayPicks, Replayed, ReplayedPick,
@@ -146,6 +148,10 @@ pub enum Command {
     AddScene(AddScene),
     /// Remove a scene.
     RemoveScene(RemoveScene),
+    /// Write a note on a place.
+    AddNote(AddNote),
+    /// Remove a note.
+    RemoveNote(RemoveNote),
 }
 
 /// What a command did: the facts to report to the user.
@@ -245,6 +251,8 @@ impl Command {
             Self::SetParameterization(change) => change.execute(draft, progress),
             Self::AddScene(change) => change.execute(draft),
             Self::RemoveScene(change) => change.execute(draft),
+            Self::AddNote(change) => change.execute(draft),
+            Self::RemoveNote(change) => change.execute(draft),
         }
     }
 }

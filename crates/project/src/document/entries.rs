@@ -230,6 +230,19 @@ pub struct SceneEntry {
     pub scene: Scene,
 }
 
+/// A note on a place, which reviews show with an arrow.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NoteEntry {
+    /// Its text.
+    pub text: String,
+    /// Inline, crossline and vertical value of the place.
+    pub at: [f64; 3],
+    /// The scene that shows it. Absent: every scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scene: Option<String>,
+}
+
 /// A figure that is made with the others of the project. Beside its file and its scene it has the words of a figure's
 /// own file ([`Figure`]).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -13,7 +13,7 @@ mod picks;
 use crate::error::{Noun, ProjectError};
 pub(crate) use entries::is_zero;
 pub use entries::{
-    ExtractionEntry, FaultEntry, FigureEntry, HorizonEntry, ParameterizationEntry, Polarity, ProposalsEntry,
+    ExtractionEntry, FaultEntry, FigureEntry, HorizonEntry, NoteEntry, ParameterizationEntry, Polarity, ProposalsEntry,
     SceneEntry, Source, Style, TextureEntry, VolumeEntry, WellEntry, volumes_within,
 };
 use param::KDefinition;
@@ -91,6 +91,9 @@ pub struct Document {
     /// Named scenes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub scenes: Vec<SceneEntry>,
+    /// Notes on places, in the order in which they were written.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<NoteEntry>,
     /// Figures that are made together, in the order in which they are made.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub figures: Vec<FigureEntry>,
@@ -120,6 +123,7 @@ impl Document {
             k: BTreeMap::new(),
             parameterization: None,
             scenes: Vec::new(),
+            notes: Vec::new(),
             figures: Vec::new(),
         }
     }

@@ -48,6 +48,13 @@ impl ProjectError {
             Self::NoIsochron { .. } => "point at a place inside the survey, or compute geologic time again",
             Self::NoLayers => "add one with `petroglyph horizon add`",
             Self::NoLevels => "it may be chaotic, constant or too small: pick horizons by hand",
+            Self::OverBudget { .. } => {
+                "allow more (--size-limit, --triangles), or show less: fewer scenes (--scene), sections (--sections) or cut-outs"
+            }
+
+            Self::BadNote(_) => {
+                "list the notes and their numbers with `petroglyph note list`, and the survey's lines with `petroglyph info`"
+            }
             Self::BadGrowth { .. } => "state metres, 0 or more",
             Self::Io { .. }
             | Self::Segy(_)

@@ -21,6 +21,7 @@ mod sections;
 mod visible;
 
 pub use sections::{SeenSection, seen_sections};
+pub(crate) use visible::rock_cells;
 
 use crate::error::RenderError;
 use crate::inputs::Inputs;

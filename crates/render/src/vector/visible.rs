@@ -42,12 +42,12 @@ impl SeenFace {
 /// The faces that look at the camera and have rock, back to front.
 pub(crate) fn seen_faces(solid: &Solid, view: &View) -> Vec<SeenFace> {
     let facing = faces(solid, view).into_iter().filter(|face| face.faces_camera);
-    let seen = facing.map(|face| SeenFace { cells: cells(solid, &face), face });
+    let seen = facing.map(|face| SeenFace { cells: rock_cells(solid, &face), face });
     back_to_front(seen.filter(|face| !face.cells.is_empty()).collect())
 }
 
 /// The pieces of a face that are rock.
-fn cells(solid: &Solid, face: &Face) -> Vec<Vec<DVec3>> {
+pub(crate) fn rock_cells(solid: &Solid, face: &Face) -> Vec<Vec<DVec3>> {
     let mut cells = vec![face.outline.clone()];
     for body in &solid.cut_outs {
         // Behind the face, so that the cut-out which it bounds does not count.

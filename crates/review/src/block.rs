@@ -1,0 +1,198 @@
+//! The faces of a scene's block, cut to the ground, and the lines on them.
+
+use crate::ground::{Ground, mesh_of};
+use crate::model::{Block, Face, LineKind};
+use crate::polygon::{borders, within};
+use glam::{DVec2, DVec3};
+use model::StructuralModel;
+use model::section::{self, LineQuality, Section, SectionPlane};
+use render::Scene;
+use render::cover::{RockFace, rock_faces};
+use survey::SurveyGeometry;
+use survey::block::BodyPlane;
+
+/// Pieces into which an edge is cut where it may run above the ground.
+const EDGE_PIECES: usize = 256;
+/// How far a line may be from its points, voxels.
+const STRAIGHT: f64 = 0.02;
+/// How far above the ground a line still lies on it, voxels.
+const ON_GROUND: f64 = 0.05;
+
+/// A face whose picture is still to be made.
+pub(crate) struct Wanted {
+    /// Its plane; absent for the ground.
+    pub plane: Option<BodyPlane>,
+    /// The rectangle that the picture shows.
+    pub rectangle: SectionPlane,
+}
+
+/// The block of a scene, and the pictures that it needs; faces count them from 0.
+pub(crate) fn block_of(
+    scene: &Scene,
+    geometry: &SurveyGeometry,
+    model: Option<&StructuralModel>,
+    ground: Option<&Ground>,
+) -> (Block, Vec<Wanted>) {
+    let (mut block, mut wanted) = (Block::default(), Vec::new());
+    let mut walls: Vec<(usize, [DVec3; 2])> = Vec::new();
+    for face in rock_faces(scene, geometry) {
+        if is_left_out(&face, scene, ground) {
+            continue;
+        }
+        let normal = face.plane.normal.as_dvec3();
+        let (mut pieces, mut rims) = (Vec::new(), Vec::new());
+        for cell in &face.cells {
+            match ground {
+                Some(ground) => {
+                    let (below, rim) = ground.clip(cell, normal);
+                    pieces.extend(below);
+                    rims.extend(rim);
+                }
+                None => pieces.push(cell.clone()),
+            }
+        }
+        if pieces.is_empty() {
+            continue;
+        }
+        let curve = face.plane.wall.and_then(|wall| wall.curve);
+        for edge in borders(&face.cells) {
+            let is_upright = (edge[0] - edge[1]).truncate().length() < 1e-6;
+            match curve.filter(|_| is_upright) {
+                Some(curve) => walls.push((curve, edge)),
+                None => add_edge(&mut block, edge, ground),
+            }
+        }
+        block.lines.extend(rims.into_iter().map(|rim| (LineKind::Edge, rim)));
+        if let Some(model) = model {
+            add_lines(&mut block, model, &face, ground);
+        }
+        let name = name_of(&face, scene, geometry, block.faces.len());
+        block.faces.push(Face { cover: wanted.len(), name, mesh: mesh_of(&pieces) });
+        wanted.push(Wanted { plane: Some(face.plane), rectangle: face.rectangle });
+    }
+    add_curved(&mut block, &walls, ground);
+    if let (Some(ground), Some(model)) = (ground, model) {
+        let mesh = ground.mesh(&scene.solid(geometry));
+        if !mesh.triangles.is_empty() {
+            let traces = ground.fault_traces(&mesh, model);
+            block.lines.extend(traces.into_iter().map(|ends| (LineKind::Fault, ends)));
+            let [low, high] = [scene.box_in(geometry).low(), scene.box_in(geometry).high()];
+            block.faces.push(Face { cover: wanted.len(), name: "ground".into(), mesh });
+            wanted.push(Wanted { plane: None, rectangle: SectionPlane::slice(low.z, low, high) });
+        }
+    }
+    (block, wanted)
+}
+
+/// The top where the ground takes its place, and the underside unless the camera looks up at it.
+fn is_left_out(face: &RockFace, scene: &Scene, ground: Option<&Ground>) -> bool {
+    if face.plane.axis != Some(2) {
+        return false;
+    }
+    let is_box = |at: f64| (face.rectangle.origin.z - at).abs() < 1e-6;
+    let is_underside = face.rock.z < 0.0 && scene.camera.elevation_deg >= 0.0;
+    let is_top =
+        face.rock.z > 0.0 && scene.roaming_box.map_or(0.0, |block| block.min[2]) + 1e-6 > face.rectangle.origin.z;
+    is_underside || (is_top && is_box(face.rectangle.origin.z) && ground.is_some())
+}
+
+/// What a face is called, by its line numbers where it has them.
+fn name_of(face: &RockFace, scene: &Scene, geometry: &SurveyGeometry, index: usize) -> String {
+    let block = scene.box_in(geometry);
+    let at = face.rectangle.origin;
+    let kind = |axis: usize| {
+        let is_side = (at[axis] - block.min[axis]).abs() < 1e-6 || (at[axis] - block.max[axis]).abs() < 1e-6;
+        if is_side { "side" } else { "wall of a cut-out" }
+    };
+    match face.plane.axis {
+        Some(0) => format!("{}, inline {:.0}", kind(0), geometry.inlines.number_at(at.x)),
+        Some(1) => format!("{}, crossline {:.0}", kind(1), geometry.crosslines.number_at(at.y)),
+        Some(_) => {
+            let vertical = &geometry.vertical;
+            format!("slice at {:.0} {}", vertical.value_at(at.z), vertical.unit.symbol())
+        }
+        None => format!("wall {}", index + 1),
+    }
+}
+
+/// Adds the parts of an edge that are not in the air.
+fn add_edge(block: &mut Block, [a, b]: [DVec3; 2], ground: Option<&Ground>) {
+    let Some(ground) = ground else {
+        block.lines.push((LineKind::Edge, [a, b]));
+        return;
+    };
+    let mut from = None;
+    for n in 0..=EDGE_PIECES {
+        let p = a.lerp(b, n as f64 / EDGE_PIECES as f64);
+        let is_rock = ground.is_rock(p + DVec3::Z * ON_GROUND);
+        match (from, is_rock) {
+            (None, true) => from = Some(p),
+            (Some(start), false) => {
+                block.lines.push((LineKind::Edge, [start, p]));
+                from = None;
+            }
+            _ => {}
+        }
+    }
+    if let Some(start) = from {
+        block.lines.push((LineKind::Edge, [start, b]));
+    }
+}
+
+/// Upright edges of walls of a curve are drawn where the curve begins and ends, not between its planes.
+fn add_curved(block: &mut Block, walls: &[(usize, [DVec3; 2])], ground: Option<&Ground>) {
+    let foot = |edge: &[DVec3; 2]| edge[0].truncate();
+    for (n, (curve, edge)) in walls.iter().enumerate() {
+        let twin = |(m, (other, its)): (usize, &(usize, [DVec3; 2]))| {
+            m != n && other == curve && foot(its).distance(foot(edge)) < 1e-4
+        };
+        if !walls.iter().enumerate().any(twin) {
+            add_edge(block, *edge, ground);
+        }
+    }
+}
+
+/// Adds the horizons and faults on a face.
+fn add_lines(block: &mut Block, model: &StructuralModel, face: &RockFace, ground: Option<&Ground>) {
+    let normal = face.plane.normal.as_dvec3();
+    for (kind, ends) in lines_on(model, &face.rectangle) {
+        for part in face.cells.iter().filter_map(|cell| within(ends, cell, normal)) {
+            let middle = (part[0] + part[1]) * 0.5;
+            if ground.is_none_or(|ground| ground.is_rock(middle + DVec3::Z * ON_GROUND)) {
+                block.lines.push((kind, part));
+            }
+        }
+    }
+}
+
+/// The horizons and faults on a rectangle.
+pub(crate) fn lines_on(model: &StructuralModel, rectangle: &SectionPlane) -> Vec<(LineKind, [DVec3; 2])> {
+    let mut lines = Vec::new();
+    for line in &Section::new(model, rectangle).lines {
+        let kind = match line.kind {
+            section::LineKind::Fault { real: true, .. } => LineKind::Fault,
+            section::LineKind::Fault { .. } => LineKind::Horizon { is_picked: true },
+            section::LineKind::Horizon { .. } => LineKind::Horizon { is_picked: line.quality == LineQuality::Certain },
+            section::LineKind::Frame => continue,
+        };
+        let points: Vec<DVec3> = straightened(&line.points).into_iter().map(|st| rectangle.voxel(st)).collect();
+        lines.extend(points.windows(2).map(|ends| (kind, [ends[0], ends[1]])));
+    }
+    lines
+}
+
+/// A polyline without the points that lie on the way between others, but for [`STRAIGHT`].
+fn straightened(points: &[DVec2]) -> Vec<DVec2> {
+    let mut kept: Vec<DVec2> = points.first().copied().into_iter().collect();
+    let mut from = 0;
+    for to in 2..points.len() {
+        let along = (points[to] - points[from]).normalize_or_zero();
+        let off = |p: &DVec2| along.perp_dot(*p - points[from]).abs();
+        if points[from + 1..to].iter().any(|p| off(p) > STRAIGHT) || along == DVec2::ZERO {
+            from = to - 1;
+            kept.push(points[from]);
+        }
+    }
+    kept.extend(points.last().filter(|_| points.len() > 1));
+    kept
+}

@@ -1,0 +1,420 @@
+//! Makes the model of a project: what a scene needs is loaded once, and each picture of a face is made once.
+
+use crate::block::{Wanted, block_of, lines_on};
+use crate::covers::CoverMaker;
+use crate::ground::Ground;
+use crate::model::{Block, Cover, Layer, Model, Note, RawScale, SceneModel, SectionPlace, Stack, Surface, WellPath};
+use crate::surfaces;
+use figure::draw::swatch;
+use glam::DVec3;
+use image::{RgbImage, imageops};
+use model::section::SectionPlane;
+use pictures::load::{self, Loaded, Rock};
+use pictures::{Device, Painter, figures, scene};
+use project::Project;
+use project::content;
+use project::document::{Document, NoteEntry};
+use project::error::ProjectError;
+use project::styles;
+use render::{Faces, Scene};
+use std::collections::HashMap;
+use survey::block::BodyPlane;
+use survey::{Progress, VerticalUnit};
+use ttf::{Colour, LayerStyle, TextureLibrary, TtfTables};
+
+/// What a review holds, and in which detail.
+#[derive(Debug, Clone)]
+pub struct ReviewSettings {
+    /// Texels along the longest side of the block.
+    pub density: f64,
+    /// Sections along each axis, for stepping through the volume; 0 for none.
+    pub sections: usize,
+    /// Nodes along each axis of the lattice on which horizons are sampled.
+    pub surface_nodes: usize,
+    /// Most triangles of a fault, and of a horizon that is no height field.
+    pub surface_triangles: usize,
+    /// Most cells along each axis of the lattice on which the ground is sampled.
+    pub ground_cells: usize,
+    /// Whether blocks without their cut-outs are made, too.
+    pub has_whole: bool,
+    /// Names of the scenes, in the order of the project; empty for all.
+    pub scenes: Vec<String>,
+    /// The device that draws.
+    pub device: Device,
+    /// Largest memory for the samples of a volume, bytes.
+    pub volume_bytes: u64,
+}
+
+/// Texels along the longest side of the block, unless stated.
+pub const DENSITY: f64 = 1000.0;
+/// Pixels of the pictures for readers without 3D.
+const PICTURE_PX: [u32; 2] = [1120, 840];
+/// Pixels of a swatch of the legend.
+const SWATCH_PX: [u32; 2] = [96, 52];
+/// Pixels to a millimetre of a pattern's tile in a swatch.
+const SWATCH_PX_PER_MM: f32 = 9.0;
+/// Share of the texels that sections get along each axis.
+const SECTION_DENSITY: f64 = 0.4;
+/// Colours of faults.
+const FAULT: Colour = Colour::new(0x6b, 0x2a, 0x1a);
+
+/// Makes the model of a project.
+///
+/// # Errors
+/// The project has nothing to show or no such scene, data are damaged, a scene cannot be drawn, or the user cancelled.
+pub fn make(project: &Project, settings: &ReviewSettings, progress: &Progress) -> Result<Model, ProjectError> {
+    let document = project.document();
+    let named = scenes(document, settings, progress)?;
+    let has_both = !document.volumes.is_empty() && !document.horizons.is_empty();
+    let first = Scene { blend: if has_both { 0.5 } else { named[0].1.blend }, ..named[0].1.clone() };
+    let loaded = load::load_within(project, &first, settings.volume_bytes, progress)?;
+    let library = styles::pattern_library(project.root(), document)?;
+    let mut maker = Maker {
+        project,
+        settings,
+        loaded,
+        library: &library,
+        painter: Painter::new(settings.device, progress)?,
+        progress,
+        covers: Vec::new(),
+        known: HashMap::new(),
+    };
+    let mut made = Vec::new();
+    for (name, scene) in &named {
+        made.push(maker.scene(name, scene)?);
+    }
+    let sections = maker.sections(&named[0].1)?;
+    let (horizons, faults) = maker.surfaces()?;
+    let wells = maker.wells()?;
+    let layers = maker.layers(document)?;
+    let loaded = maker.loaded;
+    let raw = loaded.raw.as_ref().map(|raw| RawScale {
+        volume: raw.volume.clone(),
+        function: raw.function.clone(),
+        no_data: raw.no_data,
+    });
+    Ok(Model {
+        title: figures::title(project),
+        provenance: provenance(document, &loaded),
+        warning: warning(document),
+        geometry: loaded.geometry.clone(),
+        layers,
+        horizons,
+        faults,
+        wells,
+        covers: maker.covers,
+        scenes: made,
+        sections,
+        notes: notes(document, &loaded),
+        raw,
+    })
+}
+
+/// The scenes of a project that are wanted, or its default view; each has a block to show.
+fn scenes(
+    document: &Document,
+    settings: &ReviewSettings,
+    progress: &Progress,
+) -> Result<Vec<(String, Scene)>, ProjectError> {
+    if document.volumes.is_empty() && document.horizons.is_empty() {
+        return Err(ProjectError::NoLayers);
+    }
+    let mut named: Vec<(String, Scene)> = Vec::new();
+    for name in &settings.scenes {
+        named.push((name.clone(), scene::choose(document, Some(name))?));
+    }
+    if named.is_empty() {
+        named = document.scenes.iter().map(|entry| (entry.name.clone(), entry.scene.clone())).collect();
+    }
+    if named.is_empty() {
+        named.push(("Block".to_owned(), scene::default_view(document)?));
+    }
+    for (name, scene) in &mut named {
+        scene::prepare(document, scene, &progress.muted())?;
+        if scene.media.faces != Faces::All || scene.media.all().next().is_some() {
+            progress
+                .warn(format!("scene {name} is volume rendering: the model shows its block, its picture the volume"));
+        }
+        if document.horizons.is_empty() {
+            scene.ground = None;
+        }
+    }
+    Ok(named)
+}
+
+/// Makes what scenes share.
+struct Maker<'a> {
+    project: &'a Project,
+    settings: &'a ReviewSettings,
+    loaded: Loaded,
+    library: &'a TextureLibrary,
+    painter: Painter,
+    progress: &'a Progress,
+    covers: Vec<Cover>,
+    known: HashMap<String, usize>,
+}
+
+impl Maker<'_> {
+    /// A scene with its block, its pictures among the covers.
+    fn scene(&mut self, name: &str, scene: &Scene) -> Result<SceneModel, ProjectError> {
+        self.style_for(scene)?;
+        // Faces are those of the rock, whatever the volume rendering of the scene leaves of them.
+        let solid = Scene { media: Default::default(), ..scene.clone() };
+        let ground = match (&scene.ground, &self.loaded.rock) {
+            (Some(style), Some(rock)) => {
+                let cells = self.settings.ground_cells;
+                Some(Ground::of((style, &solid), &self.loaded.geometry, &rock.model, cells))
+            }
+            _ => None,
+        };
+        let cut = self.block(&solid, ground.as_ref())?;
+        let uncut = Scene { cut_outs: Vec::new(), cut_shapes: Vec::new(), ..solid.clone() };
+        let has_whole = self.settings.has_whole && solid.has_cut_outs();
+        let whole = if has_whole { Some(self.block(&uncut, ground.as_ref())?) } else { None };
+        let shown = Scene { size_px: PICTURE_PX, samples: 2, ..scene.clone() };
+        load::read_more(self.project, &self.loaded, &shown, self.progress)?.add_to(&mut self.loaded);
+        let (picture, _) = self.painter.draw(&shown, &self.loaded, self.progress)?;
+        Ok(SceneModel { name: name.to_owned(), scene: scene.clone(), cut, whole, picture: on_white(&picture) })
+    }
+
+    /// Compiles the styles for the exaggeration and the preset of a scene.
+    fn style_for(&mut self, scene: &Scene) -> Result<(), ProjectError> {
+        let document = self.project.document();
+        let functions = styles::transfer_functions(document).printed(scene.preset);
+        if let Some(rock) = &self.loaded.rock {
+            let names = document.stratigraphy().layer_names_bottom_up();
+            let extent = load::block_extent(&self.loaded.geometry, rock, names, scene.exaggeration);
+            self.loaded.tables = Some(TtfTables::compile(&functions, &extent, self.library)?);
+            self.loaded.version = load::new_version();
+        }
+        Ok(())
+    }
+
+    fn block(&mut self, scene: &Scene, ground: Option<&Ground>) -> Result<Block, ProjectError> {
+        let model = self.loaded.rock.as_ref().map(|rock| &rock.model);
+        let (mut block, wanted) = block_of(scene, &self.loaded.geometry, model, ground);
+        let mut covers = Vec::with_capacity(wanted.len());
+        for wanted in &wanted {
+            covers.push(self.cover(wanted, scene, ground, 1.0)?);
+        }
+        block.faces.iter_mut().for_each(|face| face.cover = covers[face.cover]);
+        Ok(block)
+    }
+
+    /// The index of a picture, which is made unless it is there.
+    fn cover(
+        &mut self,
+        wanted: &Wanted,
+        scene: &Scene,
+        ground: Option<&Ground>,
+        share: f64,
+    ) -> Result<usize, ProjectError> {
+        let light = match (&wanted.plane, scene.face_tone > 0.0) {
+            (Some(_), false) => String::new(),
+            _ => format!("{:?} {:?}", scene.ground, scene.camera),
+        };
+        let key = format!(
+            "{:?} {:?} {} {:?} {} {share} {light}",
+            wanted.rectangle,
+            wanted.plane.map(|plane| plane.wall),
+            scene.exaggeration,
+            scene.preset,
+            scene.global_frequency
+        );
+        if let Some(&known) = self.known.get(&key) {
+            return Ok(known);
+        }
+        let geometry = &self.loaded.geometry;
+        let extent = scene.box_in(geometry).extent();
+        let metric = geometry.metric_from_voxel();
+        let longest_m = (0..2).map(|axis| metric.col(axis).length() * extent[axis]).fold(1e-9, f64::max);
+        let texels_per_m = share * self.settings.density / longest_m;
+        let mut maker = CoverMaker {
+            loaded: &self.loaded,
+            painter: &mut self.painter,
+            progress: self.progress,
+            texels_per_m,
+            nodes_per_voxel: if share < 1.0 { 1.0 } else { 2.0 },
+        };
+        self.covers.push(maker.make(wanted, scene, ground)?);
+        self.known.insert(key, self.covers.len() - 1);
+        Ok(self.covers.len() - 1)
+    }
+
+    /// Sections through the whole box of a scene, evenly spaced, on lines and samples.
+    fn sections(&mut self, scene: &Scene) -> Result<Vec<Stack>, ProjectError> {
+        let count = self.settings.sections;
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        self.style_for(scene)?;
+        let block = scene.box_in(&self.loaded.geometry);
+        let (low, high) = (block.low(), block.high());
+        let mut stacks = Vec::new();
+        for axis in 0..3 {
+            let mut places: Vec<f64> = (1..=count)
+                .map(|n| (low[axis] + (high[axis] - low[axis]) * n as f64 / (count + 1) as f64).round())
+                .collect();
+            places.dedup();
+            let mut stack = Stack { axis, places: Vec::new() };
+            for at in places {
+                let rectangle = match axis {
+                    0 => SectionPlane::inline(at, low, high),
+                    1 => SectionPlane::crossline(at, low, high),
+                    _ => SectionPlane::slice(at, low, high),
+                };
+                let plane = Some(BodyPlane::of_axis(axis, at as f32, 1.0));
+                let cover = self.cover(&Wanted { plane, rectangle }, scene, None, SECTION_DENSITY)?;
+                let model = self.loaded.rock.as_ref().map(|rock| &rock.model);
+                let lines = model.map_or_else(Vec::new, |model| lines_on(model, &rectangle));
+                stack.places.push(SectionPlace { at, cover, lines });
+            }
+            stacks.push(stack);
+        }
+        Ok(stacks)
+    }
+
+    fn surfaces(&self) -> Result<(Vec<Surface>, Vec<Surface>), ProjectError> {
+        let document = self.project.document();
+        let geometry = &self.loaded.geometry;
+        let Some(rock) = &self.loaded.rock else { return Ok((Vec::new(), Vec::new())) };
+        let shares = rock.picked_shares();
+        let mut horizons = Vec::new();
+        self.progress.begin("surfaces", (document.horizons.len() + document.faults.len()) as u64);
+        for ((index, named), entry) in figures::horizons(document).iter().enumerate().zip(&document.horizons) {
+            self.progress.step(1)?;
+            let label = (named.name.as_str(), named.colour);
+            let mut surface = match is_any_shape(rock, index) {
+                true => {
+                    let horizon = content::read_horizon(self.project.root(), entry, &self.progress.muted())?;
+                    let mesh = horizon.any_shape().cloned().unwrap_or_default();
+                    surfaces::triangles(geometry, label, &mesh, self.settings.surface_triangles)
+                }
+                false => {
+                    surfaces::horizon(&rock.model, geometry, (index, label.0, label.1), self.settings.surface_nodes)
+                }
+            };
+            surface.picked_share = shares.get(index).copied().filter(|share| share.is_finite()).unwrap_or(1.0);
+            horizons.push(surface);
+        }
+        let mut faults = Vec::new();
+        for entry in &document.faults {
+            self.progress.step(1)?;
+            let fault = content::read_fault(self.project.root(), entry)?;
+            let most = self.settings.surface_triangles;
+            faults.push(surfaces::triangles(geometry, (&entry.name, FAULT), &fault.mesh, most));
+        }
+        Ok((horizons, faults))
+    }
+
+    fn wells(&self) -> Result<Vec<WellPath>, ProjectError> {
+        let geometry = &self.loaded.geometry;
+        let mut wells = Vec::new();
+        for entry in &self.project.document().wells {
+            let well = content::read_well(self.project.root(), entry)?;
+            let inside = |p: &DVec3| surfaces::is_inside(*p, geometry.size());
+            let tops =
+                well.tops.iter().filter_map(|top| Some((top.name.clone(), well.voxel_at_md(top.md_m, geometry)?)));
+            wells.push(WellPath {
+                name: entry.name.clone(),
+                tops: tops.filter(|(_, p)| inside(p)).collect(),
+                path: well.path_in_voxels(geometry).into_iter().filter(inside).collect(),
+            });
+        }
+        wells.retain(|well| well.path.len() > 1);
+        Ok(wells)
+    }
+
+    /// The layers, deepest first, with what the legend says of them.
+    fn layers(&self, document: &Document) -> Result<Vec<Layer>, ProjectError> {
+        if self.loaded.rock.is_none() {
+            return Ok(Vec::new());
+        }
+        let mut seen = [false; 256];
+        for cover in &self.covers {
+            cover.data.pixels().for_each(|pixel| seen[usize::from(pixel.0[1])] = true);
+        }
+        let styles = figures::layer_styles(document, self.library);
+        // Patterns of what nobody interpreted say nothing of rocks.
+        let is_interpreted = warning(document).is_none();
+        let layer = |(number, style): (usize, &LayerStyle)| {
+            let drawn = swatch::draw(style, self.library, SWATCH_PX, SWATCH_PX_PER_MM)?;
+            let rocks = style.intervals.iter().filter_map(|interval| self.library.find(&interval.texture));
+            let mut rocks: Vec<String> = rocks.map(|index| self.library.pattern(index).title.clone()).collect();
+            rocks.dedup();
+            rocks.truncate(if is_interpreted { rocks.len() } else { 0 });
+            let age = ttf::ages()
+                .filter(|age| is_interpreted && age.colour == style.colour)
+                .max_by(|a, b| (a.base_ma - a.top_ma).total_cmp(&(b.base_ma - b.top_ma)));
+            Ok(Layer {
+                name: style.layer.clone(),
+                rock: rocks.join(", "),
+                age: age.map_or_else(String::new, |age| age.name.to_owned()),
+                colour: style.colour,
+                swatch: on_white(&drawn),
+                is_seen: seen[(number + 1).min(255)],
+            })
+        };
+        styles.iter().rev().enumerate().map(layer).collect()
+    }
+}
+
+/// Whether a horizon is no height field in any block.
+fn is_any_shape(rock: &Rock, horizon: usize) -> bool {
+    (0..rock.model.block_count() as u16).any(|block| rock.model.level(horizon, block).is_some())
+}
+
+fn on_white(image: &image::RgbaImage) -> RgbImage {
+    let mut white = image::RgbaImage::from_pixel(image.width(), image.height(), image::Rgba([255; 4]));
+    imageops::overlay(&mut white, image, 0, 0);
+    image::DynamicImage::from(white).to_rgb8()
+}
+
+/// What a reader must know about the data and the scales.
+fn provenance(document: &Document, loaded: &Loaded) -> Vec<String> {
+    let geometry = &loaded.geometry;
+    let [inlines, crosslines, samples] = geometry.size();
+    let unit = geometry.vertical.unit;
+    let mut lines = vec![format!(
+        "{inlines} inlines, {crosslines} crosslines, {samples} samples; {:.0} to {:.0} {}",
+        geometry.vertical.first,
+        geometry.vertical.last(),
+        unit.symbol()
+    )];
+    if unit == VerticalUnit::Milliseconds {
+        lines.push(format!("two-way time, drawn at {} m/s, one velocity for the whole survey", geometry.velocity_m_s));
+    }
+    if let Some(raw) = &loaded.raw {
+        lines.push(format!("raw data: volume {}", raw.volume));
+    }
+    for sparse in &loaded.sparse {
+        lines.push(sparse.sentence());
+    }
+    for entry in document.volumes.iter().take(1) {
+        let file = entry.source.path.file_name().map(|name| name.to_string_lossy().into_owned());
+        lines.extend(file.map(|file| format!("seismic data: {file}")));
+    }
+    lines.push(format!("made by Petroglyph {}", env!("CARGO_PKG_VERSION")));
+    lines
+}
+
+/// What must stand on a block whose horizons are levels of a computed geologic time, or that has none.
+fn warning(document: &Document) -> Option<String> {
+    if document.horizons.is_empty() {
+        return Some("Uninterpreted: raw data alone".to_owned());
+    }
+    let is_time = |reading: &str| reading.contains("geologic time");
+    let all = document.horizons.iter().all(|horizon| is_time(&horizon.source.reading));
+    all.then(|| "Uninterpreted: layers by computed geologic time, not by rock".to_owned())
+}
+
+/// The notes of a project, where they lie in the survey.
+fn notes(document: &Document, loaded: &Loaded) -> Vec<Note> {
+    let geometry = &loaded.geometry;
+    let note = |entry: &NoteEntry| {
+        let [inline, crossline, z] = entry.at;
+        let at = geometry.voxel_from_lines(inline, crossline).extend(geometry.vertical.index_of(z));
+        Note { text: entry.text.clone(), at, scene: entry.scene.clone() }
+    };
+    document.notes.iter().map(note).collect()
+}

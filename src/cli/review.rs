@@ -1,0 +1,177 @@
+//! `petroglyph review` and `petroglyph export --model`: blocks that leave the program.
+
+use super::args::{ExportArgs, ReviewArgs};
+use super::report::Report;
+use super::request::{Usage, drawing};
+use pictures::Device;
+use project::Project;
+use project::folder::refuse_inside_project;
+use project::memory_budget;
+use review::{ReviewSettings, glb, html};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use survey::Progress;
+
+/// Limits of the texels along the longest side of the block.
+const DENSITIES: [f64; 2] = [64.0, 4096.0];
+/// Most sections along an axis.
+const MOST_SECTIONS: usize = 200;
+/// Limits of the size of a page, MB.
+const SIZES_MB: [f64; 2] = [0.5, 2000.0];
+/// Limits of the triangles of a model.
+const TRIANGLES: [usize; 2] = [1000, 5_000_000];
+/// Nodes along each axis on which the horizons of a page are sampled.
+const SURFACE_NODES: usize = 56;
+/// Most cells along each axis on which the ground of a page is sampled.
+const GROUND_CELLS: usize = 80;
+/// Most triangles of a fault in a page.
+const SURFACE_TRIANGLES: usize = 4_000;
+
+/// A page that was asked for.
+#[derive(Debug)]
+pub(super) struct ReviewRequest {
+    project: PathBuf,
+    out: PathBuf,
+    limit: u64,
+    settings: ReviewSettings,
+}
+
+/// A model that was asked for.
+#[derive(Debug)]
+pub(super) struct ModelRequest {
+    project: PathBuf,
+    out: PathBuf,
+    triangles: usize,
+    settings: ReviewSettings,
+}
+
+impl TryFrom<ReviewArgs> for ReviewRequest {
+    type Error = Usage;
+
+    fn try_from(typed: ReviewArgs) -> Result<Self, Usage> {
+        has_ending(&typed.out, &["html", "htm"], "a page")?;
+        let [least, most] = SIZES_MB;
+        if !(typed.size_limit >= least && typed.size_limit <= most) {
+            return Err(format!("--size-limit {}: expected {least} to {most} MB", typed.size_limit));
+        }
+        if typed.sections > MOST_SECTIONS {
+            return Err(format!("--sections {}: expected at most {MOST_SECTIONS}", typed.sections));
+        }
+        let (device, volume_bytes) = drawing(&typed.drawing)?;
+        Ok(Self {
+            project: typed.project,
+            out: typed.out,
+            limit: (typed.size_limit * 1e6) as u64,
+            settings: ReviewSettings {
+                sections: typed.sections,
+                surface_nodes: SURFACE_NODES,
+                surface_triangles: SURFACE_TRIANGLES,
+                ground_cells: GROUND_CELLS,
+                has_whole: true,
+                ..settings(typed.density, typed.scene, device, volume_bytes)?
+            },
+        })
+    }
+}
+
+impl TryFrom<ExportArgs> for ModelRequest {
+    type Error = Usage;
+
+    fn try_from(typed: ExportArgs) -> Result<Self, Usage> {
+        has_ending(&typed.out, &["glb"], "a model")?;
+        let [least, most] = TRIANGLES;
+        if !(least..=most).contains(&typed.triangles) {
+            return Err(format!("--triangles {}: expected {least} to {most}", typed.triangles));
+        }
+        let (device, volume_bytes) = drawing(&typed.drawing)?;
+        Ok(Self {
+            project: typed.project,
+            out: typed.out,
+            triangles: typed.triangles,
+            settings: settings(typed.density, typed.scene.into_iter().collect(), device, volume_bytes)?,
+        })
+    }
+}
+
+fn has_ending(out: &Path, endings: &[&str], what: &str) -> Result<(), Usage> {
+    let ending = out.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+    if endings.contains(&ending.as_str()) {
+        return Ok(());
+    }
+    Err(format!("{}: {what} has the ending .{}; name the file so", out.display(), endings[0]))
+}
+
+fn settings(
+    density: f64,
+    scenes: Vec<String>,
+    device: Device,
+    volume_bytes: Option<u64>,
+) -> Result<ReviewSettings, Usage> {
+    let [least, most] = DENSITIES;
+    if !(density >= least && density <= most) {
+        return Err(format!("--density {density}: expected {least} to {most} texels"));
+    }
+    Ok(ReviewSettings {
+        density,
+        sections: 0,
+        surface_nodes: 0,
+        surface_triangles: 0,
+        ground_cells: 0,
+        has_whole: false,
+        scenes,
+        device,
+        volume_bytes: volume_bytes.unwrap_or_else(memory_budget::half_of_available),
+    })
+}
+
+/// Writes a page.
+pub(super) fn review(request: &ReviewRequest, progress: &Progress) -> anyhow::Result<Report> {
+    let start = Instant::now();
+    refuse_inside_project(&request.out)?;
+    let project = Project::open(&request.project)?;
+    let model = review::make(&project, &request.settings, progress)?;
+    let written = html::write(&model, &request.out, request.limit, progress)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let scenes = if written.scenes == 1 { "one scene".to_owned() } else { format!("{} scenes", written.scenes) };
+    let mut report = Report::line(format!(
+        "{}: {:.1} MB, {scenes}, {} triangles, {seconds:.1} s",
+        request.out.display(),
+        written.bytes as f64 / 1e6,
+        written.triangles
+    ));
+    if let Some(warning) = &model.warning {
+        report.say(format!("  {warning}"));
+    }
+    for surface in model.horizons.iter().filter(|surface| surface.picked_share < 0.995) {
+        let percent = (100.0 * surface.picked_share).round();
+        report.say(format!("  {}: {percent:.0} % picked; the rest is hatched", surface.name));
+    }
+    report.field("file", &request.out).fields(&written).field("seconds", seconds);
+    Ok(report)
+}
+
+/// Writes a model.
+pub(super) fn export_model(request: &ModelRequest, progress: &Progress) -> anyhow::Result<Report> {
+    let start = Instant::now();
+    refuse_inside_project(&request.out)?;
+    let project = Project::open(&request.project)?;
+    let written = glb::export(&project, &request.settings, request.triangles, &request.out, progress)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let mut report = Report::line(format!(
+        "{}: {:.1} MB, {} triangles in {} nodes, {seconds:.1} s",
+        request.out.display(),
+        written.bytes as f64 / 1e6,
+        written.triangles,
+        written.nodes
+    ));
+    report.say(format!(
+        "  metres, Y up, X east, Z south; origin at {:.1}, {:.1}; vertical exaggeration {}",
+        written.origin[0], written.origin[1], written.exaggeration
+    ));
+    report.say(format!(
+        "  99 % of every surface is within {:.1} m of the interpretation, and all of it within {:.1} m",
+        written.usual_deviation_m, written.deviation_m
+    ));
+    report.field("file", &request.out).fields(&written).field("seconds", seconds);
+    Ok(report)
+}

@@ -1,0 +1,161 @@
+//! Reviews and models: what is in their files, and what is refused. How a page behaves in a browser is driven by
+//! `make check-review`.
+
+use crate::program::{FAULTS, HORIZONS, project, run_in};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+const SMALL: &str = "--density 120 --device cpu";
+
+/// The data in a page.
+fn data(page: &str) -> Value {
+    let (_, rest) = page.split_once("id=\"model\">").unwrap();
+    let (json, _) = rest.split_once("</script>").unwrap();
+    assert!(!json.contains(['<', '>', '&', '\u{2028}']), "nothing in the data can end it");
+    serde_json::from_str(json).unwrap()
+}
+
+/// The JSON and the bytes of a model.
+fn model(path: &Path) -> (Value, Vec<u8>) {
+    let file = fs::read(path).unwrap();
+    let number = |at: usize| u32::from_le_bytes(file[at..at + 4].try_into().unwrap()) as usize;
+    assert_eq!((&file[..4], number(4), number(8)), (&b"glTF"[..], 2, file.len()));
+    let length = number(12);
+    assert_eq!((&file[16..20], length % 4), (&b"JSON"[..], 0));
+    let bytes = file[20 + length + 8..].to_vec();
+    assert_eq!((&file[20 + length + 4..20 + length + 8], number(20 + length)), (&b"BIN\0"[..], bytes.len()));
+    (serde_json::from_slice(&file[20..20 + length]).unwrap(), bytes)
+}
+
+#[test]
+fn a_page_holds_the_block_its_scenes_and_its_notes() {
+    let folder = project();
+    let at = folder.path();
+    run_in(at, "scene add p.petro corner --cut nearest,0.5,0.4 --blend 0.3").done();
+    run_in(at, "scene add p.petro whole --ground off").done();
+    run_in(at, "note add p.petro 'Reverse fault?' --at 120,520,200 --scene corner").done();
+    let told = run_in(at, &format!("review p.petro a.html --sections 1 {SMALL} --json")).done().json();
+    let text = fs::read_to_string(at.join("a.html")).unwrap();
+    assert_eq!(told["bytes"].as_u64(), Some(text.len() as u64));
+    assert!(text.len() < 5_000_000, "{}", text.len());
+    for word in ["default-src 'none'", "script-src 'sha256-", "style-src 'sha256-", "img-src data: blob:"] {
+        assert!(text.contains(word), "no {word}");
+    }
+    assert_eq!(text.matches("<img src=\"data:image/jpeg;base64,").count(), 2, "a picture for each scene");
+    let data = data(&text);
+    let names = |of: &str| {
+        data[of].as_array().unwrap().iter().map(|one| one["name"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(names("scenes"), ["corner", "whole"]);
+    assert_eq!(names("horizons"), HORIZONS.map(|(name, _)| name));
+    assert_eq!(names("faults"), FAULTS);
+    assert_eq!(data["notes"][0]["text"], "Reverse fault?");
+    assert_eq!((&data["notes"][0]["scene"], &data["warning"]), (&Value::from("corner"), &Value::Null));
+    // Four sides, two walls and the ground or a flat top; without cut-outs four sides and that.
+    let faces = |block: &Value| data["blocks"][block.as_u64().unwrap() as usize]["faces"].as_array().unwrap().len();
+    assert_eq!([faces(&data["scenes"][0]["cut"]), faces(&data["scenes"][0]["whole"])], [7, 5]);
+    assert_eq!([faces(&data["scenes"][1]["cut"]), faces(&data["scenes"][1]["whole"])], [7, 5]);
+    assert_eq!(data["sections"].as_array().unwrap().len(), 3);
+    // Pictures of faces that scenes share are there once.
+    assert!(data["covers"].as_array().unwrap().iter().all(|cover| cover["illustrated"].is_string()));
+    // The same again is the same page.
+    run_in(at, &format!("review p.petro b.html --sections 1 {SMALL}")).done();
+    assert!(fs::read(at.join("b.html")).unwrap() == text.into_bytes());
+}
+
+#[test]
+fn hostile_names_stay_text() {
+    let folder = project();
+    let at = folder.path();
+    run_in(at, "scene add p.petro '</script><script>alert(1)</script>'").done();
+    run_in(at, "note add p.petro '<img src=x onerror=alert(1)>' --at 120,520,200").done();
+    run_in(at, &format!("review p.petro a.html --sections 0 {SMALL}")).done();
+    let text = fs::read_to_string(at.join("a.html")).unwrap();
+    assert!(!text.contains("<img src=x") && !text.contains("<script>alert"));
+    assert_eq!(text.matches("</script>").count(), 2);
+    assert_eq!(data(&text)["scenes"][0]["name"], "</script><script>alert(1)</script>");
+}
+
+#[test]
+fn a_model_is_a_whole_file_with_named_nodes() {
+    let folder = project();
+    let at = folder.path();
+    let told = run_in(at, &format!("export p.petro a.glb --model --triangles 20000 {SMALL} --json")).done().json();
+    let (document, bytes) = model(&at.join("a.glb"));
+    let nodes: Vec<&str> =
+        document["nodes"].as_array().unwrap().iter().map(|node| node["name"].as_str().unwrap()).collect();
+    for name in ["Block", "Horizons", "Faults", "ground", HORIZONS[2].0, FAULTS[0]] {
+        assert!(nodes.contains(&name), "no {name} in {nodes:?}");
+    }
+    let root = document["nodes"].as_array().unwrap().last().unwrap();
+    let exaggeration = told["exaggeration"].as_f64().unwrap();
+    assert_eq!(root["scale"], serde_json::json!([1.0, exaggeration, 1.0]));
+    assert_eq!(root["extras"]["verticalExaggeration"].as_f64(), Some(exaggeration));
+    assert!(root["name"].as_str().unwrap().contains("vertical exaggeration"));
+    assert_eq!(document["buffers"][0]["byteLength"].as_u64(), Some(bytes.len() as u64));
+    // Every number lies in the file, every index among the corners, and there are not more triangles than asked for.
+    let mut triangles = 0;
+    let number = |value: &Value| value.as_u64().unwrap() as usize;
+    let view = |accessor: &Value| {
+        let view = &document["bufferViews"][number(&accessor["bufferView"])];
+        let from = number(&view["byteOffset"]);
+        &bytes[from..from + number(&view["byteLength"])]
+    };
+    for mesh in document["meshes"].as_array().unwrap() {
+        let part = &mesh["primitives"][0];
+        let [corners, indices] =
+            [&part["attributes"]["POSITION"], &part["indices"]].map(|n| &document["accessors"][number(n)]);
+        assert_eq!(view(corners).len(), 12 * number(&corners["count"]));
+        let used = view(indices).chunks_exact(4).map(|n| u32::from_le_bytes(n.try_into().unwrap()) as usize);
+        assert!(used.max().unwrap() < number(&corners["count"]));
+        triangles += number(&indices["count"]) / 3;
+    }
+    assert_eq!(told["triangles"].as_u64(), Some(triangles as u64));
+    assert!(triangles <= 20_000 && told["deviation_m"].as_f64().unwrap() > 0.0);
+    // The block of 47 × 39 bins of 25 m, X east and Z south.
+    let sizes = document["accessors"].as_array().unwrap().iter().filter(|accessor| accessor["max"].is_array());
+    let widest = |axis: usize| sizes.clone().map(|a| a["max"][axis].as_f64().unwrap()).fold(f64::MIN, f64::max);
+    assert!(widest(0) > 400.0 && widest(0) < 800.0, "{}", widest(0));
+}
+
+#[test]
+fn notes_are_numbered_and_undone() {
+    let folder = project();
+    let at = folder.path();
+    run_in(at, "note add p.petro one --at 120,520,200").done();
+    run_in(at, "note add p.petro two --at 121,520,200").done();
+    run_in(at, "note remove p.petro 1").done();
+    assert_eq!(run_in(at, "note list p.petro --json").done().json()["notes"][0]["text"], "two");
+    run_in(at, "undo p.petro").done();
+    assert_eq!(run_in(at, "note list p.petro --json").done().json()["notes"].as_array().unwrap().len(), 2);
+    run_in(at, "note remove p.petro 3").failed(&["no note 3", "1 to 2"]);
+    run_in(at, "note add p.petro x --at 9000,520,200").failed(&["outside the survey"]);
+    run_in(at, "note add p.petro x --at 120,520,200 --scene nowhere").failed(&["nowhere"]);
+    run_in(at, "note add p.petro ' ' --at 120,520,200").failed(&["empty"]);
+}
+
+#[test]
+fn what_cannot_be_made_is_refused_and_leaves_nothing() {
+    let folder = project();
+    let at = folder.path();
+    for usage in [
+        "review p.petro a.pdf",
+        "review p.petro a.html --density 5",
+        "review p.petro a.html --size-limit 0",
+        "export p.petro a.obj --model",
+        "export p.petro a.glb --model --triangles 3",
+        "export p.petro a.glb --scene corner --horizon Alpha",
+        "note add p.petro x --at 1,2",
+    ] {
+        assert_eq!(run_in(at, usage).code, 2, "{usage}");
+    }
+    run_in(at, "review p.petro p.petro/a.html").failed(&["project"]);
+    run_in(at, "review p.petro a.html --scene nowhere").failed(&["nowhere"]);
+    run_in(at, &format!("review p.petro a.html --size-limit 0.5 {SMALL}")).failed(&["MB"]);
+    run_in(at, "create empty.petro --bounds 0,100,0,100,0,100 --size 9x9x9").done();
+    run_in(at, "review empty.petro a.html").failed(&["no layers"]);
+    assert!(!at.join("a.html").exists());
+    let left: Vec<_> = fs::read_dir(at).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert!(!left.iter().any(|name| name.to_string_lossy().contains("partial")), "{left:?}");
+}
