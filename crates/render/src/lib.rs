@@ -30,6 +30,7 @@ mod gpu;
 pub mod ground;
 pub mod inputs;
 mod kept;
+mod kept_points;
 pub mod leaves;
 pub mod media;
 pub mod outline;

@@ -1,7 +1,7 @@
 //! The points that stop rays, as far as they do not depend on colours and patterns, and their colours.
 //!
 //! A point is found once: where the ray hits, its layer, its flat coordinates (i, j, k) and how these change over a
-//! pixel. After a change of style alone, points that were kept ([`PicturePoints`]) are coloured again, by the same
+//! pixel. After a change of style alone, points that were kept ([`crate::kept_points`]) are coloured again, by the same
 //! function that colours them first, so the picture is the same bit by bit.
 //!
 //! A point of a face gets its colour from its region, flat coordinates, texture, scalar functions and raw data (P-illus
@@ -10,18 +10,14 @@
 use crate::camera::ViewRay;
 use crate::distortion;
 use crate::ground::GroundHit;
-use crate::inputs::{Inputs, NamedVolume};
+use crate::inputs::NamedVolume;
 use crate::leaves::{FaceData, cover, distance_tone, leaf_colour};
-use crate::outline::Outlines;
-use crate::outline::draw::OutlineLines;
 use crate::resolved::ResolvedScene;
-use crate::scene::{Background, PatternSize, Scene};
 use crate::shade::{RayHit, pixel_shift};
 use crate::visible::FaceHit;
 use glam::{Vec3, Vec4};
-use std::sync::{Arc, OnceLock};
 use survey::block::BodyPlane;
-use ttf::{FaceFrame, FlatFootprint, LayerPoint, Preset, ShadePoint};
+use ttf::{FaceFrame, FlatFootprint, LayerPoint, ShadePoint};
 
 /// Points of rays that are neighbours in the picture.
 #[derive(Debug, Default)]
@@ -62,6 +58,9 @@ struct GroundPoint {
     shade: f32,
 }
 
+/// Memory that a point takes, bytes.
+pub(crate) const POINT_BYTES: usize = size_of::<SurfacePoint>();
+
 impl Points {
     /// The points of hits.
     pub fn of<'r>(resolved: &ResolvedScene, hits: impl Iterator<Item = (&'r ViewRay, RayHit)>) -> Self {
@@ -96,7 +95,7 @@ impl Points {
     }
 
     /// The same without the points, where all of them are background.
-    fn packed(mut self) -> Self {
+    pub fn packed(mut self) -> Self {
         if self.points.iter().all(|point| matches!(point, SurfacePoint::Background)) {
             self.points = Vec::new();
         }
@@ -185,107 +184,4 @@ fn ground_colour(resolved: &ResolvedScene, ground: &GroundPoint) -> Vec3 {
     let slot = resolved.tables.globals.raw_volume as usize;
     let value = sampled(resolved.volumes.get(slot).and_then(Option::as_ref), ground.point);
     Vec3::from_array(ttf::blend_raw(&resolved.tables, lit.to_array(), value))
-}
-
-/// The points of a whole picture, in blocks of pixels, and its lines. A block is known once it has been drawn.
-#[derive(Debug)]
-pub(crate) struct PicturePoints {
-    of: PointsOf,
-    blocks_across: u32,
-    side_px: u32,
-    blocks: Vec<OnceLock<Points>>,
-    lines: OnceLock<OutlineLines>,
-}
-
-/// What the points of a picture depend on.
-#[derive(Debug, PartialEq)]
-struct PointsOf {
-    data_version: u64,
-    is_illustrated: bool,
-    /// The scene in the colours of any other.
-    scene: Scene,
-}
-
-impl PointsOf {
-    fn new(resolved: &ResolvedScene, data_version: u64) -> Self {
-        let outlines = resolved.scene.outlines;
-        let mut shapes = Outlines::none();
-        shapes.edges.width_px = outlines.edges.width_px;
-        shapes.unpicked = outlines.unpicked;
-        let scene = Scene {
-            blend: 0.0,
-            global_frequency: 1.0,
-            pattern_size: PatternSize::default(),
-            preset: Preset::Colour,
-            background: Background::Transparent,
-            face_tone: 0.0,
-            raw: None,
-            outlines: shapes,
-            labels: Vec::new(),
-            ..resolved.scene.clone()
-        };
-        Self { data_version, is_illustrated: resolved.illustrated, scene }
-    }
-}
-
-impl PicturePoints {
-    /// The points of a block of pixels, which are looked for unless they are known.
-    pub fn block(&self, [left, top]: [u32; 2], find: impl FnOnce() -> Points) -> &Points {
-        let index = top / self.side_px * self.blocks_across + left / self.side_px;
-        self.blocks[index as usize].get_or_init(|| find().packed())
-    }
-
-    /// The lines over the picture.
-    pub fn lines(&self, find: impl FnOnce() -> OutlineLines) -> &OutlineLines {
-        self.lines.get_or_init(find)
-    }
-}
-
-/// Points of the last pictures, while they need no more than so many bytes together.
-#[derive(Debug, Default)]
-pub(crate) struct KeptPoints {
-    max_bytes: usize,
-    pictures: Vec<Arc<PicturePoints>>,
-}
-
-impl KeptPoints {
-    /// None yet.
-    pub fn within(max_bytes: usize) -> Self {
-        Self { max_bytes, pictures: Vec::new() }
-    }
-
-    /// The points of a picture, in blocks of `side_px` pixels; `None` where they are not kept: in volume rendering, behind
-    /// a translucent ground, for data without a version, and where they need too much memory.
-    pub fn of(&mut self, resolved: &ResolvedScene, inputs: &Inputs, side_px: u32) -> Option<Arc<PicturePoints>> {
-        let is_clear = resolved.relief.as_ref().is_none_or(|relief| relief.opacity >= 1.0);
-        let [width, height] = resolved.scene.size_px;
-        let bytes = |[width, height]: [u32; 2], samples: u32| {
-            let rays = width as usize * height as usize * (samples * samples) as usize;
-            rays * size_of::<SurfacePoint>()
-        };
-        let needed = bytes([width, height], resolved.scene.samples);
-        let is_fixed = resolved.scene.face_data == FaceData::Distortion;
-        if resolved.field.is_some() || !is_clear || is_fixed || inputs.data_version == 0 || needed > self.max_bytes {
-            return None;
-        }
-        let of = PointsOf::new(resolved, inputs.data_version);
-        if let Some(known) = self.pictures.iter().position(|known| known.of == of) {
-            let known = self.pictures.remove(known);
-            self.pictures.push(known.clone());
-            return Some(known);
-        }
-        self.pictures.retain(|known| known.of.data_version == of.data_version);
-        let held = |pictures: &[Arc<PicturePoints>]| -> usize {
-            pictures.iter().map(|known| bytes(known.of.scene.size_px, known.of.scene.samples)).sum()
-        };
-        while held(&self.pictures) + needed > self.max_bytes {
-            self.pictures.remove(0);
-        }
-        let blocks_across = width.div_ceil(side_px);
-        let count = blocks_across * height.div_ceil(side_px);
-        let blocks = (0..count).map(|_| OnceLock::new()).collect();
-        let picture = Arc::new(PicturePoints { of, blocks_across, side_px, blocks, lines: OnceLock::new() });
-        self.pictures.push(picture.clone());
-        Some(picture)
-    }
 }

@@ -83,7 +83,6 @@ impl State {
                 self.quieten(Place::Dialogue);
                 return self.task(Task::ExportSurface(form));
             }
-            Action::Present(at) => self.present(at),
             Action::Copy => return self.task(Task::Copy),
             Action::Picking(step) => return self.pick(step),
             Action::Extract(volume, settings) => {
@@ -113,6 +112,9 @@ impl State {
 
     /// Actions on the view of the open project; they are ignored while no project is open.
     fn look(&mut self, action: Action) {
+        if let Action::Present(at) = action {
+            return self.present(at);
+        }
         let Some(session) = &mut self.session else { return };
         let view = &mut session.view;
         match action {
