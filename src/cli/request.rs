@@ -36,7 +36,6 @@ use ttf::{Colour, ColourMap, DepthInterval, Frequency, ScalarInterval, ScalarTtf
 
 /// A request.
 #[derive(Debug)]
-#[expect(clippy::large_enum_variant, reason = "a run has one request")]
 pub(super) enum Request {
     /// Make a synthetic survey and pictures of it.
     Demo { out: PathBuf },

@@ -44,13 +44,7 @@ impl State {
                     session.renew(*snapshot);
                 }
             }
-            Action::Tell(notice) => {
-                if notice.failed && notice.place == Place::Interpret {
-                    self.reselect();
-                }
-                self.notices.retain(|known| *known != notice);
-                self.notices.push(notice);
-            }
+            Action::Tell(notice) => self.tell(notice),
             Action::Dismiss(index) => {
                 if index < self.notices.len() {
                     self.notices.remove(index);
@@ -108,6 +102,15 @@ impl State {
             other => self.look(other),
         }
         Vec::new()
+    }
+
+    /// Shows a notice, once.
+    fn tell(&mut self, notice: Notice) {
+        if notice.failed && notice.place == Place::Interpret {
+            self.reselect();
+        }
+        self.notices.retain(|known| *known != notice);
+        self.notices.push(notice);
     }
 
     /// Actions on the view of the open project; they are ignored while no project is open.

@@ -8,4 +8,5 @@ mod gpu_media;
 mod gpu_shapes;
 mod kept;
 mod media;
+mod scene;
 mod vector;
