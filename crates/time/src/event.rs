@@ -19,7 +19,7 @@ use survey::Volume;
 pub enum Support {
     /// A patch of a reflection that lies along the level, or that a seed lies on.
     Tracked,
-    /// A reflection of the same kind within [`SNAP_REACH`] of the level.
+    /// A reflection of the same kind within one and a half samples of the level.
     Snapped,
     /// The level of τ alone.
     Between,
