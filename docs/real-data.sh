@@ -130,3 +130,5 @@ named "below Ommelanden" "Ommelanden Fm (chalk, chert)" --pattern limestone-cher
 # F3 without interpretation.
 rm -rf "$out/illustrate-f3.petro"
 "$petroglyph" illustrate "$data/volumes/f3_depth_il300-427_xl300-439_int16.sgy" "$pictures/illustrate-f3.png" --project "$out/illustrate-f3.petro"
+rm -rf "$out/illustrate-f3-salt.petro"
+"$petroglyph" illustrate "$data/volumes/f3_depth_il300-427_xl720-975_int16.sgy" "$pictures/illustrate-f3-salt.png" --project "$out/illustrate-f3-salt.petro"
