@@ -74,7 +74,7 @@ fn gpu_and_cpu_agree_on_horizons_of_any_shape() {
     let cut_outs = vec![whole.corner_cut(base.view(&geometry()).nearest_corner(&whole), [0.5, 0.5])];
     let ground = Some(Ground::default());
     for (version, (name, block)) in (1..).zip([("salt", salt()), ("fold", fold())]) {
-        let inputs = Inputs { version, ..block.inputs(&[]) };
+        let inputs = Inputs { version, data_version: version, ..block.inputs(&[]) };
         let mut earlier = None;
         for scene in [Scene { cut_outs: cut_outs.clone(), ..base.clone() }, Scene { ground, ..base.clone() }] {
             let reference = render::reference::render(&scene, &inputs, &quiet).unwrap();
