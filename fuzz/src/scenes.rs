@@ -19,6 +19,8 @@ pub fn document() -> Document {
             hash: "00".into(),
             source: source(),
             assembly: None,
+            colour: None,
+            seeds: Vec::new(),
         })
         .into();
     document.faults = vec![FaultEntry {
