@@ -64,6 +64,8 @@ const SNAP_REACH: f32 = 1.5;
 const SEED_REACH: f32 = 3.0;
 /// What a sample of distance from the seed counts against a share of the traces.
 const FARTHER: f32 = 0.15;
+/// What it counts that there is no reflection on the seed's own trace.
+const BARE: f32 = 0.05;
 /// Score below which nothing reflects where a seed points.
 const LEAST_ALONG: f32 = 0.2;
 /// Distance from the level within which a vertex of a patch speaks for the patch, samples.
@@ -141,7 +143,8 @@ impl Reflections {
                     all += 1.0;
                 }
             }
-            on / all.max(1.0) - FARTHER * (target.z - seed.z).abs()
+            let bare = if target.hub.is_none() { BARE } else { 0.0 };
+            on / all.max(1.0) - FARTHER * (target.z - seed.z).abs() - bare
         };
         let best = targets.iter().map(|target| (score(target), target)).max_by(|a, b| a.0.total_cmp(&b.0));
         match best {
