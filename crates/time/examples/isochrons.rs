@@ -28,8 +28,6 @@ const NOTES: &str = "
   it leaves as islands have no patch from one to the next.
 - Comparing the log of every tile of 8 × 8 traces with that of the survey did not help such islands here, and neither
   did cutting patches into tiles or where their vertices disagree: they are left out.
-- Where noise breaks the patch at the place that is pointed at, the event goes to the next reflection within three
-  samples, which at a signal-to-noise ratio of 1.5 is sometimes the wrong one.
 - On real surveys no fault is found without horizons: on F3 (both crops) and Penobscot patches go on across faults, and no
   surface has more ends than patches that go on. `fault propose` tells more once there is a horizon.
 - Penobscot, Horizon B, no fault drawn, one click at each of fifteen places of it (`pick --by-time` on the survey in

@@ -62,6 +62,12 @@ pub struct Event {
 const SNAP_REACH: f32 = 1.5;
 /// Distance from a seed within which it goes to a reflection, samples.
 const SEED_REACH: f32 = 3.0;
+/// What a sample of distance from the seed counts against a share of the traces.
+const FARTHER: f32 = 0.15;
+/// What it counts that there is no reflection on the seed's own trace.
+const BARE: f32 = 0.05;
+/// Score below which nothing reflects where a seed points.
+const LEAST_ALONG: f32 = 0.2;
 /// Distance from the level within which a vertex of a patch speaks for the patch, samples.
 const ALONG: f32 = 2.0;
 /// Distance from the level beyond which a vertex speaks against its patch, and is left where it is, samples.
@@ -76,10 +82,19 @@ const BEYOND_FAULT: f32 = 8.0;
 /// its distance from the first.
 const CORRECTION: f32 = 2.5;
 
+/// What a seed may point at: a reflection, or the level through the seed.
+#[derive(Debug, Clone, Copy)]
+struct Target {
+    z: f32,
+    kind: Option<Extremum>,
+    hub: Option<u32>,
+}
+
 /// A seed that was looked at.
 struct Placed {
     seed: Seed,
     hub: Option<u32>,
+    kind: Option<Extremum>,
     time: f32,
 }
 
@@ -89,41 +104,75 @@ impl Reflections {
     ///
     /// Cost: one pass over τ and the vertices of all candidates.
     pub fn event(&self, tau: &Volume<f32>, seeds: &[Seed], cuts: &[Cut]) -> Option<Event> {
-        let first = self.nearest(seeds.first()?.trace, seeds.first()?.z, None, SEED_REACH).map(|found| found.kind);
-        let placed: Vec<Placed> = seeds.iter().map(|seed| self.place(tau, seed, first)).collect::<Option<_>>()?;
+        let mut placed: Vec<Placed> = Vec::new();
+        for seed in seeds {
+            let target = self.target(tau, seed, placed.first().map(|first| first.kind))?;
+            placed.push(self.place(tau, seed, &target)?);
+        }
+        let first = placed.first()?;
         let level = |x: usize, y: usize| level_at(&placed, [x, y], cuts);
         let own: Vec<u32> = placed.iter().filter_map(|seed| seed.hub).collect();
-        Some(self.along(tau, level, placed[0].time, first, &own))
+        Some(self.along(tau, level, first.time, first.kind, &own))
+    }
+
+    /// What a seed points at. The reflections within reach on its trace, and the level through the seed itself, are
+    /// compared by the share of the traces around it on which a reflection of their kind lies on their level, less their
+    /// distance: a patch that noise broke at the seed is found by what lies around. `kind` is that of the first seed.
+    fn target(&self, tau: &Volume<f32>, seed: &Seed, kind: Option<Option<Extremum>>) -> Option<Target> {
+        let hubs = self.hubs();
+        let [nx, ny, nz] = hubs.size;
+        let [x, y] = seed.trace;
+        let own = hubs.on_trace(x * ny + y).filter(|&v| (hubs.z[v] - seed.z).abs() <= SEED_REACH);
+        let mut targets: Vec<Target> = own
+            .map(|v| Target { z: hubs.z[v], kind: Some(hubs.kind[hubs.hub[v] as usize]), hub: Some(hubs.hub[v]) })
+            .collect();
+        let plain = Target { z: seed.z.clamp(0.0, (nz - 1) as f32), kind: None, hub: None };
+        targets.extend(
+            [Extremum::Peak, Extremum::Trough, Extremum::Zero].map(|kind| Target { kind: Some(kind), ..plain }),
+        );
+        if let Some(kind) = kind {
+            targets.retain(|target| target.kind == kind);
+        }
+        let range = |at: usize, count: usize| at.saturating_sub(SEED_AROUND)..(at + SEED_AROUND + 1).min(count);
+        let score = |target: &Target| {
+            let time = value(tau, x, y, target.z);
+            let (mut on, mut all) = (0.0f32, 0.0f32);
+            for (x, y) in range(x, nx).flat_map(|x| range(y, ny).map(move |y| (x, y))) {
+                for at in crossings(tau.trace(x, y), time) {
+                    on += f32::from(self.nearest([x, y], at, target.kind, SNAP_REACH).is_some());
+                    all += 1.0;
+                }
+            }
+            let bare = if target.hub.is_none() { BARE } else { 0.0 };
+            on / all.max(1.0) - FARTHER * (target.z - seed.z).abs() - bare
+        };
+        let best = targets.iter().map(|target| (score(target), target)).max_by(|a, b| a.0.total_cmp(&b.0));
+        match best {
+            Some((score, target)) if score >= LEAST_ALONG => Some(*target),
+            _ => Some(Target { kind: kind.flatten(), ..plain }),
+        }
     }
 
     /// The time of a seed: the median over its patch around it.
-    fn place(&self, tau: &Volume<f32>, seed: &Seed, kind: Option<Extremum>) -> Option<Placed> {
+    fn place(&self, tau: &Volume<f32>, seed: &Seed, target: &Target) -> Option<Placed> {
         let hubs = self.hubs();
-        let [nx, ny, nz] = hubs.size;
-        let own = hubs.on_trace(seed.trace[0] * ny + seed.trace[1]);
-        let near = own
-            .filter(|&v| (hubs.z[v] - seed.z).abs() <= SEED_REACH && kind == Some(hubs.kind[hubs.hub[v] as usize]))
-            .min_by(|&v, &w| (hubs.z[v] - seed.z).abs().total_cmp(&(hubs.z[w] - seed.z).abs()));
-        let value = |x: usize, y: usize, z: f32| {
-            let (trace, low) = (tau.trace(x, y), (z as usize).min(nz.saturating_sub(2)));
-            trace[low] + (z - low as f32) * (trace[(low + 1).min(nz - 1)] - trace[low])
-        };
-        let z = near.map_or(seed.z, |v| hubs.z[v]).clamp(0.0, (nz - 1) as f32);
-        let mut time = value(seed.trace[0], seed.trace[1], z);
-        let hub = near.map(|v| hubs.hub[v]);
-        if let Some(hub) = hub {
+        let [nx, ny, _] = hubs.size;
+        let [x, y] = seed.trace;
+        let mut time = value(tau, x, y, target.z);
+        if let Some(hub) = target.hub {
             let range = |at: usize, count: usize| at.saturating_sub(SEED_AROUND)..(at + SEED_AROUND + 1).min(count);
-            let traces = range(seed.trace[0], nx).flat_map(|x| range(seed.trace[1], ny).map(move |y| (x, y)));
+            let traces = range(x, nx).flat_map(|x| range(y, ny).map(move |y| (x, y)));
             let mut times: Vec<f32> = traces
                 .flat_map(|(x, y)| hubs.on_trace(x * ny + y).map(move |v| (x, y, v)))
                 .filter(|&(_, _, v)| hubs.hub[v] == hub)
-                .map(|(x, y, v)| value(x, y, hubs.z[v]))
+                .map(|(x, y, v)| value(tau, x, y, hubs.z[v]))
                 .filter(|time| time.is_finite())
                 .collect();
             times.sort_by(f32::total_cmp);
             time = times.get(times.len() / 2).copied().unwrap_or(time);
         }
-        time.is_finite().then_some(Placed { seed: Seed { z, ..*seed }, hub, time })
+        let seed = Seed { z: target.z, ..*seed };
+        time.is_finite().then_some(Placed { seed, hub: target.hub, kind: target.kind, time })
     }
 
     /// The event along a level that may vary from trace to trace.
@@ -202,6 +251,13 @@ fn level_at(seeds: &[Placed], trace: [usize; 2], cuts: &[Cut]) -> f32 {
         weights += weight;
     }
     (sum / weights) as f32
+}
+
+/// τ at a fractional sample.
+fn value(tau: &Volume<f32>, x: usize, y: usize, z: f32) -> f32 {
+    let trace = tau.trace(x, y);
+    let low = (z as usize).min(trace.len().saturating_sub(2));
+    trace[low] + (z - low as f32) * (trace[(low + 1).min(trace.len() - 1)] - trace[low])
 }
 
 /// The depths at which a trace of τ rises through `time`.
