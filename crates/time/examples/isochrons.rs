@@ -31,10 +31,10 @@ const NOTES: &str = "
 - On real surveys no fault is found without horizons: on F3 (both crops) and Penobscot patches go on across faults, and no
   surface has more ends than patches that go on. `fault propose` tells more once there is a horizon.
 - Penobscot, Horizon B, no fault drawn, one click at each of fifteen places of it (`pick --by-time` on the survey in
-  docs/real-data.md, compared with the interpretation on its own nodes): within 4 ms of it on 74 % of the nodes on
-  average; a second click in the middle of the largest part that is wrong makes it 78 %. With the four faults of
-  docs/real-data.md drawn, 78 % from places outside the small blocks and 74 to 82 % after the second click: across the
-  faults of a graben forty samples do not tell the throw.
+  docs/real-data.md, compared with the interpretation on its own nodes): within 4 ms of it on 76 % of the nodes on
+  average; a second click in the middle of the largest part that is wrong makes it 79 %. With the four faults of
+  docs/real-data.md drawn, 78 to 82 % from places outside the small blocks and 73 to 83 % after the second click: across
+  the faults of a graben forty samples do not tell the throw.
 - Times were taken while the machine did other work.
 ";
 
