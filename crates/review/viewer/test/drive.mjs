@@ -11,7 +11,9 @@ import { chromium } from "playwright-core";
 import { PNG } from "pngjs";
 import { likeness } from "./likeness.mjs";
 
-const [program, project, out] = process.argv.slice(2).map((path) => resolve(path));
+const [program, given, out] = process.argv.slice(2).map((path) => resolve(path));
+// The given project with a note, in a copy.
+const project = join(out, "noted.petro");
 const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const GL = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 const HOSTILE = `</script><img src=x onerror=window.hit=1>"'&\u2028 🏔️ ${"long ".repeat(50)}`.trim();
@@ -311,6 +313,9 @@ async function model() {
 }
 
 mkdirSync(out, { recursive: true });
+rmSync(project, { recursive: true, force: true });
+cpSync(given, project, { recursive: true });
+petroglyph("note", "add", project, "The reverse fault repeats the limestone here", "--at", "174,640,700");
 const file = join(out, "review.html");
 petroglyph("review", project, file);
 facts.bytes = readFileSync(file).length;
