@@ -8,7 +8,9 @@
 //! first got wrong around it, in another fault block all of the block, and nothing is solved for again. Space: voxels.
 
 use crate::cut::Cut;
+use crate::isochron::crossings;
 use crate::reflections::Reflections;
+use crate::solve::interpolate;
 use interp::Extremum;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -106,7 +108,7 @@ impl Reflections {
     pub fn event(&self, tau: &Volume<f32>, seeds: &[Seed], cuts: &[Cut]) -> Option<Event> {
         let mut placed: Vec<Placed> = Vec::new();
         for seed in seeds {
-            let target = self.target(tau, seed, placed.first().map(|first| first.kind))?;
+            let target = self.target(tau, seed, placed.first().map(|first| first.kind));
             placed.push(self.place(tau, seed, &target)?);
         }
         let first = placed.first()?;
@@ -118,7 +120,7 @@ impl Reflections {
     /// What a seed points at. The reflections within reach on its trace, and the level through the seed itself, are
     /// compared by the share of the traces around it on which a reflection of their kind lies on their level, less their
     /// distance: a patch that noise broke at the seed is found by what lies around. `kind` is that of the first seed.
-    fn target(&self, tau: &Volume<f32>, seed: &Seed, kind: Option<Option<Extremum>>) -> Option<Target> {
+    fn target(&self, tau: &Volume<f32>, seed: &Seed, kind: Option<Option<Extremum>>) -> Target {
         let hubs = self.hubs();
         let [nx, ny, nz] = hubs.size;
         let [x, y] = seed.trace;
@@ -133,11 +135,10 @@ impl Reflections {
         if let Some(kind) = kind {
             targets.retain(|target| target.kind == kind);
         }
-        let range = |at: usize, count: usize| at.saturating_sub(SEED_AROUND)..(at + SEED_AROUND + 1).min(count);
         let score = |target: &Target| {
-            let time = value(tau, x, y, target.z);
+            let time = interpolate(tau.trace(x, y), target.z);
             let (mut on, mut all) = (0.0f32, 0.0f32);
-            for (x, y) in range(x, nx).flat_map(|x| range(y, ny).map(move |y| (x, y))) {
+            for (x, y) in around(seed, [nx, ny]) {
                 for at in crossings(tau.trace(x, y), time) {
                     on += f32::from(self.nearest([x, y], at, target.kind, SNAP_REACH).is_some());
                     all += 1.0;
@@ -148,8 +149,8 @@ impl Reflections {
         };
         let best = targets.iter().map(|target| (score(target), target)).max_by(|a, b| a.0.total_cmp(&b.0));
         match best {
-            Some((score, target)) if score >= LEAST_ALONG => Some(*target),
-            _ => Some(Target { kind: kind.flatten(), ..plain }),
+            Some((score, target)) if score >= LEAST_ALONG => *target,
+            _ => Target { kind: kind.flatten(), ..plain },
         }
     }
 
@@ -158,14 +159,12 @@ impl Reflections {
         let hubs = self.hubs();
         let [nx, ny, _] = hubs.size;
         let [x, y] = seed.trace;
-        let mut time = value(tau, x, y, target.z);
+        let mut time = interpolate(tau.trace(x, y), target.z);
         if let Some(hub) = target.hub {
-            let range = |at: usize, count: usize| at.saturating_sub(SEED_AROUND)..(at + SEED_AROUND + 1).min(count);
-            let traces = range(x, nx).flat_map(|x| range(y, ny).map(move |y| (x, y)));
-            let mut times: Vec<f32> = traces
+            let mut times: Vec<f32> = around(seed, [nx, ny])
                 .flat_map(|(x, y)| hubs.on_trace(x * ny + y).map(move |v| (x, y, v)))
                 .filter(|&(_, _, v)| hubs.hub[v] == hub)
-                .map(|(x, y, v)| value(tau, x, y, hubs.z[v]))
+                .map(|(x, y, v)| interpolate(tau.trace(x, y), hubs.z[v]))
                 .filter(|time| time.is_finite())
                 .collect();
             times.sort_by(f32::total_cmp);
@@ -235,6 +234,15 @@ impl Reflections {
     }
 }
 
+/// The traces around a seed.
+fn around(seed: &Seed, count: [usize; 2]) -> impl Iterator<Item = (usize, usize)> {
+    let [x, y] = [0, 1].map(|axis| {
+        let at = seed.trace[axis];
+        at.saturating_sub(SEED_AROUND)..(at + SEED_AROUND + 1).min(count[axis])
+    });
+    x.flat_map(move |x| y.clone().map(move |y| (x, y)))
+}
+
 /// The level at a trace.
 fn level_at(seeds: &[Placed], trace: [usize; 2], cuts: &[Cut]) -> f32 {
     if let [only] = seeds {
@@ -251,18 +259,4 @@ fn level_at(seeds: &[Placed], trace: [usize; 2], cuts: &[Cut]) -> f32 {
         weights += weight;
     }
     (sum / weights) as f32
-}
-
-/// τ at a fractional sample.
-fn value(tau: &Volume<f32>, x: usize, y: usize, z: f32) -> f32 {
-    let trace = tau.trace(x, y);
-    let low = (z as usize).min(trace.len().saturating_sub(2));
-    trace[low] + (z - low as f32) * (trace[(low + 1).min(trace.len() - 1)] - trace[low])
-}
-
-/// The depths at which a trace of τ rises through `time`.
-pub fn crossings(trace: &[f32], time: f32) -> impl Iterator<Item = f32> + '_ {
-    // NaN compares as false.
-    let crossed = trace.windows(2).enumerate().filter(move |(_, pair)| pair[0] <= time && pair[1] > time);
-    crossed.map(move |(z, pair)| z as f32 + (time - pair[0]) / (pair[1] - pair[0]))
 }

@@ -3,7 +3,6 @@
 //! On a trace τ does not decrease but at faults, where older rock may lie on younger (a reverse fault), so an isochron
 //! crosses a trace at most once between two faults. Space: voxels.
 
-use crate::event::crossings;
 use rayon::prelude::*;
 use survey::Volume;
 
@@ -47,4 +46,11 @@ pub fn isochron(tau: &Volume<f32>, time: f32) -> Isochron {
         .map(|(x, y, z)| Crossing { x: x as u16, y: y as u16, z })
         .collect();
     Isochron { time, crossings }
+}
+
+/// The depths at which a trace of τ rises through `time`.
+pub fn crossings(trace: &[f32], time: f32) -> impl Iterator<Item = f32> + '_ {
+    // NaN compares as false.
+    let crossed = trace.windows(2).enumerate().filter(move |(_, pair)| pair[0] <= time && pair[1] > time);
+    crossed.map(move |(z, pair)| z as f32 + (time - pair[0]) / (pair[1] - pair[0]))
 }
