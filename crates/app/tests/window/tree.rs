@@ -15,14 +15,20 @@ fn type_path(harness: &mut Driven, path: &std::path::Path) {
     harness.run_steps(2);
 }
 
-#[test]
-fn horizons_and_faults_are_written_from_the_window() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut harness = open(folder.path());
+/// A window on the data of a project that has a fault "East", drawn with two sticks.
+fn with_fault(folder: &std::path::Path) -> Driven {
+    let mut harness = open(folder);
     let stick = |crossline: f64| vec![[9.0, crossline, 4.0], [13.0, crossline, 120.0]];
     let fault = PickFault { name: "East".into(), sticks: vec![stick(2.0), stick(18.0)] };
     applied(&mut harness, &Command::PickFault(fault));
     click(&mut harness, "Data");
+    harness
+}
+
+#[test]
+fn horizons_and_faults_are_written_from_the_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = with_fault(folder.path());
     for (name, kind, format) in [("Base", "horizon", "irap"), ("East", "fault", "opendtect")] {
         click_last(&mut harness, name);
         click_last(&mut harness, "Export…");
@@ -46,11 +52,7 @@ fn horizons_and_faults_are_written_from_the_window() {
 #[test]
 fn faults_are_renamed_and_imported_horizons_coloured() {
     let folder = tempfile::tempdir().unwrap();
-    let mut harness = open(folder.path());
-    let stick = |crossline: f64| vec![[9.0, crossline, 4.0], [13.0, crossline, 120.0]];
-    let fault = PickFault { name: "East".into(), sticks: vec![stick(2.0), stick(18.0)] };
-    applied(&mut harness, &Command::PickFault(fault));
-    click(&mut harness, "Data");
+    let mut harness = with_fault(folder.path());
     click_last(&mut harness, "East");
     click_last(&mut harness, "Rename");
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
