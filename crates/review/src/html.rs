@@ -11,10 +11,7 @@ use crate::picture::jpeg;
 use project::error::ProjectError;
 use project::folder::refuse_inside_project;
 use std::fmt::Write as _;
-use std::fs::File;
-use std::io::Write;
 use std::path::Path;
-use store::Replacement;
 use survey::Progress;
 
 /// The viewer, bundled by `viewer/build.sh`.
@@ -80,13 +77,7 @@ pub fn write(model: &Model, path: &Path, limit: u64, progress: &Progress) -> Res
         ));
     }
     progress.step(1)?;
-    let replacement = Replacement::of(path)?;
-    let written = File::create(replacement.path()).and_then(|mut file| {
-        file.write_all(text.as_bytes())?;
-        file.sync_all()
-    });
-    written.map_err(|source| ProjectError::io("written", path, source))?;
-    replacement.commit()?;
+    store::replace_file(path, text.as_bytes())?;
     let first = &model.scenes[0].cut.faces;
     let triangles = first.iter().map(|face| face.mesh.triangles.len()).sum::<usize>();
     let surfaces = model.horizons.iter().chain(&model.faults).map(|surface| surface.mesh.triangles.len());

@@ -5,10 +5,7 @@ use figure::list::DisplayList;
 use project::Project;
 use project::error::ProjectError;
 use project::folder;
-use std::fs::File;
-use std::io::Write;
 use std::path::Path;
-use store::Replacement;
 
 /// The format of a figure's file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,11 +68,5 @@ pub fn write(page: &DisplayList, format: FigureFormat, path: &Path, dpi: f64, ti
 
 fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
     folder::refuse_inside_project(path)?;
-    let replacement = Replacement::of(path)?;
-    let written = File::create(replacement.path()).and_then(|mut file| {
-        file.write_all(bytes)?;
-        file.sync_all()
-    });
-    written.map_err(|source| ProjectError::io("written", path, source))?;
-    Ok(replacement.commit()?)
+    Ok(store::replace_file(path, bytes)?)
 }

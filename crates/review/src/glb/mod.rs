@@ -20,10 +20,7 @@ use project::Project;
 use project::error::ProjectError;
 use project::folder::refuse_inside_project;
 use serde_json::{Value, json};
-use std::fs::File;
-use std::io::Write;
 use std::path::Path;
-use store::Replacement;
 use survey::Progress;
 
 /// Opacity of horizons and faults, which lie within the block.
@@ -94,7 +91,7 @@ pub fn export(
         let model = make(project, &settings, progress)?;
         let (bytes, written) = encoded(&model)?;
         if written.triangles <= triangles {
-            save(path, &bytes)?;
+            store::replace_file(path, &bytes)?;
             return Ok(written);
         }
         least = written.triangles;
@@ -102,16 +99,6 @@ pub fn export(
     }
     let [found, limit] = [least, triangles].map(|count| format!("{count} triangles"));
     Err(ProjectError::OverBudget { what: "the model", found, limit })
-}
-
-fn save(path: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
-    let replacement = Replacement::of(path)?;
-    let written = File::create(replacement.path()).and_then(|mut file| {
-        file.write_all(bytes)?;
-        file.sync_all()
-    });
-    written.map_err(|source| ProjectError::io("written", path, source))?;
-    Ok(replacement.commit()?)
 }
 
 /// From voxels to the metres of the model, without exaggeration.
