@@ -13,14 +13,13 @@ const LEAST_THROW: f64 = 1.0;
 /// Margin of the throw below which a proposal is minor: another throw would fit nearly as well.
 const LEAST_MARGIN: f32 = 0.03;
 
-/// Proposals of found faults, in their order, numbered from `first`.
-pub fn proposals(found: &[FoundFault], geometry: &SurveyGeometry, first: u32) -> Vec<Proposal> {
-    let proposals = found.iter().filter_map(|fault| proposal(fault, geometry));
-    let mut all: Vec<Proposal> = proposals.collect();
+/// Proposals of found faults, largest first and minor ones last.
+pub fn proposals(found: &[FoundFault], geometry: &SurveyGeometry) -> Vec<Proposal> {
+    let mut all: Vec<Proposal> = found.iter().filter_map(|fault| proposal(fault, geometry)).collect();
     all.sort_by(|a, b| a.is_minor.cmp(&b.is_minor).then(b.offset_m2.total_cmp(&a.offset_m2)));
     for (n, proposal) in all.iter_mut().enumerate() {
-        proposal.id = first + n as u32;
-        proposal.name = format!("F{}", proposal.id);
+        proposal.id = n as u32 + 1;
+        proposal.name = format!("Fault {}", proposal.id);
     }
     all
 }
@@ -80,7 +79,9 @@ fn proposal(fault: &FoundFault, geometry: &SurveyGeometry) -> Option<Proposal> {
         .filter_map(|(line, z)| node(cut, line, z))
         .collect();
     let [low, high] = places.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], p| [a.min(p.z), b.max(p.z)]);
-    let middle = (0.5 * (low + high)).round();
+    // The depth closest to the middle at which it is somewhere.
+    let off_middle = |p: &DVec3| (p.z - 0.5 * (low + high)).abs();
+    let middle = places.iter().min_by(|p, q| off_middle(p).total_cmp(&off_middle(q)))?.z;
     let along = |p: &DVec3| if cut.across == Across::Inlines { p.y } else { p.x };
     let at_middle: Vec<DVec3> = places.iter().copied().filter(|p| p.z == middle).collect();
     let first = *at_middle.iter().min_by(|p, q| along(p).total_cmp(&along(q)))?;
@@ -93,8 +94,8 @@ fn proposal(fault: &FoundFault, geometry: &SurveyGeometry) -> Option<Proposal> {
     let towards_upper = downwards(cut);
     let (mut throws, sum) = throws(fault);
     throws.sort_by(f64::total_cmp);
-    let at = |share: f64| throws.get((throws.len().max(1) - 1) * (share * 100.0) as usize / 100).copied();
-    let [median, most] = [at(0.5).unwrap_or(0.0), at(0.95).unwrap_or(0.0)];
+    let percentile = |of: usize| throws.get(throws.len() * of / 100).copied().unwrap_or(0.0);
+    let [median, most] = [percentile(50), percentile(95)];
     let length_m = (metric * (last - first)).truncate().length();
     let margin = fault.throw.as_ref().map_or(0.0, |throw| throw.margin);
     Some(Proposal {

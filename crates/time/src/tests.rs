@@ -153,8 +153,8 @@ fn a_fault_is_found_where_patches_end_and_none_where_they_go_on() {
     assert!((throw.at(20, 48.0) - 5.0).abs() < 0.6, "{}", throw.at(20, 48.0));
     // The proposal: bins of 25 m, samples of 10 m. The fault goes 0.3 bins a sample and 0.2 bins a line.
     let geometry = SurveyGeometry::regular([48, 40, 96], 25.0, 10.0, VerticalUnit::Metres);
-    let proposal = &proposals(&faults, &geometry, 3)[0];
-    assert_eq!((proposal.id, proposal.is_minor, proposal.reverse), (3, false, false));
+    let proposal = &proposals(&faults, &geometry)[0];
+    assert_eq!((proposal.id, proposal.is_minor, proposal.reverse), (1, false, false));
     assert!((proposal.throw[0] - 50.0).abs() < 6.0, "{:?}", proposal.throw);
     let dip = (1.04f64.sqrt() / (0.3 * 25.0 / 10.0)).atan().to_degrees();
     assert!((proposal.dip_deg - dip).abs() < 3.0, "{} for {dip}", proposal.dip_deg);

@@ -133,7 +133,7 @@ mod tests {
         let surfaces = interp::grow_surfaces(&volume, &interp::GrowSettings::default(), &quiet).unwrap();
         let found = time::find_faults(&volume, &surfaces, 30, &quiet).unwrap();
         let geometry = SurveyGeometry::regular([48, 40, 96], 25.0, 10.0, VerticalUnit::Metres);
-        let proposals = time::proposals(&found, &geometry, 1);
+        let proposals = time::proposals(&found, &geometry);
         assert_eq!(proposals.len(), 1, "a fault of five samples' throw is found");
         fingerprint(proposals.iter().flat_map(|p| [p.strike_deg, p.dip_deg, p.throw[0], p.ends[0][0]]))
     }

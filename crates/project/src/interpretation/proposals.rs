@@ -19,7 +19,7 @@ use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
-use survey::{Progress, file};
+use survey::{Progress, SurveyGeometry, file};
 
 /// The proposals, and the state that they were made for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -36,6 +36,10 @@ pub struct Proposals {
 }
 
 impl Proposals {
+    fn new(document: &Document, geometry: &SurveyGeometry, proposals: Vec<Proposal>, repeats: Vec<Repeat>) -> Self {
+        Self { horizons: hashes(document), proposals, repeats, unit: geometry.vertical.unit.symbol().to_owned() }
+    }
+
     /// The message if there are none.
     pub fn nothing_new(&self) -> Option<&'static str> {
         match (self.proposals.is_empty(), self.repeats.is_empty()) {
@@ -130,11 +134,11 @@ fn hashes(document: &Document) -> Vec<String> {
     document.horizons.iter().map(|entry| entry.hash.clone()).collect()
 }
 
-/// Proposes faults from the project's horizons, unless that was done, and stores the proposals under their key;
+/// Proposes faults from the project's horizons, or from its candidates while it has none, unless that was done, and stores the proposals under their key;
 /// [`crate::command::ProposeFaults`] makes the state that names them. Needs no lock.
 ///
 /// # Errors
-/// There are no horizons, data cannot be read, or the user cancelled.
+/// There are neither horizons nor candidates, data cannot be read, or the user cancelled.
 pub(crate) fn compute(
     root: &Path,
     document: &Document,
@@ -172,12 +176,7 @@ pub(crate) fn compute(
         None => None,
     };
     let found = propose_faults(&horizons, geometry, &blocks, likeness.as_ref(), settings, progress)?;
-    let proposals = Proposals {
-        horizons: hashes(document),
-        proposals: found.proposals,
-        repeats: found.repeats,
-        unit: geometry.vertical.unit.symbol().to_owned(),
-    };
+    let proposals = Proposals::new(document, geometry, found.proposals, found.repeats);
     write(root, &key, &proposals)?;
     Ok((key, proposals))
 }
@@ -202,12 +201,7 @@ fn from_candidates(
     let found = find_faults(&seismic, &candidates.forest.surfaces, fewest, progress)?;
     let drawn = Cut::of_network(&blocks, seismic.size());
     let new: Vec<FoundFault> = found.into_iter().filter(|fault| !drawn.iter().any(|cut| fault.is_on(cut))).collect();
-    let proposals = Proposals {
-        horizons: hashes(document),
-        proposals: ::time::proposals(&new, geometry, 1),
-        repeats: Vec::new(),
-        unit: geometry.vertical.unit.symbol().to_owned(),
-    };
+    let proposals = Proposals::new(document, geometry, ::time::proposals(&new, geometry), Vec::new());
     write(root, &key, &proposals)?;
     Ok((key, proposals))
 }
