@@ -145,7 +145,7 @@ mod tests {
             ("PARAMETERIZATION", PARAMETERIZATION, of_parameterization(), (3, "b365248c779a")),
             ("EXTRACTION", EXTRACTION, of_extraction(), (1, "7a7715634834")),
             ("PROPOSALS", PROPOSALS, of_proposals(), (1, "1fc6c26217e7")),
-            ("FOUND_FAULTS", FOUND_FAULTS, of_found_faults(), (1, "638965a838a1")),
+            ("FOUND_FAULTS", FOUND_FAULTS, of_found_faults(), (1, "e89afb8fab47")),
         ];
         let changed: Vec<String> = known
             .into_iter()
