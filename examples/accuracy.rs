@@ -211,10 +211,10 @@ fn boundaries(cases: &[Case]) -> Result<()> {
             let truth = |p: DVec3| case.truth.label(p);
             let ours = |p: DVec3| case.truth.label_of(case.model.region_at(p.as_vec3()));
             let paper = |p: DVec3| case.truth.label_of(case.paper(p.as_vec3()).region);
-            spreads[0].extend(render::accuracy::boundaries(&plane, ZOOM, ours, truth));
-            spreads[1].extend(render::accuracy::boundaries(&plane, ZOOM, paper, truth));
+            spreads[0].extend(model::accuracy::boundaries(&plane, ZOOM, ours, truth));
+            spreads[1].extend(model::accuracy::boundaries(&plane, ZOOM, paper, truth));
         }
-        let worst = |set: &[render::accuracy::BoundaryAccuracy], of: fn(&render::accuracy::BoundaryAccuracy) -> f64| {
+        let worst = |set: &[model::accuracy::BoundaryAccuracy], of: fn(&render::accuracy::BoundaryAccuracy) -> f64| {
             set.iter().map(of).fold(0.0, f64::max)
         };
         let [ours, paper] = &spreads;

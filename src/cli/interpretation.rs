@@ -109,13 +109,7 @@ fn formats() -> String {
 }
 
 fn contact(option: &str, text: &str) -> Result<Contact, Usage> {
-    let contacts = [
-        ("conformable", Contact::Conformable),
-        ("erosional", Contact::Erosional),
-        ("onlap", Contact::Onlap),
-        ("intrusive", Contact::Intrusive),
-    ];
-    word(option, text, &contacts)
+    word(option, text, &Contact::ALL.map(|contact| (contact.word(), contact)))
 }
 
 fn add_horizon(typed: HorizonAddArgs) -> Result<Request, Usage> {

@@ -8,7 +8,8 @@
 //!   conformable horizons this happens only within the crossing tolerance, or where sheets are extrapolated.
 //!   Against an older erosional or onlap surface it is how the younger layers lap on;
 //! - intrusive h: everything below it belongs to its layer, and every other horizon ends where it meets it.
-//!   List an intrusion below all the horizons it cuts, so that the layer it closes is its own.
+//!   List an intrusion below all the horizons it cuts, so that the layer it closes is its own;
+//! - truncated h: an intrusion that ends where it rises above an erosional surface younger than itself.
 //!
 //! Because the bits suffice, a section is cut by the smooth, unclipped sheets, and junctions are exact
 //! intersections of two of them.
@@ -62,16 +63,21 @@ impl ContactRules {
     pub fn layer(&self, below: u64) -> u16 {
         let n = self.contacts.len();
         let is_below = |h: usize| below >> h & 1 == 1;
-        // The place belongs to the youngest intrusion that contains it.
-        let intrusion = (0..n).find(|&h| self.contacts[h] == Contact::Intrusive && is_below(h));
-        if let Some(h) = intrusion {
-            return (n - 1 - h) as u16;
+        // The place belongs to the youngest intrusion that contains it, if no erosion has removed that there.
+        let mut is_eroded = false;
+        for h in 0..n {
+            match self.contacts[h] {
+                Contact::Erosional => is_eroded |= !is_below(h),
+                Contact::Intrusive if is_below(h) => return (n - 1 - h) as u16,
+                Contact::Truncated if is_below(h) && !is_eroded => return (n - 1 - h) as u16,
+                _ => {}
+            }
         }
         // In the order of deposition: the oldest horizon that the place is still below.
         let mut deepest = None;
         for h in (0..n).rev() {
             match self.contacts[h] {
-                Contact::Intrusive => {}
+                Contact::Intrusive | Contact::Truncated => {}
                 Contact::Erosional if !is_below(h) => deepest = None,
                 _ if is_below(h) => deepest = deepest.or(Some(h)),
                 _ => {}
@@ -84,13 +90,21 @@ impl ContactRules {
     /// on the one it ended at.
     pub fn clip(&self, z: &mut [f32]) {
         let n = self.contacts.len();
+        let mut eroded = f32::NEG_INFINITY;
+        for h in 0..n {
+            match self.contacts[h] {
+                Contact::Erosional => eroded = eroded.max(z[h]),
+                Contact::Truncated => z[h] = z[h].max(eroded),
+                _ => {}
+            }
+        }
         let mut older: Option<usize> = None;
         for h in (0..n).rev() {
             match self.contacts[h] {
-                Contact::Intrusive => continue,
+                Contact::Intrusive | Contact::Truncated => continue,
                 Contact::Erosional => {
                     for g in h + 1..n {
-                        if self.contacts[g] != Contact::Intrusive {
+                        if !self.contacts[g].is_intrusive() {
                             z[g] = z[g].max(z[h]);
                         }
                     }
@@ -104,10 +118,10 @@ impl ContactRules {
             older = Some(h);
         }
         for i in 0..n {
-            if self.contacts[i] == Contact::Intrusive {
+            if self.contacts[i].is_intrusive() {
                 for h in 0..n {
                     // Between two intrusions the younger one wins.
-                    if h != i && (self.contacts[h] != Contact::Intrusive || h > i) {
+                    if h != i && (!self.contacts[h].is_intrusive() || h > i) {
                         z[h] = z[h].min(z[i]);
                     }
                 }
@@ -119,7 +133,7 @@ impl ContactRules {
     /// the other.
     pub fn may_cross(&self, h: usize, g: usize) -> bool {
         self.contacts[h] == Contact::Erosional
-            || self.contacts[h] == Contact::Intrusive
+            || self.contacts[h].is_intrusive()
             || self.contacts[h + 1..=g].iter().any(|&c| c != Contact::Conformable)
     }
 }
@@ -176,6 +190,17 @@ mod tests {
     }
 
     #[test]
+    fn erosion_cuts_an_intrusion_that_is_older() {
+        let r = rules(&[Contact::Conformable, Contact::Erosional, Contact::Conformable, Contact::Truncated]);
+        // The intrusion rises to 10 through the erosion surface at 30, over which the youngest bed lies at 20.
+        let sheets = [20.0, 30.0, 60.0, 10.0];
+        assert_eq!([5.0, 15.0, 25.0, 35.0].map(|z| r.layer(bits(z, &sheets))), [4, 4, 3, 0]);
+        let mut z = sheets;
+        r.clip(&mut z);
+        assert_eq!(z, [20.0, 30.0, 30.0, 30.0]);
+    }
+
+    #[test]
     fn layers_and_clipped_sheets_tell_the_same_story() {
         let all = [Contact::Conformable, Contact::Erosional, Contact::Onlap];
         let mut state = 1u32;
@@ -185,7 +210,11 @@ mod tests {
         };
         for _ in 0..4000 {
             let contacts: Vec<Contact> = (0..5)
-                .map(|h| if h == 4 && next() < 0.3 { Contact::Intrusive } else { all[(next() * 3.0) as usize % 3] })
+                .map(|h| match next() {
+                    share if h == 4 && share < 0.2 => Contact::Intrusive,
+                    share if h == 4 && share < 0.4 => Contact::Truncated,
+                    share => all[(share * 1009.0) as usize % 3],
+                })
                 .collect();
             let r = rules(&contacts);
             let sheets: Vec<f32> = (0..5).map(|h| 20.0 * h as f32 + 60.0 * next()).collect();

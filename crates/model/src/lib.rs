@@ -47,6 +47,7 @@
 //! # Spaces
 //! Positions are voxel coordinates (x, y, z) with z down. Distances to faults are metric (m).
 
+pub mod accuracy;
 #[cfg(test)]
 pub(crate) mod closed_form;
 mod contacts;

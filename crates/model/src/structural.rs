@@ -192,7 +192,7 @@ impl StructuralModel {
 
     /// Whether `horizon` is the outline of a body that cuts through all others.
     pub fn is_body(&self, horizon: usize) -> bool {
-        self.rules.contacts()[horizon] == Contact::Intrusive && self.levels[horizon].iter().any(Option::is_some)
+        self.rules.contacts()[horizon].is_intrusive() && self.levels[horizon].iter().any(Option::is_some)
     }
 
     /// Offset of voxel position `p` from the unclipped surface of `horizon` in `block`, positive below it, on its older
@@ -258,6 +258,14 @@ impl StructuralModel {
         Region { layer: self.layer_at(p, block), block }
     }
 
+    /// The horizon that bounds the body in which a voxel position of `block` lies.
+    pub fn body_at(&self, p: Vec3, block: u16) -> Option<usize> {
+        if !self.has_levels() {
+            return None;
+        }
+        self.stratigraphy.top_of(usize::from(self.layer_at(p, block))).filter(|top| self.is_body(*top))
+    }
+
     /// [`StructuralModel::region_at`] at every depth (voxel z) of the trace at (x, y), in order: `found(n,
     /// region)` for `depths[n]`. The sheets are evaluated once per block instead of once per depth.
     pub fn regions_down(&self, x: f32, y: f32, depths: &[f32], mut found: impl FnMut(usize, Region)) {
@@ -282,8 +290,10 @@ impl StructuralModel {
     /// nothing here.
     pub fn horizon_z(&self, horizon: usize, block: u16, x: f32, y: f32) -> f32 {
         let z_of = |h: usize| self.sheet(h, block).z_at(x, y);
+        let contacts = self.rules.contacts();
         if self.is_body(horizon) {
-            return z_of(horizon);
+            let is_eroded = |h: &usize| contacts[horizon] == Contact::Truncated && contacts[*h] == Contact::Erosional;
+            return (0..horizon).filter(is_eroded).map(z_of).fold(z_of(horizon), f32::max);
         }
         let mut z: Vec<f32> =
             (0..self.sheets.len()).map(|h| if self.is_body(h) { f32::MAX } else { z_of(h) }).collect();

@@ -2,7 +2,7 @@
 
 use crate::ParamError;
 use serde::{Deserialize, Serialize};
-use survey::{Contact, Stratigraphy};
+use survey::Stratigraphy;
 
 /// What k means inside a layer. With every definition k is 0 at the bottom sheet and increases upwards.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -40,7 +40,7 @@ impl KDefinition {
     /// ([`KDefinition::ParallelToTop`]). Every other layer has the default.
     pub fn for_contacts(stratigraphy: &Stratigraphy) -> Vec<Self> {
         let layer = |layer: usize| match stratigraphy.top_of(layer) {
-            Some(top) if stratigraphy.horizons[top].contact == Contact::Intrusive => Self::ParallelToTop,
+            Some(top) if stratigraphy.horizons[top].contact.is_intrusive() => Self::ParallelToTop,
             _ => Self::default(),
         };
         (0..stratigraphy.layer_count()).map(layer).collect()

@@ -2,11 +2,11 @@
 //! shown in volumes and on faces, too (P-horiz 5.2).
 //!
 //! The distance of a voxel to a sheet z = h(x, y) is |z − h|/√(1 + |∇h|²), exact for a plane, up to the largest
-//! distance that the codes can hold. Where there are candidates already, a horizon replaces them within two voxels and
+//! distance that the codes can hold; that to a surface of any shape is told by its field alike. Where there are candidates already, a horizon replaces them within two voxels and
 //! wherever it is nearer. Voxel space.
 
 use glam::Vec3;
-use model::StructuralModel;
+use model::{LevelSurface, StructuralModel};
 use rayon::prelude::*;
 use survey::candidates::{BEYOND, CandidateBox};
 use survey::{Cancelled, Progress};
@@ -17,6 +17,9 @@ pub const FARTHEST: f32 = 10.0;
 const STEPS: f32 = (BEYOND - 1) as f32;
 /// Distance within which a horizon takes precedence over candidates, since it may run along one of them.
 const OWN: f32 = 2.0;
+
+/// How far on both sides of a surface of any shape the layers are compared, voxels.
+const BESIDE: f32 = 0.5;
 
 /// A lattice whose voxels are all far from everything.
 pub fn nothing_near(size: [usize; 3]) -> CandidateBox {
@@ -65,10 +68,26 @@ impl Adding<'_> {
         let own = (OWN * STEPS / self.farthest).round() as u8;
         for block in 0..self.model.block_count() as u16 {
             for &h in self.which {
+                if let Some(level) = self.model.level(h, block) {
+                    for n in 0..distance.len() {
+                        let p = Vec3::new(fx, fy, n as f32);
+                        let Some(off) = self.off(level, p, block) else { continue };
+                        let code = (off * (STEPS / self.farthest)).round() as u8;
+                        let wins = code < distance[n] || leaf[n] < self.first_id && code <= own;
+                        if wins && self.model.block_at(p) == block {
+                            distance[n] = code;
+                            leaf[n] = self.first_id + h as u32;
+                        }
+                    }
+                    continue;
+                }
                 let slope = self.model.sheet(h, block).sample(fx, fy).gradient.length();
                 let z = self.model.horizon_z(h, block, fx, fy);
                 let share = 1.0 / (1.0 + slope * slope).sqrt();
                 let reach = self.farthest / share;
+                if self.model.body_at(Vec3::new(fx, fy, z), block).is_some() {
+                    continue;
+                }
                 let first = (z - reach).ceil().max(0.0) as usize;
                 let last = (z + reach).floor().min(distance.len() as f32 - 1.0);
                 if last < 0.0 {
@@ -85,14 +104,33 @@ impl Adding<'_> {
             }
         }
     }
+
+    /// The distance of a place from a surface of any shape where that bounds a layer, voxels; `None` beyond the farthest.
+    fn off(&self, level: &LevelSurface, p: Vec3, block: u16) -> Option<f32> {
+        let (offset, slope) = level.sample_m(p);
+        let steepness = slope.length();
+        let off = offset.abs() / steepness;
+        // Also where the field is flat, far from its surface.
+        if !(off <= self.farthest) {
+            return None;
+        }
+        let across = slope / steepness;
+        let foot = p - across * (offset / steepness);
+        let beside = |by: f32| self.model.layer_at(foot + across * by, block);
+        (beside(-BESIDE) != beside(BESIDE)).then_some(off)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec2;
     use model::ModelSettings;
+    use survey::horizon::Horizon;
+    use survey::stratigraphy::{Contact, StratigraphicHorizon};
     use survey::{SurveyGeometry, VerticalUnit};
     use synth::closed_form::ClosedForm;
+    use synth::shapes::Diapir;
 
     #[test]
     fn distances_to_a_dipping_plane_are_across_it() {
@@ -119,6 +157,40 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Above and below a ball the distance is that to its surface, also on the side where it overhangs.
+    #[test]
+    fn distances_to_a_body_are_those_to_its_surface_all_around() {
+        let geometry = SurveyGeometry::regular([30, 30, 30], 10.0, 10.0, VerticalUnit::Metres);
+        let mut closed = ClosedForm::flat(&geometry, &[26.0]);
+        let body = Diapir {
+            axis: DVec2::splat(150.0),
+            bulb_z: 140.0,
+            bulb_radius: 70.0,
+            bulb_height: 70.0,
+            stem_radius: 0.0,
+            base_z: 400.0,
+        };
+        closed.horizons.push(Horizon::of_surface("salt", body.mesh(&geometry, 60)));
+        closed.stratigraphy.horizons.push(StratigraphicHorizon { name: "salt".into(), contact: Contact::Intrusive });
+        let quiet = Progress::silent();
+        let (stratigraphy, settings) = (&closed.stratigraphy, ModelSettings::default());
+        let model = StructuralModel::build(&geometry, stratigraphy, &closed.horizons, &[], &settings, &quiet).unwrap();
+        let mut made = nothing_near([30; 3]);
+        add_horizons(&model, &[1], 1, FARTHEST, &mut made, &quiet).unwrap();
+        let mut near = 0;
+        for n in 0..30 * 30 * 26 {
+            let p = [n / (30 * 26), n / 26 % 30, n % 26].map(|v| v as f32);
+            let truth = ((Vec3::from_array(p) - Vec3::new(15.0, 15.0, 14.0)).length() - 7.0).abs();
+            let at = (p[0] as usize * 30 + p[1] as usize) * 30 + p[2] as usize;
+            if truth < 3.0 {
+                let found = f32::from(made.distance[at]) * FARTHEST / STEPS;
+                assert!((found - truth).abs() < 0.4 && made.leaf[at] == 2, "{p:?}: {found} {truth}");
+                near += 1;
+            }
+        }
+        assert!(near > 2000, "{near}");
     }
 
     #[test]

@@ -33,7 +33,7 @@ pub const MAX_STEPS: u32 = 4096;
 pub const CELL: f32 = 4.0;
 /// How far a ray that skips a cell enters the next one, voxels.
 pub const INTO_CELL: f32 = 0.01;
-/// Depth below the ground at which its layer is looked up, voxels: more than rounding.
+/// Depth below the ground, or inside a surface of any shape, at which its layer is looked up, voxels: more than rounding.
 pub const INTO_ROCK: f32 = 0.05;
 /// Largest slope that step lengths take into account; steeper ground is treated as if it had this slope.
 const STEEPEST: f32 = 3.0;
@@ -85,9 +85,19 @@ struct Probe {
     /// of any shape, the distance.
     gap: f32,
     horizon: usize,
+    /// Bit h is set at or below horizon h.
+    below: u64,
     /// Distance from the nearest fault, m, and that fault.
     fault_m: f32,
     fault: usize,
+}
+
+impl Probe {
+    /// Whether between here and there lies only the horizon that is the nearest of both.
+    fn crosses_only_the_nearest(&self, there: &Self) -> bool {
+        let nearest = self.horizon == there.horizon && self.below ^ there.below == 1 << there.horizon;
+        self.block == there.block && nearest
+    }
 }
 
 /// A point of the ground.
@@ -218,7 +228,7 @@ impl Relief {
     ) -> GroundHit {
         let mut air_block = air.map_or_else(|| self.probe(model, ray.at(air_t)).block, |air| air.block);
         match air {
-            Some(air) if air.block == inside.block && air.horizon == inside.horizon => {
+            Some(air) if air.crosses_only_the_nearest(&inside) => {
                 t = air_t + (t - air_t) * air.gap / (air.gap + inside.gap).max(1e-12);
             }
             _ => {
@@ -234,9 +244,15 @@ impl Relief {
             }
         }
         let point = ray.at(t);
+        // Below the underside of a body there is air.
+        let mut inwards = Vec3::Z;
         let normal = if air_block == inside.block {
             match model.level(inside.horizon, inside.block) {
-                Some(level) => -level.sample_m(point).1,
+                Some(level) => {
+                    let slope = level.sample_m(point).1;
+                    inwards = slope.normalize_or(Vec3::Z);
+                    -slope
+                }
                 None => {
                     let slope = model.sheet(inside.horizon, inside.block).sample(point.x, point.y).gradient;
                     slope.extend(-1.0)
@@ -246,9 +262,11 @@ impl Relief {
             let normal = model.faults().surfaces()[inside.fault].frame_from_voxel.row(2).as_vec3();
             if normal.dot(ray.direction) > 0.0 { -normal } else { normal }
         };
-        let below = point + Vec3::Z * INTO_ROCK;
-        let region = Region { layer: model.layer_at(below, inside.block), block: inside.block };
-        GroundHit { t, point, region, normal }
+        let mut layer = model.layer_at(point + inwards * INTO_ROCK, inside.block);
+        if layer == air_layer(model) {
+            layer = model.layer_at(ray.at(t + 2.0 * INTO_ROCK), inside.block);
+        }
+        GroundHit { t, point, region: Region { layer, block: inside.block }, normal }
     }
 
     /// What the march needs to know about a point.
@@ -267,7 +285,7 @@ impl Relief {
             }
         }
         let is_rock = model.rules().layer(below) != air_layer(model);
-        Probe { is_rock, block, gap, horizon, fault_m, fault }
+        Probe { is_rock, block, gap, horizon, below, fault_m, fault }
     }
 
     /// The hill-shading factor of a slope; 1 if it is flat.
@@ -399,10 +417,13 @@ mod tests {
     use super::*;
     use crate::VoxelBox;
     use model::ModelSettings;
-    use survey::Progress;
+    use survey::horizon::Horizon;
+    use survey::stratigraphy::{Contact, StratigraphicHorizon};
+    use survey::{Progress, VerticalUnit};
+    use synth::closed_form::ClosedForm;
+    use synth::shapes::Diapir;
     use synth::{SynthSettings, Synthetic};
 
-    /// Compares the march with short steps along rays that evaluate the model itself.
     #[test]
     fn it_agrees_with_walking() {
         let quiet = Progress::silent();
@@ -411,27 +432,50 @@ mod tests {
         let settings = ModelSettings::default();
         let model =
             StructuralModel::build(&s.geometry, &s.stratigraphy, &s.horizons, &s.faults, &settings, &quiet).unwrap();
-        let relief = Relief::new(&Ground::default(), &Scene::default(), &s.geometry, &model);
-        let whole = VoxelBox::of_size(s.geometry.size());
+        agrees_with_walking(&s.geometry, &model);
+    }
+
+    /// A salt dome that stands out of flat ground and overhangs it.
+    #[test]
+    fn it_agrees_with_walking_around_an_overhang() {
+        let geometry = SurveyGeometry::regular([41, 33, 41], 25.0, 20.0, VerticalUnit::Metres);
+        let mut flat = ClosedForm::flat(&geometry, &[22.0, 30.0]);
+        flat.horizons.push(Horizon::of_surface("salt", Diapir::fitting(&geometry).mesh(&geometry, 48)));
+        flat.stratigraphy.horizons.push(StratigraphicHorizon { name: "salt".into(), contact: Contact::Intrusive });
+        let (settings, quiet) = (ModelSettings::default(), Progress::silent());
+        let model = StructuralModel::build(&geometry, &flat.stratigraphy, &flat.horizons, &[], &settings, &quiet);
+        agrees_with_walking(&geometry, &model.unwrap());
+    }
+
+    /// Compares the march with short steps along rays that evaluate the model itself, and layers with the rock that is met.
+    fn agrees_with_walking(geometry: &SurveyGeometry, model: &StructuralModel) {
+        let relief = Relief::new(&Ground::default(), &Scene::default(), geometry, model);
+        let whole = VoxelBox::of_size(geometry.size());
+        let mut other = 0;
         let (mut hits, mut far) = (0, 0);
-        for n in 0..400 {
+        for n in 0..1600 {
             let turn = n as f32 * 0.7;
             let direction = Vec3::new(turn.cos(), turn.sin(), 0.15 + 0.9 * (n % 7) as f32 / 7.0).normalize();
             let through = whole.low().as_vec3().lerp(whole.high().as_vec3(), (n % 23) as f32 / 23.0);
             let from = Vec3::new(through.x, through.y, 0.0);
             let ray = Ray { origin: from, direction };
-            if is_air(&model, from) {
+            if is_air(model, from) {
                 let inside =
                     |t: f32| whole.high().as_vec3().cmpge(ray.at(t)).all() && ray.at(t).cmpge(Vec3::ZERO).all();
                 let end = (0..).map(|s| s as f32 * 0.01).find(|t| !inside(*t)).unwrap();
-                let walked = (0..(end * 50.0) as usize).map(|s| s as f32 * 0.02).find(|t| !is_air(&model, ray.at(*t)));
-                let found = relief.march(&model, &ray, 0.0, end).map(|hit| hit.t);
+                let walked = (0..(end * 50.0) as usize).map(|s| s as f32 * 0.02).find(|t| !is_air(model, ray.at(*t)));
+                let hit = relief.march(model, &ray, 0.0, end);
+                let found = hit.map(|hit| hit.t);
                 hits += usize::from(walked.is_some());
                 // A ray may miss rock that is thinner than the shortest step.
                 far += usize::from((walked.unwrap_or(end) - found.unwrap_or(end)).abs() > 0.1);
+                if let (Some(hit), Some(t)) = (hit, walked) {
+                    other += usize::from(model.region_at(ray.at(t + 0.04)).layer != hit.region.layer);
+                }
             }
         }
         assert!(hits > 100, "{hits}");
         assert!(far * 100 <= hits, "{far} of {hits}");
+        assert!(other * 100 <= 2 * hits, "{other} of {hits} have another layer");
     }
 }

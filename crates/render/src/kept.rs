@@ -61,7 +61,7 @@ struct Parts {
     traces: Mutex<HashMap<GroundKey, Arc<Vec<[DVec3; 2]>>>>,
 }
 
-/// Whose ground: the bits of the box's corners, the block, the fault that cuts it.
+/// Whose ground: the bits of the box's corners, the block, the fault that cuts it or, after the faults, the horizon.
 pub(crate) type GroundKey = ([u64; 6], u16, usize);
 
 impl Shapes {
@@ -84,7 +84,7 @@ impl Shapes {
         kept(&self.0.heights, key, make)
     }
 
-    /// Traces of a fault on the ground.
+    /// Traces of a fault or a horizon on the ground.
     pub fn traces(&self, key: GroundKey, make: impl FnOnce() -> Vec<[DVec3; 2]>) -> Arc<Vec<[DVec3; 2]>> {
         kept(&self.0.traces, key, make)
     }

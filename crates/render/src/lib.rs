@@ -20,7 +20,6 @@
 //! - P-horiz: Patel, Bruckner, Viola and Gröller, "Seismic Volume Visualization for Horizon Extraction" (IEEE
 //!   Pacific Visualization 2010).
 
-pub mod accuracy;
 pub mod camera;
 pub mod cover;
 pub mod distortion;

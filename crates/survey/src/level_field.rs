@@ -79,6 +79,23 @@ impl LevelField {
         mix(low, high, f.x)
     }
 
+    /// Bounds of the values in a box of voxel positions, smallest first: those of the nodes of all cells that it meets.
+    pub fn range(&self, low: Vec3, high: Vec3) -> [f32; 2] {
+        let last = Vec3::from_array(self.size.map(|n| (n - 1) as f32));
+        let first = ((low - self.origin) / self.step).floor().clamp(Vec3::ZERO, last);
+        let end = ((high - self.origin) / self.step).ceil().clamp(Vec3::ZERO, last);
+        let mut range = [f32::INFINITY, f32::NEG_INFINITY];
+        for x in first.x as usize..=end.x as usize {
+            for y in first.y as usize..=end.y as usize {
+                let row = (x * self.size[1] + y) * self.size[2];
+                for value in &self.values[row + first.z as usize..=row + end.z as usize] {
+                    range = [range[0].min(*value), range[1].max(*value)];
+                }
+            }
+        }
+        range
+    }
+
     /// The value at a voxel position and its derivatives per voxel.
     #[inline]
     pub fn sample(&self, p: Vec3) -> (f32, Vec3) {
@@ -109,5 +126,20 @@ mod tests {
         // Outside, the nearest place of the box.
         assert_eq!(field.value(Vec3::new(-9.0, 4.0, 5.0)), field.value(Vec3::new(-2.0, 4.0, 5.0)));
         assert_eq!(field.place(8), Vec3::new(-2.0, 4.0, 3.5));
+    }
+
+    #[test]
+    fn values_in_a_box_lie_in_its_range() {
+        let wave = |p: Vec3| (0.9 * p.x).sin() + (0.7 * p.y).cos() * p.z;
+        let field = LevelField::from_fn(Vec3::splat(-1.0), Vec3::new(0.5, 1.0, 2.0), [13, 9, 5], wave);
+        let boxes = [[Vec3::new(0.2, 0.4, 0.1), Vec3::new(1.7, 3.2, 4.4)], [Vec3::splat(-5.0), Vec3::splat(-0.9)]];
+        for [low, high] in boxes {
+            let [smallest, largest] = field.range(low, high);
+            for n in 0..1000 {
+                let part = Vec3::new((n % 10) as f32, (n / 10 % 10) as f32, (n / 100) as f32) / 9.0;
+                let value = field.value(low + (high - low) * part);
+                assert!(value >= smallest - 1e-5 && value <= largest + 1e-5, "{value} {smallest} {largest}");
+            }
+        }
     }
 }

@@ -20,6 +20,30 @@ pub enum Contact {
     /// The boundary of an intrusion (salt, igneous rock): the rock below it replaces everything, so it cuts
     /// off younger and older horizons.
     Intrusive,
+    /// The boundary of an intrusion that is older than the erosion surfaces listed above it: they cut it off, as the
+    /// land was worn down over it. It cuts off every other horizon.
+    Truncated,
+}
+
+impl Contact {
+    /// All contacts, in the order in which a user chooses among them.
+    pub const ALL: [Self; 5] = [Self::Conformable, Self::Erosional, Self::Onlap, Self::Intrusive, Self::Truncated];
+
+    /// What a user calls it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Conformable => "conformable",
+            Self::Erosional => "erosional",
+            Self::Onlap => "onlap",
+            Self::Intrusive => "intrusive",
+            Self::Truncated => "truncated-intrusion",
+        }
+    }
+
+    /// Whether it bounds an intrusion, whose layer replaces others.
+    pub fn is_intrusive(self) -> bool {
+        matches!(self, Self::Intrusive | Self::Truncated)
+    }
 }
 
 /// A horizon in the stratigraphy.
@@ -76,7 +100,7 @@ impl Stratigraphy {
             return name.clone();
         }
         let name = |h: usize| self.horizons[h].name.as_str();
-        let is_intrusive = |h: usize| self.horizons[h].contact == Contact::Intrusive;
+        let is_intrusive = |h: usize| self.horizons[h].contact.is_intrusive();
         // An intrusion cuts its layer out of others, and is the bottom of none.
         let bottom = self.bottom_of(layer).and_then(|first| (first..self.horizons.len()).find(|&h| !is_intrusive(h)));
         match (self.top_of(layer), bottom) {

@@ -107,7 +107,7 @@ pub(in crate::cli) enum HorizonAction {
         project: PathBuf,
         /// Horizon
         name: String,
-        /// conformable, erosional, onlap or intrusive
+        /// conformable, erosional, onlap, intrusive, or truncated-intrusion (cut off by younger erosion)
         contact: String,
     },
     /// Remove a horizon
@@ -129,7 +129,8 @@ pub(in crate::cli) struct HorizonAddArgs {
     /// Name of the horizon
     #[arg(long)]
     pub(in crate::cli) name: String,
-    /// How it meets its neighbours: conformable, erosional, onlap or intrusive [default: conformable]
+    /// How it meets its neighbours: conformable, erosional, onlap, intrusive, or truncated-intrusion (cut off by the
+    /// erosion surfaces above it) [default: conformable]
     #[arg(long)]
     pub(in crate::cli) contact: Option<String>,
     /// Put it just above this horizon [default: by its depth]

@@ -132,7 +132,7 @@ impl Interpretation {
                 let label = ui.label("Contact");
                 ui.label_inputs_by(label.id, |ui| {
                     ComboBox::from_id_salt("contact").selected_text(contact_name(self.contact)).show_ui(ui, |ui| {
-                        for contact in [Contact::Conformable, Contact::Erosional, Contact::Onlap, Contact::Intrusive] {
+                        for contact in Contact::ALL {
                             ui.selectable_value(&mut self.contact, contact, contact_name(contact));
                         }
                     });

@@ -175,11 +175,11 @@ impl Maker<'_> {
             for horizon in seen.horizons.iter().filter_map(|index| self.inputs.strata.get(*index)) {
                 let contact = match horizon.contact {
                     Contact::Conformable => continue,
-                    Contact::Erosional => "erosional",
-                    Contact::Onlap => "onlap",
-                    Contact::Intrusive => "intrusive",
+                    // That it is cut off can be seen.
+                    Contact::Truncated => Contact::Intrusive,
+                    other => other,
                 };
-                let name = format!("{} ({contact})", horizon.name);
+                let name = format!("{} ({})", horizon.name, contact.word());
                 add(name, GroupKind::Horizon, 0.7 * HORIZON_PT, outlines.horizons.colour);
             }
         }

@@ -54,9 +54,11 @@ impl Grid {
             let (x, y) = (x as f32, y as f32);
             let places = (0..model.block_count() as u16).filter_map(|block| {
                 let z = model.horizon_z(horizon, block, x, y);
-                let is_there =
-                    z.is_finite() && (0.0..=last).contains(&z) && model.block_at(Vec3::new(x, y, z)) == block;
-                is_there.then_some((z, block))
+                let p = Vec3::new(x, y, z);
+                let is_there = z.is_finite() && (0.0..=last).contains(&z) && model.block_at(p) == block;
+                // Inside a body there is no other horizon.
+                let is_whole = || model.is_body(horizon) || model.body_at(p, block).is_none();
+                (is_there && is_whole()).then_some((z, block))
             });
             let (z, block) = places.min_by(|a, b| a.0.total_cmp(&b.0))?;
             let quality = model.quality_at(horizon, block, x, y);

@@ -68,6 +68,12 @@ impl LevelSurface {
         ((value - self.at) * self.scale_m, slope * self.scale_m)
     }
 
+    /// Whether the surface may run through a box of voxel positions; where it does, it is told.
+    pub fn may_cross(&self, low: Vec3, high: Vec3) -> bool {
+        let [smallest, largest] = self.field.range(low, high);
+        smallest <= self.at && largest >= self.at
+    }
+
     /// The topmost place of the surface over the nodes of a lattice, voxel z: where one comes from above onto its older
     /// side, `below` where one does not.
     pub(super) fn top(&self, origin: [i32; 2], size: [usize; 2], below: f32) -> HeightField {
@@ -109,7 +115,7 @@ pub fn is_closed(horizon: &Horizon, geometry: &SurveyGeometry) -> bool {
 /// [`ModelError::Surface`] with the place.
 pub fn check_surface(horizon: &Horizon, contact: Contact, geometry: &SurveyGeometry) -> Result<(), ModelError> {
     let Some(mesh) = horizon.any_shape() else { return Ok(()) };
-    let is_body = contact == Contact::Intrusive;
+    let is_body = contact.is_intrusive();
     if mesh.triangles.is_empty() {
         return if is_body { Err(problem(&horizon.name, geometry, SurfaceProblem::PointBody, None)) } else { Ok(()) };
     }
@@ -146,7 +152,7 @@ impl Given<'_> {
         let mut first = 0;
         while first < count {
             let end = self.end_of_series(first);
-            let members: Vec<usize> = (first..end).filter(|&h| self.contacts[h] != Contact::Intrusive).collect();
+            let members: Vec<usize> = (first..end).filter(|&h| !self.contacts[h].is_intrusive()).collect();
             if members.iter().any(|&h| self.mesh(h).is_some_and(|mesh| mesh.triangles.is_empty())) {
                 self.add_series(&members, &mut levels, progress)?;
             } else {
@@ -154,7 +160,7 @@ impl Given<'_> {
                     self.add_mesh(h, &mut levels, progress)?;
                 }
             }
-            for h in (first..end).filter(|&h| self.contacts[h] == Contact::Intrusive) {
+            for h in (first..end).filter(|&h| self.contacts[h].is_intrusive()) {
                 self.add_body(h, &mut levels, progress)?;
             }
             progress.step((end - first) as u64)?;
@@ -281,7 +287,7 @@ impl Given<'_> {
     /// Notes bodies that share room: there the younger one is drawn.
     fn note_overlaps(&self, levels: &mut Levels) {
         let bodies: Vec<usize> = (0..self.horizons.len())
-            .filter(|&h| self.contacts[h] == Contact::Intrusive && levels.surfaces[h].iter().any(Option::is_some))
+            .filter(|&h| self.contacts[h].is_intrusive() && levels.surfaces[h].iter().any(Option::is_some))
             .collect();
         let metric = self.geometry.metric_from_voxel();
         let deep = OVERLAP * (0..3).map(|axis| metric.col(axis).length() as f32).fold(0.0, f32::max);

@@ -154,7 +154,7 @@ fn position(
         Age::Above(name) => draft.document.position(Noun::Horizon, name),
         Age::Below(name) => Ok(draft.document.position(Noun::Horizon, name)? + 1),
         // A body is drawn over whatever it cuts; its layer is its own at the end of the list.
-        Age::ByDepth if horizon.any_shape().is_some() && contact == Contact::Intrusive => Ok(others.len()),
+        Age::ByDepth if horizon.any_shape().is_some() && contact.is_intrusive() => Ok(others.len()),
         Age::ByDepth => {
             let geometry = draft.document.frame()?;
             let deeper = |other: &Horizon| order::is_above(horizon, other, geometry);

@@ -15,6 +15,7 @@ struct Probe {
     block: u32,
     gap: f32,
     horizon: u32,
+    below: vec2<u32>,
     fault_m: f32,
     fault: u32,
 }
@@ -69,6 +70,7 @@ fn probe_at(p: vec3<f32>) -> Probe {
             }
         }
     }
+    probe.below = below;
     probe.is_rock = layer_of(below) != model.layers - 1u;
     return probe;
 }
@@ -124,7 +126,8 @@ fn refine(
     var inside = behind;
     var hit: GroundHit;
     hit.found = true;
-    if air.block == inside.block && air.horizon == inside.horizon {
+    let alone = with_bit(vec2(0u), inside.horizon);
+    if air.block == inside.block && air.horizon == inside.horizon && all((air.below ^ inside.below) == alone) {
         t = air_t + (t - air_t) * air.gap / max(air.gap + inside.gap, 1e-12);
     } else {
         if air.block == NONE {
@@ -149,17 +152,24 @@ fn refine(
     }
     hit.point = origin + direction * t;
     hit.block = inside.block;
-    hit.layer = layer_at(hit.point + vec3(0.0, 0.0, INTO_ROCK), hit.block);
+    // Below the underside of a body there is air.
+    var inwards = vec3(0.0, 0.0, 1.0);
     if air.block == inside.block {
         let info = sheets[inside.horizon * model.blocks + inside.block];
         if has_levels == 1u && info.level != NONE {
-            hit.normal = -level_distance(info, hit.point).xyz;
+            let slope = level_distance(info, hit.point).xyz;
+            inwards = select(inwards, unit_or_zero(slope), dot(slope, slope) > 0.0);
+            hit.normal = -slope;
         } else {
             hit.normal = vec3(sheet_sample(info, hit.point.xy).yz, -1.0);
         }
     } else {
         let normal = faults[inside.fault].w.xyz;
         hit.normal = select(normal, -normal, dot(normal, direction) > 0.0);
+    }
+    hit.layer = layer_at(hit.point + inwards * INTO_ROCK, hit.block);
+    if hit.layer == model.layers - 1u {
+        hit.layer = layer_at(origin + direction * (t + 2.0 * INTO_ROCK), hit.block);
     }
     return hit;
 }

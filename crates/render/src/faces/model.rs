@@ -191,6 +191,7 @@ fn rules(model: &StructuralModel) -> Vec<[u32; 4]> {
             Contact::Erosional => 1,
             Contact::Onlap => 2,
             Contact::Intrusive => 3,
+            Contact::Truncated => 4,
         };
         [code, 0, 0, 0]
     });

@@ -61,6 +61,7 @@ override has_horizons: u32 = 1u;
 
 const CONTACT_EROSIONAL: u32 = 1u;
 const CONTACT_INTRUSIVE: u32 = 3u;
+const CONTACT_TRUNCATED: u32 = 4u;
 
 fn pool(index: u32) -> f32 {
     if pool_chunks == 1u || index < pool_chunk {
@@ -176,8 +177,12 @@ fn block_at(p: vec3<f32>) -> u32 {
 // `ContactRules::layer`.
 fn layer_of(below: vec2<u32>) -> u32 {
     let n = model.horizons;
+    var is_eroded = false;
     for (var h = 0u; h < n; h += 1u) {
-        if rules[model.blocks + h].x == CONTACT_INTRUSIVE && has_bit(below, h) {
+        let contact = rules[model.blocks + h].x;
+        if contact == CONTACT_EROSIONAL {
+            is_eroded = is_eroded || !has_bit(below, h);
+        } else if has_bit(below, h) && (contact == CONTACT_INTRUSIVE || contact == CONTACT_TRUNCATED && !is_eroded) {
             return n - 1u - h;
         }
     }
@@ -185,7 +190,7 @@ fn layer_of(below: vec2<u32>) -> u32 {
     for (var up = 0u; up < n; up += 1u) {
         let h = n - 1u - up;
         let contact = rules[model.blocks + h].x;
-        if contact == CONTACT_INTRUSIVE {
+        if contact == CONTACT_INTRUSIVE || contact == CONTACT_TRUNCATED {
             continue;
         }
         if has_bit(below, h) {

@@ -192,7 +192,12 @@ impl LayerMap {
                             return MIXED;
                         }
                         let block = usize::from(model.block_at(middle));
-                        let crossed = spans[block].iter().any(|[top, base]| *top < high.z && *base > low.z);
+                        let crossed = spans[block].iter().enumerate().any(|(horizon, [top, base])| {
+                            match model.level(horizon, block as u16) {
+                                Some(level) => level.may_cross(low, high),
+                                None => *top < high.z && *base > low.z,
+                            }
+                        });
                         if crossed {
                             return MIXED;
                         }

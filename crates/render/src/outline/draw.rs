@@ -48,6 +48,9 @@ impl OutlineLines {
             lines
                 .faults
                 .extend(relief.faults.into_iter().map(|(fault, points)| OutlineLine { of: Some(fault), points }));
+            lines
+                .horizons
+                .extend(relief.contacts.into_iter().map(|(horizon, points)| OutlineLine { of: Some(horizon), points }));
             lines.horizons.extend(relief.crests.into_iter().map(|points| OutlineLine { of: None, points }));
         }
         lines

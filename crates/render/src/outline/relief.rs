@@ -1,12 +1,13 @@
-//! Lines on the ground: fault traces, and the crests behind which the ground disappears.
+//! Lines on the ground: fault traces, contacts where horizons and bodies come to the surface, and the crests behind which
+//! the ground disappears.
 //!
-//! Both are zero contours on the map of the ground h(x, y) of one block: of the signed distance to the fault
+//! All are zero contours on the map of the ground h(x, y) of one block: of the signed distance to the fault or the horizon
 //! at (x, y, h), and of (∂h/∂x, ∂h/∂y, −1)·d, where d is the viewing direction. They are found by linear
 //! interpolation in cells of one voxel (marching squares).
 
 use super::NOMINAL_SIDE_PX;
 use super::hidden::{IN_FRONT, covered_by, seen_parts};
-use crate::ground::is_air;
+use crate::ground::{air_layer, is_air};
 use crate::resolved::{ResolvedInterpretation, ResolvedScene};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -30,6 +31,8 @@ const MEETING_PX: f64 = 0.5;
 pub(super) struct ReliefLines {
     /// Index of the fault, and a part of its trace.
     pub faults: Vec<(usize, Vec<DVec2>)>,
+    /// Index of the horizon, and a part of the line at which it comes to the surface.
+    pub contacts: Vec<(usize, Vec<DVec2>)>,
     pub crests: Vec<Vec<DVec2>>,
 }
 
@@ -93,6 +96,8 @@ pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
     let [low, high] = resolved.solid.roaming_box.map(|c| c.as_dvec3());
     let counts = [0, 1].map(|axis: usize| (high[axis] - low[axis]).ceil().max(1.0) as usize);
     let step = (high - low).truncate() / DVec2::new(counts[0] as f64, counts[1] as f64);
+    let scale = f64::from(resolved.scene.size_px[0].min(resolved.scene.size_px[1])) / f64::from(NOMINAL_SIDE_PX);
+    let shortest = SHORTEST_CREST * f64::from(resolved.scene.outlines.horizons.width_px) * scale;
     for block in 0..interpretation.model.block_count() as u16 {
         let key = |fault: usize| ([low.x, low.y, low.z, high.x, high.y, high.z].map(f64::to_bits), block, fault);
         let heights = resolved.shapes.heights(key(0), || {
@@ -111,6 +116,13 @@ pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
             let traces = seen(resolved, interpretation, &segments, |p| beside_fault(interpretation, fault, block, p));
             lines.faults.extend(traces.into_iter().map(|trace| (fault, trace)));
         }
+        let faults = interpretation.model.faults().surfaces().len();
+        for horizon in 1..usize::from(air_layer(interpretation.model)) {
+            let offset = |node| f64::from(interpretation.model.offset(horizon, block, map.node(node).as_vec3()));
+            let segments = resolved.shapes.traces(key(faults + horizon), || map.zero_lines(offset));
+            let lines_of = seen(resolved, interpretation, &segments, |p| at_contact(interpretation, horizon, block, p));
+            lines.contacts.extend(without_specks(lines_of, shortest).into_iter().map(|line| (horizon, line)));
+        }
         let facing = |[x, y]: [usize; 2]| {
             let p = map.node([x, y]);
             let (dx, dy) = (map.node([x + 1, y]) - p, map.node([x, y + 1]) - p);
@@ -121,8 +133,6 @@ pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
             (interpretation.model.block_at(p.as_vec3()) == block).then_some(p)
         }));
     }
-    let scale = f64::from(resolved.scene.size_px[0].min(resolved.scene.size_px[1])) / f64::from(NOMINAL_SIDE_PX);
-    let shortest = SHORTEST_CREST * f64::from(resolved.scene.outlines.horizons.width_px) * scale;
     lines.crests = without_specks(lines.crests, shortest);
     lines
 }
@@ -162,7 +172,8 @@ fn first_of(group: &mut [usize], mut index: usize) -> usize {
 /// not end that ground.
 fn beside_fault(interpretation: ResolvedInterpretation, fault: usize, block: u16, p: DVec3) -> Option<DVec3> {
     let faults = interpretation.model.faults();
-    if !faults.is_real(fault, p.as_vec3()) {
+    // A body has no faults inside.
+    if !faults.is_real(fault, p.as_vec3()) || interpretation.model.body_at(p.as_vec3(), block).is_some() {
         return None;
     }
     let normal = faults.surfaces()[fault].frame_from_voxel.row(2).normalize();
@@ -174,6 +185,17 @@ fn beside_fault(interpretation: ResolvedInterpretation, fault: usize, block: u16
     };
     let q = p + inwards * INTO_BLOCK;
     Some(q.with_z(interpretation.model.horizon_z(0, block, q.x as f32, q.y as f32).into()))
+}
+
+/// A place on the ground of a block where a horizon comes to the surface; `None` where both of its sides are the same
+/// layer, because something else has cut it off.
+fn at_contact(interpretation: ResolvedInterpretation, horizon: usize, block: u16, p: DVec3) -> Option<DVec3> {
+    let (model, p32) = (interpretation.model, p.as_vec3());
+    // The place is rock, just below the ground.
+    let below = model.below_at(p32, block) | 1;
+    let layer = |below: u64| model.rules().layer(below);
+    let divides = layer(below | 1 << horizon) != layer(below & !(1 << horizon));
+    (divides && model.block_at(p32) == block).then_some(p)
 }
 
 /// The parts of segments that lie on ground that is drawn, with nothing in front. `ground` returns the point

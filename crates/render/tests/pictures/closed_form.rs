@@ -3,9 +3,9 @@
 use crate::block::Block;
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgba, RgbaImage};
+use model::accuracy::boundaries;
 use model::section::SectionPlane;
 use model::{ModelSettings, StructuralModel};
-use render::accuracy::boundaries;
 use render::reference::render;
 use render::{Camera, Corner, Inputs, Lookup, NamedVolume, Outlines, PatternSize, Scene, VoxelBox};
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};

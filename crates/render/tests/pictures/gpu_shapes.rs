@@ -4,7 +4,8 @@ use crate::block::Block;
 use crate::compare::compare;
 use crate::gpu::skipped;
 use glam::{DVec2, DVec3};
-use render::{Ground, Inputs, Renderer, Scene, VoxelBox};
+use render::vector::{VectorLineKind, vectors};
+use render::{Camera, Ground, Inputs, Renderer, Scene, VoxelBox};
 use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
 use survey::stratigraphy::{Contact, StratigraphicHorizon, Stratigraphy};
 use survey::{Progress, SurveyGeometry, TriangleMesh, VerticalUnit};
@@ -24,8 +25,8 @@ fn block(horizons: Vec<(Horizon, Contact)>, faults: &[survey::Fault]) -> Block {
     Block::new(&geometry(), &stratigraphy, &horizons, faults, &TransferFunctions::default(), &library)
 }
 
-/// A dome over a salt dome that stands out of the ground.
-fn salt() -> Block {
+/// A dome over a salt dome that stands out of the ground, or was worn down with it.
+fn salt(ground: Contact, salt: Contact) -> Block {
     let geometry = geometry();
     let grid = NodeGrid::of_survey(&geometry);
     let domed = |name: &str, depth: f64| {
@@ -37,7 +38,8 @@ fn salt() -> Block {
         (Horizon::new(name, vec![Sheet::new(grid, depths, Quality::Picked)]), Contact::Conformable)
     };
     let body = Horizon::of_surface("salt", Diapir::fitting(&geometry).mesh(&geometry, 48));
-    block(vec![domed("ground", 330.0), domed("below", 520.0), (body, Contact::Intrusive)], &[])
+    let surface = (domed("ground", 330.0).0, ground);
+    block(vec![surface, domed("below", 520.0), (body, salt)], &[])
 }
 
 /// Beds of a recumbent fold, as scattered points, cut by a fault.
@@ -73,7 +75,11 @@ fn gpu_and_cpu_agree_on_horizons_of_any_shape() {
     let whole = VoxelBox::of_size(geometry().size());
     let cut_outs = vec![whole.corner_cut(base.view(&geometry()).nearest_corner(&whole), [0.5, 0.5])];
     let ground = Some(Ground::default());
-    for (version, (name, block)) in (1..).zip([("salt", salt()), ("fold", fold())]) {
+    let salts = [
+        ("salt", salt(Contact::Conformable, Contact::Intrusive)),
+        ("eroded salt", salt(Contact::Erosional, Contact::Truncated)),
+    ];
+    for (version, (name, block)) in (1..).zip(salts.into_iter().chain([("fold", fold())])) {
         let inputs = Inputs { version, data_version: version, ..block.inputs(&[]) };
         let mut earlier = None;
         for scene in [Scene { cut_outs: cut_outs.clone(), ..base.clone() }, Scene { ground, ..base.clone() }] {
@@ -85,5 +91,41 @@ fn gpu_and_cpu_agree_on_horizons_of_any_shape() {
                 assert!(!compare(&reference, &earlier).unwrap().agrees(), "{name}: the ground shows");
             }
         }
+    }
+}
+
+/// The line at which salt that was worn down comes to the surface is where its outline has the depth of the ground; salt
+/// that stands out of the ground meets it there, too.
+#[test]
+fn a_body_is_outlined_where_it_comes_to_the_surface() {
+    let geometry = geometry();
+    let camera = Camera { elevation_deg: 90.0, azimuth_deg: Some(0.0), ..Camera::default() };
+    let scene = Scene { size_px: [400, 400], ground: Some(Ground::default()), camera, ..Scene::default() };
+    let body = Diapir::fitting(&geometry);
+    let view = scene.view(&geometry);
+    for (ground, contact) in [(Contact::Erosional, Contact::Truncated), (Contact::Conformable, Contact::Intrusive)] {
+        let block = salt(ground, contact);
+        let library = TextureLibrary::builtin().unwrap();
+        let traced = vectors(&scene, &block.inputs(&[]), &library, 0.05, &Progress::silent()).unwrap().unwrap();
+        let of_salt = traced.lines.iter().filter(|line| line.kind == VectorLineKind::Horizon(Some(2)));
+        let parts: Vec<&Vec<DVec2>> = of_salt.flat_map(|line| &line.parts).collect();
+        let depth = |at: DVec2| 330.0 - 60.0 * (-(at - DVec2::new(500.0, 400.0)).length_squared() / 9e4).exp();
+        // Every place of the circle at which the outline has the depth of the ground, seen from above.
+        let mut far = 0;
+        for n in 0..64 {
+            let direction = DVec2::from_angle(f64::from(n) * std::f64::consts::TAU / 64.0);
+            let meets = |rho: f64| rho < body.radius(depth(body.axis + direction * rho));
+            let rho = (1..4000).map(|n| f64::from(n) * 0.1).find(|rho| !meets(*rho)).unwrap();
+            let at = body.axis + direction * rho;
+            let p = view.project(geometry.voxel_from_world(world(&geometry, at.extend(depth(at)))));
+            let straight = parts.iter().flat_map(|part| part.windows(2));
+            let off = straight.map(|ends| {
+                let along = ends[1] - ends[0];
+                let t = ((p - ends[0]).dot(along) / along.length_squared().max(1e-12)).clamp(0.0, 1.0);
+                (ends[0] + along * t).distance(p)
+            });
+            far += usize::from(off.fold(f64::INFINITY, f64::min) > 2.0);
+        }
+        assert_eq!(far, 0, "{contact:?}: of 64 places so many have no line");
     }
 }

@@ -258,7 +258,7 @@ fn boundary(ui: &mut Ui, index: usize, horizon: &HorizonEntry, actions: &mut Vec
         let combo = ComboBox::from_id_salt(("contact", name)).selected_text(contact_name(contact)).width(96.0);
         ui.name_inputs(format!("Contact of {name}"), |ui| {
             combo.show_ui(ui, |ui| {
-                for contact in [Contact::Conformable, Contact::Erosional, Contact::Onlap, Contact::Intrusive] {
+                for contact in Contact::ALL {
                     ui.selectable_value(&mut chosen, contact, contact_name(contact));
                 }
             });
@@ -272,10 +272,5 @@ fn boundary(ui: &mut Ui, index: usize, horizon: &HorizonEntry, actions: &mut Vec
 
 /// A contact's name.
 pub fn contact_name(contact: Contact) -> &'static str {
-    match contact {
-        Contact::Conformable => "conformable",
-        Contact::Erosional => "erosional",
-        Contact::Onlap => "onlap",
-        Contact::Intrusive => "intrusive",
-    }
+    if contact == Contact::Truncated { "intrusive, cut by erosion" } else { contact.word() }
 }

@@ -6,8 +6,8 @@
 //! truth to the picture, so that a missing boundary counts too. Distances are in voxels and at most
 //! [`FARTHEST`].
 
+use crate::section::SectionPlane;
 use glam::{DVec2, DVec3};
-use model::section::SectionPlane;
 use rayon::prelude::*;
 
 /// Largest distance that is measured, voxels. Farther boundaries count as this far.
@@ -51,7 +51,7 @@ impl BoundaryAccuracy {
 /// ```
 /// use glam::DVec3;
 /// let plane = model::section::SectionPlane::inline(0.0, DVec3::ZERO, DVec3::splat(10.0));
-/// let found = render::accuracy::boundaries(&plane, 4.0, |p| u32::from(p.z > 5.05), |p| u32::from(p.z > 5.0)).unwrap();
+/// let found = model::accuracy::boundaries(&plane, 4.0, |p| u32::from(p.z > 5.05), |p| u32::from(p.z > 5.0)).unwrap();
 /// assert!((found.worst - 0.05).abs() < 1e-3);
 /// ```
 pub fn boundaries(
