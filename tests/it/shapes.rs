@@ -74,3 +74,45 @@ fn salt_with_an_overhang_cuts_what_is_there_and_an_open_one_is_refused() {
     let map = run_in(at, "horizon add s.petro s/horizons/Salt.ts --name Salt --shape map --contact intrusive").done();
     assert!(map.stdout.contains("sampled at the survey's traces"), "{}", map.stdout);
 }
+
+#[test]
+fn points_with_normals_are_a_body_which_erosion_may_cut() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    run_in(at, "create b.petro --bounds 0,1000,0,800,0,800 --size 41x33x41").done();
+    let flat = |depth: f64| {
+        let corner = |x: f64, y: f64| format!("{x},{y},{depth}\n");
+        format!("x,y,depth\n{}{}{}{}", corner(0.0, 0.0), corner(1000.0, 0.0), corner(0.0, 800.0), corner(1000.0, 800.0))
+    };
+    fs::write(at.join("worn.csv"), flat(300.0)).unwrap();
+    fs::write(at.join("base.csv"), flat(600.0)).unwrap();
+    // A ball whose upper part was worn down.
+    let ball = |turned: u32| {
+        let rows = (0..150u32).map(|n| {
+            let down = 2.0 * (f64::from(n) + 0.5) / 150.0 - 1.0;
+            let (turn, around) = (f64::from(n) * 2.399_963, (1.0 - down * down).sqrt());
+            let normal = [turn.cos() * around, turn.sin() * around, down];
+            let [x, y, z] = [0, 1, 2].map(|axis| [500.0, 400.0, 350.0][axis] + 200.0 * normal[axis]);
+            let [nx, ny, nz] = if n % turned == 0 { normal.map(|c| -c) } else { normal };
+            format!("{x},{y},{z},{nx},{ny},{nz}\n")
+        });
+        format!("x,y,depth,nx,ny,nz\n{}", rows.collect::<String>())
+    };
+    fs::write(at.join("stock.csv"), ball(1000)).unwrap();
+    fs::write(at.join("turned.csv"), ball(3)).unwrap();
+    run_in(at, "horizon add b.petro worn.csv --name Worn --contact erosional").done();
+    run_in(at, "horizon add b.petro base.csv --name Base").done();
+    run_in(at, "horizon add b.petro turned.csv --name Stock").failed(&["normals point to the other side", "near inline"]);
+    let added = run_in(at, "horizon add b.petro stock.csv --name Stock --contact truncated-intrusion").done();
+    assert!(added.stdout.contains("a closed body through its points and normals"), "{}", added.stdout);
+    let picture = |name: &str| {
+        let view = "--elevation 90 --azimuth 0 --size 200x160 --device cpu --samples 1";
+        run_in(at, &format!("render b.petro {name}.png {view} --exaggeration 1")).done();
+        image::open(at.join(format!("{name}.png"))).unwrap().to_rgb8()
+    };
+    // Seen from above, the stock is a circle of 194 m in the ground: beyond it lies the layer below.
+    let worn = picture("worn");
+    run_in(at, "horizon contact b.petro Stock intrusive").done();
+    assert!(worn != picture("whole"), "what stands out is shaded");
+    run_in(at, "check b.petro").done();
+}

@@ -27,6 +27,12 @@ pub enum Column {
     Node,
     /// Number of a sheet.
     Sheet,
+    /// The X, Y and Z of a point's normal, in the directions of X, Y and Z.
+    Nx,
+    /// See [`Column::Nx`].
+    Ny,
+    /// See [`Column::Nx`].
+    Nz,
     /// The origin of the depth, in the words of [`survey::Quality`].
     Quality,
     /// Anything else; not read.
@@ -110,6 +116,9 @@ pub(super) fn of_name(name: &str) -> NamedColumn {
         "node" | "knot" | "node_id" | "node_number" | "knot_number" | "node_no" | "node_index" => {
             (Column::Node, None, None)
         }
+        "nx" | "normal_x" | "normalx" | "norm_x" => (Column::Nx, None, None),
+        "ny" | "normal_y" | "normaly" | "norm_y" => (Column::Ny, None, None),
+        "nz" | "normal_z" | "normalz" | "norm_z" => (Column::Nz, None, None),
         "sheet" | "sheet_index" => (Column::Sheet, None, None),
         "quality" => (Column::Quality, None, None),
         _ => (Column::Other, None, None),

@@ -227,6 +227,14 @@ pub enum FormatError {
         /// How much it would take.
         source: survey::memory::NotEnough,
     },
+    /// Points and their normals make no surface.
+    #[error("{file}: {why}")]
+    Normals {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong with them.
+        why: String,
+    },
     /// There is too little to make a fault.
     #[error("{file}: fault '{name}': {why}")]
     NoSurface {

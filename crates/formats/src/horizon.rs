@@ -13,8 +13,9 @@ use super::scatter;
 use super::sheets::{self, Crowded, MAX_DEPTHS, NodeValues};
 use super::vertical::VerticalRule;
 use super::{Format, FormatError, SurfaceKind};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use std::path::Path;
+use survey::Progress;
 use survey::geometry::SurveyGeometry;
 use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
 use survey::mesh::TriangleMesh;
@@ -157,6 +158,23 @@ fn from_points(
 ) -> Result<Nodes, FormatError> {
     let placed = placement::place(file, name, points, geometry, options.place_by)?;
     let mut notes: Vec<String> = placed.note.into_iter().collect();
+    let normals: Vec<DVec3> = points.iter().filter_map(|p| p.normal).collect();
+    if normals.len() == points.len() && options.shape != Some(HorizonShape::Map) {
+        let worlds = placed.voxels.iter().zip(points).map(|(v, p)| placement::world_xy(geometry, *v).extend(p.z));
+        let worlds: Vec<DVec3> = worlds.collect();
+        let mesh = model::surface_through(name, &worlds, &normals, geometry, &Progress::silent())
+            .map_err(|source| FormatError::Normals { file: file.to_path_buf(), why: source.to_string() })?;
+        let shape = any_shape::of_mesh(&mesh);
+        if shape.is_some() || options.shape == Some(HorizonShape::Any) {
+            let note = match shape {
+                Some(Shape::Body) => "a closed body through its points and normals",
+                _ => "a surface through its points and normals",
+            };
+            let found = Nodes::any_shape(mesh, placed.outside, Some(note));
+            return Ok(Nodes { notes: notes.into_iter().chain(found.notes).collect(), ..found });
+        }
+        notes.push("its normals are not used: it is a map".to_owned());
+    }
     let is_any = options.shape == Some(HorizonShape::Any);
     let any_shape = |notes: Vec<String>, note: Option<&str>| {
         let place = |(voxel, p): (&DVec2, &RawPoint)| placement::world_xy(geometry, *voxel).extend(p.z);

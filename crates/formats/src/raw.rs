@@ -3,7 +3,7 @@
 use super::SurfaceKind;
 use super::options::ImportOptions;
 use super::unit::{Domain, ZPositive, ZUnit};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use survey::geometry::SurveyGeometry;
 use survey::horizon::{NodeGrid, Quality};
 use survey::mesh::TriangleMesh;
@@ -41,6 +41,8 @@ pub(super) struct RawPoint {
     pub node: Option<f64>,
     /// Its sheet.
     pub sheet: Option<f64>,
+    /// The normal of the surface there, in the directions of X, Y and Z.
+    pub normal: Option<DVec3>,
     /// The origin of its depth, if the file states it.
     pub quality: Option<Quality>,
 }

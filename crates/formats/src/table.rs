@@ -5,7 +5,7 @@ use super::column::Column;
 use super::columns::{self, ColumnLayout};
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Field, Line, SourceFile};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 
 /// From here on a magnitude means "undefined" in the formats that write 1e30 for it.
@@ -173,6 +173,7 @@ fn point_of(
 ) -> Result<(Option<String>, RawPoint), FormatError> {
     let (mut inline, mut crossline, mut x, mut y) = (None, None, None, None);
     let mut name = None;
+    let mut normal = DVec3::NAN;
     let mut point = RawPoint { z: f64::NAN, ..RawPoint::default() };
     for (field, column) in fields.iter().zip(columns) {
         let finite = |what: &str| {
@@ -198,6 +199,9 @@ fn point_of(
             }
             Column::Node => point.node = Some(finite("node")?),
             Column::Sheet => point.sheet = Some(finite("sheet")?),
+            Column::Nx => normal.x = finite("normal")?,
+            Column::Ny => normal.y = finite("normal")?,
+            Column::Nz => normal.z = finite("normal")?,
             Column::Quality => point.quality = columns::quality_of(field.text),
             Column::Other => {}
         }
@@ -207,6 +211,7 @@ fn point_of(
     if let Some(far) = [inline, crossline, x, y].into_iter().flatten().find(|v| v.abs() > 1e12) {
         return Err(source.syntax(line.number, "a coordinate below 1e12", &far.to_string()));
     }
+    point.normal = normal.is_finite().then_some(normal);
     point.xy = x.zip(y).map(|(a, b)| DVec2::new(a, b));
     Ok((name, point))
 }

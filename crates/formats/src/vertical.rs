@@ -115,6 +115,10 @@ impl VerticalRule {
             widen(&mut counts.range, converted);
             *value = converted;
         }
+        // A normal is a covector: where depths grow, it shrinks.
+        if let RawShape::Points(points) = shape {
+            points.iter_mut().filter_map(|p| p.normal.as_mut()).for_each(|normal| normal.z /= self.scale);
+        }
         counts
     }
 

@@ -66,7 +66,9 @@ mod structural;
 mod touching;
 
 pub use contacts::ContactRules;
-pub use levels::{CutLattice, Equations, LevelSurface, NodeBox, Terms, check_surface, is_closed, resampled};
+pub use levels::{
+    CutLattice, Equations, LevelSurface, NodeBox, Terms, check_surface, is_closed, resampled, surface_through,
+};
 pub use network::{BlockSignature, FaultNetwork, FaultSurface, Truncation};
 pub use report::{InferredPlacement, ModelError, ModelNote, ModelReport, SurfaceProblem};
 pub use settings::ModelSettings;

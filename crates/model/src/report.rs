@@ -144,11 +144,28 @@ pub enum SurfaceProblem {
     )]
     Contradiction,
     /// Points do not say where a body is closed.
-    #[error("a body needs triangles, points alone do not say what lies inside; give a closed mesh (TSurf)")]
+    #[error(
+        "a body needs triangles, points alone do not say what lies inside; give a closed mesh (TSurf), or normals (columns nx, ny, nz)"
+    )]
     PointBody,
+    /// Points with normals are too few for a surface.
+    #[error("{0} points with a normal are too few for a surface; give at least 8, better a hundred")]
+    FewNormals(usize),
+    /// Normals point to both sides of a surface.
+    #[error(
+        "{turned} of its {of} normals point to the other side than those around them; turn them so that all point out of \
+         the body, or all to the younger side"
+    )]
+    TurnedNormals {
+        /// Normals that point to the other side.
+        turned: usize,
+        /// All normals.
+        of: usize,
+    },
     /// Points of one horizon do not say which side is younger.
     #[error(
-        "its points alone do not say which side is older; give a horizon above or below it as well, or triangles (TSurf)"
+        "its points alone do not say which side is older; give a horizon above or below it as well, normals (columns nx, ny, \
+         nz) or triangles (TSurf)"
     )]
     PointsAlone,
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use glam::DVec2;
+use std::fmt::Write as _;
 use survey::geometry::{LineAxis, VerticalUnit};
 use survey::horizon::{NodeGrid, Quality, Sheet};
 
@@ -213,4 +214,34 @@ fn scattered_points_of_a_plane_are_a_plane_with_a_hole_in_the_gap() {
         }
     }
     assert!(known > 2900, "{known}");
+}
+
+/// A ball in feet of elevation: its normals point up where its depths are small.
+#[test]
+fn points_with_normals_are_a_body_in_any_unit_and_a_map_stays_a_map() {
+    let geometry = SurveyGeometry::regular([41, 33, 41], 25.0, 20.0, VerticalUnit::Metres);
+    let foot = 0.3048;
+    let mut text = "X,Y,Z,nx,ny,nz\n".to_owned();
+    for n in 0..150 {
+        let up = 1.0 - 2.0 * (f64::from(n) + 0.5) / 150.0;
+        let (turn, around) = (f64::from(n) * 2.399_963, (1.0 - up * up).sqrt());
+        let (nx, ny) = (turn.cos() * around, turn.sin() * around);
+        let elevation = -(400.0 - 200.0 * up) / foot;
+        // In feet the covector's last part is smaller.
+        let _ = writeln!(text, "{},{},{elevation},{nx},{ny},{}", 500.0 + 200.0 * nx, 400.0 + 200.0 * ny, up * foot);
+    }
+    let told = ImportOptions { z_unit: Some(ZUnit::Feet), z_positive: Some(ZPositive::Up), ..ImportOptions::default() };
+    let (body, report) = horizon(&text, &geometry, &told);
+    let mesh = body.any_shape().expect("a body");
+    let off = mesh.vertices.iter().map(|v| (v.distance(glam::DVec3::new(500.0, 400.0, 400.0)) - 200.0).abs());
+    assert!(off.fold(0.0, f64::max) < 4.0 && mesh.triangles.len() > 500);
+    assert!(report.notes.iter().any(|note| note.contains("closed body")), "{report}");
+
+    let flat: String = text.lines().take(1).map(|line| format!("{line}\n")).collect();
+    let rows = (0..120).map(|n| {
+        let (x, y) = ((f64::from(n) * 0.754_877).fract() * 1000.0, (f64::from(n) * 0.569_84).fract() * 800.0);
+        format!("{x},{y},{},-0.1,0,1\n", 300.0 + 0.1 * x)
+    });
+    let (map, report) = horizon(&(flat + &rows.collect::<String>()), &geometry, &ImportOptions::default());
+    assert!(!map.sheets.is_empty() && report.notes.iter().any(|note| note.contains("it is a map")), "{report}");
 }

@@ -205,6 +205,19 @@ impl CutLattice {
         })
     }
 
+    /// The slope at a voxel position along a metric direction, per metre.
+    pub fn slope_at(&self, block: usize, p: Vec3, direction: DVec3, voxel_from_metric: DMat3) -> Terms {
+        let along = voxel_from_metric * direction / self.nodes.step.as_dvec3();
+        let (node, f) = self.cell(p);
+        let corners = self.corners(block, node);
+        std::array::from_fn(|n| {
+            let side = |bit: usize, t: f64| if n & bit == 0 { 1.0 - t } else { t };
+            let sign = |bit: usize| if n & bit == 0 { -1.0 } else { 1.0 };
+            let [x, y, z] = [side(4, f.x), side(2, f.y), side(1, f.z)];
+            (corners[n], along.x * sign(4) * y * z + along.y * sign(2) * x * z + along.z * sign(1) * x * y)
+        })
+    }
+
     /// The middle of a cell, voxels.
     pub fn middle(&self, node: usize) -> Vec3 {
         self.nodes.place(node) + 0.5 * self.nodes.step

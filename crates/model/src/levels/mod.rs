@@ -7,6 +7,7 @@
 mod cut;
 mod distance;
 mod least_squares;
+mod oriented;
 mod series;
 mod shape;
 mod tree;
@@ -14,6 +15,7 @@ mod tree;
 pub use cut::{CutLattice, Terms, resampled};
 pub use distance::NodeBox;
 pub use least_squares::Equations;
+pub use oriented::surface_through;
 
 use super::network::FaultNetwork;
 use super::report::{ModelError, ModelNote, SurfaceProblem};
