@@ -102,7 +102,8 @@ fn points_with_normals_are_a_body_which_erosion_may_cut() {
     fs::write(at.join("turned.csv"), ball(3)).unwrap();
     run_in(at, "horizon add b.petro worn.csv --name Worn --contact erosional").done();
     run_in(at, "horizon add b.petro base.csv --name Base").done();
-    run_in(at, "horizon add b.petro turned.csv --name Stock").failed(&["normals point to the other side", "near inline"]);
+    run_in(at, "horizon add b.petro turned.csv --name Stock")
+        .failed(&["normals point to the other side", "near inline"]);
     let added = run_in(at, "horizon add b.petro stock.csv --name Stock --contact truncated-intrusion").done();
     assert!(added.stdout.contains("a closed body through its points and normals"), "{}", added.stdout);
     let picture = |name: &str| {

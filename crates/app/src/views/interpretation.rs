@@ -9,7 +9,7 @@ use crate::work::scan::{self, InterpretationScan, Reading};
 use eframe::egui::{
     Button, CollapsingHeader, ComboBox, Context, DragValue, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui,
 };
-use formats::{Column, Format, ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
+use formats::{Column, Format, HorizonShape, ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
 use project::command::{AddFault, AddHorizon, Age, Command};
 use std::path::{Path, PathBuf};
 use survey::{Contact, Setting};
@@ -29,6 +29,8 @@ pub struct Interpretation {
     /// The name of the surface to add, if the file holds several.
     chosen: Option<String>,
     contact: Contact,
+    /// Where a horizon goes in the column.
+    age: Age,
     truncated_by: Option<String>,
     /// Metres by which the fault reaches beyond what was drawn.
     grown_m: f64,
@@ -129,20 +131,53 @@ impl Interpretation {
                 let metres = DragValue::new(&mut self.grown_m).range(0.0..=100_000.0).speed(5.0).suffix(" m");
                 ui.add(metres).labelled_by(label.id);
             } else {
-                let label = ui.label("Contact");
-                ui.label_inputs_by(label.id, |ui| {
-                    ComboBox::from_id_salt("contact").selected_text(contact_name(self.contact)).show_ui(ui, |ui| {
-                        for contact in Contact::ALL {
-                            ui.selectable_value(&mut self.contact, contact, contact_name(contact));
-                        }
-                    });
-                });
+                self.horizon_rows(ui, session);
             }
             ui.end_row();
         });
         // The field that an error asks for must be visible.
         let is_refused = self.reading.with(|found| matches!(found, Some((_, Err(_)))));
         CollapsingHeader::new("More").open(is_refused.then_some(true)).show(ui, |ui| self.more(ui));
+    }
+
+    /// What is stated of a horizon alone.
+    fn horizon_rows(&mut self, ui: &mut Ui, session: &Session) {
+        let label = ui.label("Contact");
+        ui.label_inputs_by(label.id, |ui| {
+            ComboBox::from_id_salt("contact").selected_text(contact_name(self.contact)).show_ui(ui, |ui| {
+                for contact in Contact::ALL {
+                    ui.selectable_value(&mut self.contact, contact, contact_name(contact));
+                }
+            });
+        });
+        ui.end_row();
+        let label = ui.label("Place in the column");
+        ui.label_inputs_by(label.id, |ui| {
+            ComboBox::from_id_salt("age").selected_text(age_name(&self.age)).show_ui(ui, |ui| {
+                let names = || session.document.horizons.iter().map(|horizon| horizon.name.clone());
+                let ages = names().map(Age::Above).chain(names().map(Age::Below));
+                for age in [Age::ByDepth].into_iter().chain(ages) {
+                    let name = age_name(&age);
+                    ui.selectable_value(&mut self.age, age, name);
+                }
+            });
+        });
+        ui.end_row();
+        let label = ui.label("Shape").on_hover_text(
+            "A map has one depth at a place in each fault block. A surface of any shape may be overturned, or a body",
+        );
+        ui.label_inputs_by(label.id, |ui| {
+            let name = |shape: Option<HorizonShape>| match shape {
+                None => "as it is found",
+                Some(HorizonShape::Map) => "a map",
+                Some(HorizonShape::Any) => "any shape",
+            };
+            ComboBox::from_id_salt("shape").selected_text(name(self.options.shape)).show_ui(ui, |ui| {
+                for shape in [None, Some(HorizonShape::Map), Some(HorizonShape::Any)] {
+                    ui.selectable_value(&mut self.options.shape, shape, name(shape));
+                }
+            });
+        });
     }
 
     /// Settings that seldom need to be stated.
@@ -201,7 +236,15 @@ impl Interpretation {
             let (truncated_by, grown_m) = (self.truncated_by.clone(), self.grown_m);
             Command::AddFault(AddFault { path, name, truncated_by, grown_m, options })
         } else {
-            Command::AddHorizon(AddHorizon { path, name, contact: self.contact, age: Age::ByDepth, options })
+            Command::AddHorizon(AddHorizon { path, name, contact: self.contact, age: self.age.clone(), options })
         }
+    }
+}
+
+fn age_name(age: &Age) -> String {
+    match age {
+        Age::ByDepth => "by its depth".to_owned(),
+        Age::Above(name) => format!("just above {name}"),
+        Age::Below(name) => format!("just below {name}"),
     }
 }

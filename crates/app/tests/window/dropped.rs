@@ -55,3 +55,33 @@ fn it_is_asked_what_a_file_holds() {
     assert!(matches!(state(&harness).dialogue, Some(Dialogue::Interpretation { kind: FileContent::Horizon, .. })));
     assert_eq!(document(&harness).horizons.len(), 2, "nothing is added unasked");
 }
+
+#[test]
+fn a_horizon_is_put_where_it_is_told_and_in_the_shape_that_is_stated() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    let oldest = document(&harness).horizons[1].name.clone();
+    let path = folder.path().join("Middle.csv");
+    std::fs::write(&path, "inline,crossline,z\n1,1,50\n24,1,50\n1,20,50\n24,20,50\n12,10,50\n").unwrap();
+    drop_on(&mut harness, &path);
+    click(&mut harness, "A horizon");
+    for (field, choice) in [
+        ("Contact", "intrusive, cut by erosion".to_owned()),
+        ("Contact", "erosional".to_owned()),
+        ("Shape", "any shape".to_owned()),
+        ("Shape", "a map".to_owned()),
+        ("Place in the column", format!("just below {oldest}")),
+    ] {
+        click(&mut harness, field);
+        click(&mut harness, &choice);
+    }
+    // The button can be pressed as soon as the file has been read in that way.
+    wait(&mut harness, "it is added", |harness| {
+        if let Some(add) = harness.query_by_label("Add") {
+            add.click_accesskit();
+        }
+        document(harness).horizons.len() == 3
+    });
+    let added = &document(&harness).horizons[2];
+    assert_eq!((added.name.as_str(), added.contact), ("Middle", survey::Contact::Erosional));
+}
