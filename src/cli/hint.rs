@@ -1,5 +1,6 @@
 //! What to do next about an error, in the words of the command line.
 
+use param::ParamError;
 use project::ProjectError;
 use std::error::Error;
 
@@ -66,6 +67,9 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         ProjectError::SeveralInFile { .. } => "choose one with --select NAME",
         ProjectError::Crossing { .. } => {
             "check unit, sign and picks there, put it elsewhere with --above or --below, or state --contact erosional, onlap or intrusive"
+        }
+        ProjectError::Param(ParamError::OtherLayers { .. } | ParamError::NoValues { .. }) => {
+            "`petroglyph parameterize PROJECT --computed` computes them here"
         }
         ProjectError::NotATruth { .. } => "give the folder that `petroglyph synth` wrote",
         ProjectError::Figure(_) => {

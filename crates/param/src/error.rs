@@ -43,7 +43,7 @@ pub enum ParamError {
     /// A parameterization from elsewhere is that of other layers.
     #[error(
         "{:.0} % of its samples lie in another layer than in the project, which has {layers}: it is of other horizons. \
-         Layers are counted from the deepest, 0; add the horizons that it was computed from, or compute i, j, k again with `parameterize --computed`",
+         Layers are counted from the deepest, 0; add the horizons that it was computed from, or compute i, j, k here",
         100.0 * share
     )]
     OtherLayers {
@@ -54,7 +54,7 @@ pub enum ParamError {
     },
     /// A parameterization from elsewhere has no values in a layer.
     #[error(
-        "it has no values in layer {layer} (0 = deepest) of one fault block; have it computed there too, or compute i, j, k again with `parameterize --computed`"
+        "it has no values in layer {layer} (0 = deepest) of one fault block; have it computed there too, or compute i, j, k here"
     )]
     NoValues {
         /// Index of the layer, 0 = deepest.

@@ -37,7 +37,7 @@ pub struct Taken {
 impl Parameterization {
     /// The parameterization of a model whose i, j and k are those of `found`.
     ///
-    /// Memory: 12 bytes a sample of `found` while it runs, and 12 bytes a node.
+    /// Memory: 18 bytes a sample of `found` with what it holds itself, while it runs, and 12 bytes a node.
     ///
     /// # Errors
     /// [`ParamError::OtherLayers`] when it is not of this interpretation, [`ParamError::NoValues`] when a layer has none
