@@ -1,13 +1,13 @@
-//! Dragging the faces of the roaming box and of the cut-outs.
+//! Dragging the faces of the roaming box and of the cut-outs, whatever their shape.
 //!
-//! A face moves along its axis by the share of the pointer's travel that runs along the image of the axis: Δ =
+//! A face of a box moves along its axis, a sloping plane and a fence along their normal, a shaft along x or y, by the share of the pointer's travel that runs along the image of the axis: Δ =
 //! δ·a/|a|², where a is the vector in pixels that one voxel along the axis covers at the handle. Faces stop at whole
 //! samples.
 
 use super::camera;
 use glam::{DVec2, DVec3};
 use render::visible::Solid;
-use render::{Scene, VoxelBox};
+use render::{CutShape, Scene, VoxelBox};
 use survey::SurveyGeometry;
 
 /// The box that a face belongs to.
@@ -17,14 +17,16 @@ pub enum Owner {
     Block,
     /// A cut-out, by its index in the scene.
     CutOut(usize),
+    /// A cut-out that is no box, by its index in the scene.
+    Shape(usize),
 }
 
-/// One of the six faces of a box.
+/// One of the six faces of a box, or a direction in which a shape moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Face {
     /// Its box.
     pub owner: Owner,
-    /// 0 = across inlines (x), 1 = across crosslines (y), 2 = across depth (z).
+    /// 0 = across inlines (x), 1 = across crosslines (y), 2 = across depth (z). Of a plane and a fence, 0.
     pub axis: usize,
     /// Whether it is the face at the largest coordinate along the axis; otherwise it is the one at the smallest.
     pub at_max: bool,
@@ -68,7 +70,9 @@ pub fn handles(scene: &Scene, geometry: &SurveyGeometry, size: DVec2) -> Vec<Han
                 let plane = if at_max { bounds.max[axis] } else { bounds.min[axis] };
                 let (normal, is_open) = match owner {
                     Owner::Block => (outward, false),
-                    Owner::CutOut(_) => (-outward, plane == if at_max { block.max[axis] } else { block.min[axis] }),
+                    Owner::CutOut(_) | Owner::Shape(_) => {
+                        (-outward, plane == if at_max { block.max[axis] } else { block.min[axis] })
+                    }
                 };
                 let towards = view.towards_camera(bounds.centre())[axis] * normal;
                 if is_open || towards <= 1e-9 {
@@ -81,7 +85,92 @@ pub fn handles(scene: &Scene, geometry: &SurveyGeometry, size: DVec2) -> Vec<Han
             }
         }
     }
+    for (index, shape) in scene.cut_shapes.iter().enumerate() {
+        for (axis, direction) in directions(shape).into_iter().enumerate() {
+            let is_seen = |(voxel, out): &(DVec3, DVec3)| {
+                let [front, behind] = [0.05, -0.05].map(|by| solid.contains((*voxel + *out * by).as_vec3()));
+                !front && behind && view.towards_camera(*voxel).dot(*out) > 1e-9
+            };
+            // Where the surface lies most across the direction in which it is moved.
+            let across = |(_, out): &(DVec3, DVec3)| out.dot(direction).abs();
+            let places = places(shape, &block).into_iter().filter(is_seen);
+            let best = places.fold(None, |best: Option<(DVec3, DVec3)>, place| match best {
+                Some(best) if across(&best) >= across(&place) - 1e-6 => Some(best),
+                _ => Some(place),
+            });
+            let Some((voxel, _)) = best else { continue };
+            let at = view.project(voxel);
+            let along = view.project(voxel + direction) - at;
+            found.push(Handle { face: Face { owner: Owner::Shape(index), axis, at_max: false }, voxel, at, along });
+        }
+    }
     found
+}
+
+/// The directions in which a shape is moved, voxels of length 1.
+fn directions(shape: &CutShape) -> Vec<DVec3> {
+    match shape {
+        CutShape::Plane { normal, .. } => DVec3::from_array(*normal).try_normalize().into_iter().collect(),
+        CutShape::Outline { .. } => vec![DVec3::X, DVec3::Y],
+        CutShape::Fence { fence, .. } => {
+            let ends = fence.first().zip(fence.last());
+            let along = ends.and_then(|(a, b)| (DVec2::from(*b) - DVec2::from(*a)).try_normalize());
+            along.map(|along| along.perp().extend(0.0)).into_iter().collect()
+        }
+    }
+}
+
+/// Places on a shape's surface in a block, the middle ones first, each with the direction out of the rock.
+fn places(shape: &CutShape, block: &VoxelBox) -> Vec<(DVec3, DVec3)> {
+    const SHARES: [f64; 7] = [0.5, 0.35, 0.65, 0.2, 0.8, 0.07, 0.93];
+    let at = |axis: usize, share: f64| block.min[axis] + share * (block.max[axis] - block.min[axis]);
+    let walls = |line: Vec<DVec2>| {
+        // A curve runs through the corners, a straight wall through the middles between them.
+        let middles = line.windows(2).map(|ends| (ends[0].midpoint(ends[1]), ends[1] - ends[0]));
+        let corners = line.windows(3).map(|ends| (ends[1], ends[2] - ends[0]));
+        let sides: Vec<(DVec2, DVec3)> = middles
+            .chain(corners)
+            .flat_map(|(at, along)| [1.0, -1.0].map(|side| (at, along.perp().normalize_or_zero().extend(0.0) * side)))
+            .collect();
+        let all = SHARES.into_iter().flat_map(|share| sides.clone().into_iter().map(move |side| (share, side)));
+        all.map(|(share, (middle, out))| (middle.extend(at(2, share)), out)).collect::<Vec<_>>()
+    };
+    match shape {
+        CutShape::Plane { through, normal } => {
+            let (through, normal) = (DVec3::from_array(*through), DVec3::from_array(*normal).normalize_or_zero());
+            let axis = normal.abs().to_array().iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(2, |a| a.0);
+            let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+            let pairs = SHARES.into_iter().flat_map(|a| SHARES.map(|b| [a, b]));
+            let place = |[a, b]: [f64; 2]| {
+                let mut p = through;
+                (p[u], p[v]) = (at(u, a), at(v, b));
+                p[axis] = through[axis];
+                p[axis] -= normal.dot(p - through) / normal[axis];
+                (p, normal)
+            };
+            let is_inside = |p: &DVec3| p.cmpge(block.low()).all() && p.cmple(block.high()).all();
+            pairs.map(place).filter(|(p, _)| is_inside(p)).collect()
+        }
+        CutShape::Outline { outline, .. } => {
+            let round = outline.iter().chain(outline.iter().take(2));
+            walls(round.map(|p| DVec2::from(*p)).collect())
+        }
+        CutShape::Fence { fence, .. } => walls(fence.iter().map(|p| DVec2::from(*p)).collect()),
+    }
+}
+
+/// The scene with a shape moved by so many voxels, or as it was where that leaves no picture.
+fn move_shape(start: &Scene, geometry: &SurveyGeometry, index: usize, axis: usize, moved: f64) -> Scene {
+    let mut scene = start.clone();
+    let Some(shape) = scene.cut_shapes.get_mut(index) else { return scene };
+    let Some(by) = directions(shape).get(axis).map(|direction| *direction * moved.round()) else { return scene };
+    match shape {
+        CutShape::Plane { through, .. } => *through = (DVec3::from_array(*through) + by).to_array(),
+        CutShape::Outline { outline: line, .. } | CutShape::Fence { fence: line, .. } => {
+            line.iter_mut().for_each(|p| *p = (DVec2::from(*p) + by.truncate()).to_array());
+        }
+    }
+    if scene.validate(geometry).is_ok() { scene } else { start.clone() }
 }
 
 /// The point of the face nearest its middle that has rock behind it and air in front of it.
@@ -118,6 +207,9 @@ pub fn pull(start: &Scene, geometry: &SurveyGeometry, size: DVec2, handle: &Hand
 pub fn move_face(start: &Scene, geometry: &SurveyGeometry, size: DVec2, face: Face, moved: f64) -> Scene {
     let mut scene = start.clone();
     let Face { owner, axis, at_max } = face;
+    if let Owner::Shape(index) = owner {
+        return move_shape(start, geometry, index, axis, moved);
+    }
     let block = start.box_in(geometry);
     let (limits, mut bounds) = match owner {
         Owner::Block => (VoxelBox::of_size(geometry.size()), block),
@@ -125,6 +217,7 @@ pub fn move_face(start: &Scene, geometry: &SurveyGeometry, size: DVec2, face: Fa
             Some(cut) => (block, cut),
             None => return scene,
         },
+        Owner::Shape(_) => return scene,
     };
     let thinnest = THINNEST.min(bounds.max[axis] - bounds.min[axis]);
     if at_max {
@@ -140,6 +233,7 @@ pub fn move_face(start: &Scene, geometry: &SurveyGeometry, size: DVec2, face: Fa
             camera::hold(&before, &mut scene, geometry, size, block.centre());
         }
         Owner::CutOut(index) => scene.cut_outs[index] = bounds,
+        Owner::Shape(_) => {}
     }
     scene
 }
@@ -147,6 +241,7 @@ pub fn move_face(start: &Scene, geometry: &SurveyGeometry, size: DVec2, face: Fa
 #[cfg(test)]
 mod tests {
     use super::*;
+    use render::Side;
     use survey::VerticalUnit;
 
     const SIZE: DVec2 = DVec2::new(800.0, 600.0);
@@ -178,11 +273,53 @@ mod tests {
                 let bounds = match handle.face.owner {
                     Owner::Block => scene.box_in(&geometry),
                     Owner::CutOut(index) => scene.cut_outs[index],
+                    Owner::Shape(_) => panic!("there is none"),
                 };
                 if handle.face.at_max { bounds.max[handle.face.axis] } else { bounds.min[handle.face.axis] }
             };
             assert_eq!(coordinate(&pulled) - coordinate(&scene), inwards, "{handle:?}");
             pulled.validate(&geometry).unwrap();
+        }
+    }
+
+    #[test]
+    fn planes_fences_and_shafts_have_handles_that_move_them_across_themselves() {
+        let (mut scene, geometry) = scene();
+        scene.cut_outs.clear();
+        let block = scene.box_in(&geometry);
+        let towards = scene.view(&geometry).towards_camera(block.centre());
+        let middle = block.centre();
+        let before = middle.truncate() + towards.truncate().normalize() * 8.0;
+        let fence = vec![[0.0, middle.y], [60.0, middle.y + 3.0]];
+        let shapes = [
+            (CutShape::dipping(middle, 200.0, 40.0, &geometry), 1),
+            (CutShape::round(before, 200.0, None, &geometry), 2),
+            (CutShape::Fence { side: Side::facing(&fence, towards.truncate()), fence, smooth: false, depth: None }, 1),
+        ];
+        for (shape, count) in shapes {
+            scene.cut_shapes = vec![shape.clone()];
+            let found = handles(&scene, &geometry, SIZE);
+            let own: Vec<&Handle> = found.iter().filter(|handle| handle.face.owner == Owner::Shape(0)).collect();
+            assert_eq!(own.len(), count, "{shape:?}");
+            for handle in own {
+                let pulled = pull(&scene, &geometry, SIZE, handle, handle.along * 4.0);
+                pulled.validate(&geometry).unwrap();
+                let direction = directions(&shape)[handle.face.axis];
+                let moved = |a: &CutShape, b: &CutShape| match (a, b) {
+                    (CutShape::Plane { through: a, .. }, CutShape::Plane { through: b, .. }) => {
+                        DVec3::from_array(*b) - DVec3::from_array(*a)
+                    }
+                    (CutShape::Outline { outline: a, .. }, CutShape::Outline { outline: b, .. })
+                    | (CutShape::Fence { fence: a, .. }, CutShape::Fence { fence: b, .. }) => {
+                        (DVec2::from(b[1]) - DVec2::from(a[1])).extend(0.0)
+                    }
+                    _ => DVec3::ZERO,
+                };
+                let by = moved(&shape, &pulled.cut_shapes[0]);
+                assert!((by - direction * 4.0).length() < 1e-9, "{shape:?}: {by}");
+                let far = pull(&scene, &geometry, SIZE, handle, handle.along * 1e5);
+                far.validate(&geometry).unwrap();
+            }
         }
     }
 

@@ -23,8 +23,11 @@ pub fn show(ui: &mut Ui, session: &Session, scene: &mut Scene) {
             ui.label(&name);
             let shape = &mut scene.cut_shapes[n];
             match shape {
-                CutShape::Fence { .. } => fence(ui, shape, &name),
-                CutShape::Outline { outline, .. } => shaft(ui, outline, &name, geometry),
+                CutShape::Fence { .. } => fence(ui, shape, &name, geometry),
+                CutShape::Outline { outline, depth, .. } => {
+                    shaft(ui, outline, &name, geometry);
+                    depths(ui, depth, &name, geometry);
+                }
                 CutShape::Plane { .. } => plane(ui, shape, &name, geometry),
             }
             if super::data::remove(ui, &format!("Remove {}", name.to_lowercase())) {
@@ -71,12 +74,36 @@ fn add(ui: &mut Ui, session: &Session, scene: &mut Scene, geometry: &SurveyGeome
     }
 }
 
-fn fence(ui: &mut Ui, shape: &mut CutShape, name: &str) {
-    let CutShape::Fence { side, smooth, .. } = shape else { return };
+fn fence(ui: &mut Ui, shape: &mut CutShape, name: &str, geometry: &SurveyGeometry) {
+    let CutShape::Fence { side, smooth, depth, .. } = shape else { return };
     if ui.button("Other side").on_hover_text(format!("Cut the other side of {} away", name.to_lowercase())).clicked() {
         *side = side.other();
     }
     ui.checkbox(smooth, "curve").on_hover_text("Lead a curve through the corners");
+    depths(ui, depth, name, geometry);
+}
+
+/// The depths between which a fence or a shaft cuts.
+fn depths(ui: &mut Ui, depth: &mut Option<[f64; 2]>, name: &str, geometry: &SurveyGeometry) {
+    let last = geometry.size()[2].saturating_sub(1) as f64;
+    let mut is_bounded = depth.is_some();
+    let label = format!("{name} only between two depths");
+    let check = ui.name_inputs(label, |ui| ui.checkbox(&mut is_bounded, "only between"));
+    if check.on_hover_text("Cut between two depths or times, otherwise through the whole block").changed() {
+        *depth = is_bounded.then_some([0.0, (0.5 * last).round()]);
+    }
+    let Some(range) = depth else { return };
+    let unit = geometry.vertical.unit.symbol();
+    let [mut top, mut base] = range.map(|z| geometry.vertical.value_at(z));
+    let changed = [
+        field(ui, name, "from", DragValue::new(&mut top).max_decimals(0), ""),
+        field(ui, name, "to", DragValue::new(&mut base).max_decimals(0), unit),
+    ];
+    if changed.iter().any(Response::changed) {
+        let [top, base] = [top, base].map(|value| geometry.vertical.index_of(value).clamp(0.0, last));
+        // At least a sample, so that there is something to cut.
+        *range = [top.min(last - 1.0), base.max(top.min(last - 1.0) + 1.0)];
+    }
 }
 
 fn shaft(ui: &mut Ui, outline: &mut [[f64; 2]], name: &str, geometry: &SurveyGeometry) {

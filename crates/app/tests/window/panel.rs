@@ -286,7 +286,16 @@ fn the_controls_set_projection_cut_outs_box_and_ground_and_choose_the_map() {
     click_last(&mut harness, "Cut along fence");
     assert!(matches!(&scene(&harness).cut_shapes[1], render::CutShape::Fence { fence, .. } if fence.len() == 3));
     click_last(&mut harness, "curve");
-    assert!(matches!(scene(&harness).cut_shapes[1], render::CutShape::Fence { smooth: true, .. }));
+    assert!(matches!(scene(&harness).cut_shapes[1], render::CutShape::Fence { smooth: true, depth: None, .. }));
+    click(&mut harness, "Fence 2 only between two depths");
+    harness.get_by_role_and_label(Role::SpinButton, "Fence 2 from").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowUp);
+    harness.run_steps(2);
+    let render::CutShape::Fence { depth: Some([top, base]), .. } = scene(&harness).cut_shapes[1] else {
+        panic!("it is bounded")
+    };
+    assert!(top > 0.0 && base > top, "{top} {base}");
     harness.get_by_role_and_label(Role::SpinButton, "Inlines from").focus();
     harness.run_steps(2);
     harness.key_press(Key::ArrowUp);

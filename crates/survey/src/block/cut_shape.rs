@@ -363,7 +363,8 @@ fn crosses_itself(points: &[DVec2]) -> bool {
     let turn = |a: DVec2, b: DVec2, c: DVec2| (b - a).perp_dot(c - a);
     let meet = |(a, b): (DVec2, DVec2), (c, d): (DVec2, DVec2)| {
         let (s, t) = (turn(a, b, c) * turn(a, b, d), turn(c, d, a) * turn(c, d, b));
-        s <= 0.0 && t <= 0.0 && !(s == 0.0 && t == 0.0 && !overlap(a, b, c, d))
+        // Rounding may put parts of one straight line on both sides of each other.
+        s <= 0.0 && t <= 0.0 && overlap(a, b, c, d)
     };
     let folds = |n: usize| {
         let ((a, b), (_, c)) = (side(n), side((n + 1) % count));
@@ -372,7 +373,7 @@ fn crosses_itself(points: &[DVec2]) -> bool {
     (0..count).any(|n| folds(n) || (n + 2..count).any(|m| (m + 1) % count != n && meet(side(n), side(m))))
 }
 
-/// Whether the boxes around two segments of one line meet.
+/// Whether the boxes around two segments meet.
 fn overlap(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
     a.min(b).cmple(c.max(d)).all() && c.min(d).cmple(a.max(b)).all()
 }
@@ -451,6 +452,19 @@ mod tests {
     fn places() -> impl Iterator<Item = DVec3> {
         let part = |n: usize, k: f64| (n as f64 * k).fract();
         (0..4000).map(move |n| DVec3::new(part(n, 0.618_034), part(n, 0.414_214), part(n, 0.732_051)) * BLOCK.extent())
+    }
+
+    #[test]
+    fn a_straight_fence_in_any_direction_crosses_nothing() {
+        for n in 0..4000 {
+            let at = |k: usize| 60.0 * ((n * 4 + k) as f64 * 0.618_034).fract() - 5.0;
+            let [a, b] = [[at(0), at(1)], [at(2), at(3)]];
+            let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+            for points in [vec![a, b], vec![a, middle, b]] {
+                let fence = CutShape::Fence { fence: points, side: Side::Left, smooth: false, depth: None };
+                assert_eq!(fence.validate(&BLOCK), Ok(()), "{fence:?}");
+            }
+        }
     }
 
     #[test]
