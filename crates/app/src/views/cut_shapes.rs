@@ -87,8 +87,7 @@ fn fence(ui: &mut Ui, shape: &mut CutShape, name: &str, geometry: &SurveyGeometr
 fn depths(ui: &mut Ui, depth: &mut Option<[f64; 2]>, name: &str, geometry: &SurveyGeometry) {
     let last = geometry.size()[2].saturating_sub(1) as f64;
     let mut is_bounded = depth.is_some();
-    let label = format!("{name} only between two depths");
-    let check = ui.name_inputs(label, |ui| ui.checkbox(&mut is_bounded, "only between"));
+    let check = ui.checkbox(&mut is_bounded, "only between");
     if check.on_hover_text("Cut between two depths or times, otherwise through the whole block").changed() {
         *depth = is_bounded.then_some([0.0, (0.5 * last).round()]);
     }

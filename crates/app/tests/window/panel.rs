@@ -287,7 +287,7 @@ fn the_controls_set_projection_cut_outs_box_and_ground_and_choose_the_map() {
     assert!(matches!(&scene(&harness).cut_shapes[1], render::CutShape::Fence { fence, .. } if fence.len() == 3));
     click_last(&mut harness, "curve");
     assert!(matches!(scene(&harness).cut_shapes[1], render::CutShape::Fence { smooth: true, depth: None, .. }));
-    click(&mut harness, "Fence 2 only between two depths");
+    click_last(&mut harness, "only between");
     harness.get_by_role_and_label(Role::SpinButton, "Fence 2 from").focus();
     harness.run_steps(2);
     harness.key_press(Key::ArrowUp);
