@@ -71,10 +71,9 @@ pub(crate) fn block_of(
         wanted.push(Wanted { plane: Some(face.plane), rectangle: face.rectangle });
     }
     add_curved(&mut block, &walls, ground);
-    if let (Some(ground), Some(model)) = (ground, model) {
-        let mesh = ground.mesh(&scene.solid(geometry));
+    if let Some(ground) = ground {
+        let (mesh, traces) = ground.mesh(&scene.solid(geometry));
         if !mesh.triangles.is_empty() {
-            let traces = ground.fault_traces(&mesh, model);
             block.lines.extend(traces.into_iter().map(|ends| (LineKind::Fault, ends)));
             let [low, high] = [scene.box_in(geometry).low(), scene.box_in(geometry).high()];
             block.faces.push(Face { cover: wanted.len(), name: "ground".into(), mesh });

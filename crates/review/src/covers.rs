@@ -1,7 +1,7 @@
 //! The pictures of faces: the illustration, and what a reader finds under the finger.
 
 use crate::block::Wanted;
-use crate::ground::Ground;
+use crate::ground::Heights;
 use crate::model::Cover;
 use glam::{DVec2, DVec3, Vec3};
 use image::RgbImage;
@@ -39,7 +39,7 @@ pub(crate) struct CoverMaker<'a> {
 
 impl CoverMaker<'_> {
     /// The pictures of a face.
-    pub fn make(&mut self, wanted: &Wanted, scene: &Scene, ground: Option<&Ground>) -> Result<Cover, ProjectError> {
+    pub fn make(&mut self, wanted: &Wanted, scene: &Scene, ground: Option<&Heights>) -> Result<Cover, ProjectError> {
         let rectangle = wanted.rectangle;
         let size = self.size_px(&rectangle, scene.exaggeration);
         let illustrated = match (&self.loaded.rock, &wanted.plane) {
@@ -103,7 +103,7 @@ impl CoverMaker<'_> {
     }
 
     /// Raw value, layer and certainty at nodes from corner to corner.
-    fn data(&self, rectangle: &SectionPlane, ground: Option<&Ground>) -> RgbImage {
+    fn data(&self, rectangle: &SectionPlane, ground: Option<&Heights>) -> RgbImage {
         let nodes = |extent: f64, axis: DVec3| {
             let voxels = extent * axis.length();
             (voxels * self.nodes_per_voxel).round().clamp(1.0, MOST_NODES) + 1.0
@@ -115,13 +115,14 @@ impl CoverMaker<'_> {
         let volume = raw.and_then(|raw| volumes.iter().find(|volume| volume.name == raw.volume));
         let model = self.loaded.rock.as_ref().map(|rock| &rock.model);
         let [width, height] = size.map(|n| n as u32);
+        let ground = ground.zip(model).map(|(heights, model)| heights.on(model));
         let texel = |n: u32| {
             let mut p = rectangle.voxel(DVec2::new(f64::from(n % width), f64::from(n / width)) * step);
-            if let Some(ground) = ground {
+            if let Some(ground) = &ground {
                 p.z = ground.z_at(p.truncate());
             }
             let p = p.as_vec3();
-            let (layer, unsure) = match (model, ground) {
+            let (layer, unsure) = match (model, &ground) {
                 (None, _) => (0, 0),
                 (Some(model), None) => layer_at(model, p),
                 (Some(model), Some(_)) => layer_at(model, beneath(model, p)),

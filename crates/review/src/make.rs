@@ -2,7 +2,7 @@
 
 use crate::block::{Wanted, block_of, lines_on};
 use crate::covers::CoverMaker;
-use crate::ground::Ground;
+use crate::ground::Heights;
 use crate::model::{Block, Cover, Layer, Model, Note, RawScale, SceneModel, SectionPlace, Stack, Surface, WellPath};
 use crate::surfaces;
 use figure::draw::swatch;
@@ -47,6 +47,18 @@ pub struct ReviewSettings {
 
 /// Texels along the longest side of the block, unless stated.
 pub const DENSITY: f64 = 1000.0;
+/// Limits of the texels along the longest side of the block.
+pub const DENSITIES: [f64; 2] = [64.0, 4096.0];
+/// Sections along an axis, unless stated.
+pub const SECTIONS: usize = 3;
+/// Most sections along an axis.
+pub const MOST_SECTIONS: usize = 200;
+/// Nodes along each axis on which the horizons of a page are sampled.
+const PAGE_NODES: usize = 56;
+/// Most cells along each axis on which the ground of a page is sampled.
+const PAGE_GROUND_CELLS: usize = 256;
+/// Most triangles of a fault in a page.
+const PAGE_TRIANGLES: usize = 4_000;
 /// Pixels of the pictures for readers without 3D.
 const PICTURE_PX: [u32; 2] = [1120, 840];
 /// Pixels of a swatch of the legend.
@@ -57,6 +69,23 @@ const SWATCH_PX_PER_MM: f32 = 9.0;
 const SECTION_DENSITY: f64 = 0.4;
 /// Colours of faults.
 const FAULT: Colour = Colour::new(0x6b, 0x2a, 0x1a);
+
+impl ReviewSettings {
+    /// Settings of a page. A model's are the same: what of them depends on its triangles, its export chooses.
+    pub fn new(density: f64, sections: usize, scenes: Vec<String>, device: Device, volume_bytes: u64) -> Self {
+        Self {
+            density,
+            sections,
+            surface_nodes: PAGE_NODES,
+            surface_triangles: PAGE_TRIANGLES,
+            ground_cells: PAGE_GROUND_CELLS,
+            has_whole: true,
+            scenes,
+            device,
+            volume_bytes,
+        }
+    }
+}
 
 /// Makes the model of a project.
 ///
@@ -163,7 +192,7 @@ impl Maker<'_> {
         let ground = match (&scene.ground, &self.loaded.rock) {
             (Some(style), Some(rock)) => {
                 let cells = self.settings.ground_cells;
-                Some(Ground::of((style, &solid), &self.loaded.geometry, &rock.model, cells))
+                Some(Heights::of((style, &solid), &self.loaded.geometry, &rock.model, cells))
             }
             _ => None,
         };
@@ -190,9 +219,10 @@ impl Maker<'_> {
         Ok(())
     }
 
-    fn block(&mut self, scene: &Scene, ground: Option<&Ground>) -> Result<Block, ProjectError> {
+    fn block(&mut self, scene: &Scene, ground: Option<&Heights>) -> Result<Block, ProjectError> {
         let model = self.loaded.rock.as_ref().map(|rock| &rock.model);
-        let (mut block, wanted) = block_of(scene, &self.loaded.geometry, model, ground);
+        let on = ground.zip(model).map(|(heights, model)| heights.on(model));
+        let (mut block, wanted) = block_of(scene, &self.loaded.geometry, model, on.as_ref());
         let mut covers = Vec::with_capacity(wanted.len());
         for wanted in &wanted {
             covers.push(self.cover(wanted, scene, ground, 1.0)?);
@@ -206,7 +236,7 @@ impl Maker<'_> {
         &mut self,
         wanted: &Wanted,
         scene: &Scene,
-        ground: Option<&Ground>,
+        ground: Option<&Heights>,
         share: f64,
     ) -> Result<usize, ProjectError> {
         let light = match (&wanted.plane, scene.face_tone > 0.0) {

@@ -77,6 +77,11 @@ impl State {
                 self.quieten(Place::Dialogue);
                 return self.task(Task::ExportSurface(form));
             }
+            Action::Share(form) => {
+                self.quieten(Place::Foot);
+                self.quieten(Place::Dialogue);
+                return self.task(Task::Share(form));
+            }
             Action::Copy => return self.task(Task::Copy),
             Action::Picking(step) => return self.pick(step),
             Action::Extract(volume, settings) => {
