@@ -19,6 +19,8 @@ use ttf::RawColour;
 
 /// Samples a texel along each axis.
 const SAMPLES: u32 = 2;
+/// Most texels of bare faults along an axis: the colour of the rock beside them.
+const BARE_TEXELS: u32 = 96;
 /// Most nodes of the data along an axis.
 const MOST_NODES: f64 = 1024.0;
 /// Depths below the triangles of the ground at which its layer is looked for, voxels.
@@ -42,10 +44,11 @@ impl CoverMaker<'_> {
     pub fn make(&mut self, wanted: &Wanted, scene: &Scene, ground: Option<&Heights>) -> Result<Cover, ProjectError> {
         let rectangle = wanted.rectangle;
         let size = self.size_px(&rectangle, scene.exaggeration);
+        let size = if wanted.shade.is_some() { size.map(|side| side.min(BARE_TEXELS)) } else { size };
         let illustrated = match (&self.loaded.rock, &wanted.plane) {
             (None, _) => None,
             (Some(_), Some(plane)) => Some(self.face(plane, &rectangle, scene, size)?),
-            (Some(_), None) => Some(self.ground(&rectangle, scene, size)?),
+            (Some(_), None) => Some(shaded(self.ground(&rectangle, scene, size)?, wanted.shade.unwrap_or(1.0))),
         };
         let data = self.data(&rectangle, ground.filter(|_| wanted.plane.is_none()));
         Ok(Cover { rectangle, illustrated, is_smooth: wanted.plane.is_none(), data })
@@ -132,6 +135,15 @@ impl CoverMaker<'_> {
         let texels: Vec<[u8; 3]> = (0..width * height).into_par_iter().map(texel).collect();
         RgbImage::from_raw(width, height, texels.concat()).unwrap_or_default()
     }
+}
+
+/// A picture whose colours are multiplied.
+fn shaded(mut image: RgbImage, shade: f32) -> RgbImage {
+    if shade != 1.0 {
+        let darker = |c: &mut u8| *c = (f32::from(*c) * shade).round().clamp(0.0, 255.0) as u8;
+        image.pixels_mut().for_each(|pixel| pixel.0.iter_mut().for_each(darker));
+    }
+    image
 }
 
 /// A raw value in 1 to 255 over the domain of its colours; 0 where there is none.

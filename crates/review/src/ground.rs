@@ -3,25 +3,31 @@
 //! The ground is one surface in each fault block, and the fault itself where it stands bare. Each place of the map belongs
 //! to one such part; a triangle whose corners belong to several is cut where they meet, found by halving, and what lies
 //! between two parts is a scarp: as steep as the fault, upright where one block overhangs the other. Sixteen cells of one
-//! part that are as good as flat are one piece. Faces are clipped by the same heights ([`Ground::clip`]), so that they
+//! part that are as good as flat are one piece. Pieces know in which cut-outs they lie, so that one mesh serves for any
+//! of them. Faces are clipped by the same heights ([`Ground::clip`]), so that they
 //! meet the ground without a gap.
 
 use crate::model::Mesh;
-use crate::polygon::{Welder, fan, outside};
+use crate::polygon::{Welder, fan, split};
 use glam::{DVec2, DVec3, Vec3};
 use model::StructuralModel;
 use rayon::prelude::*;
 use render::ground::Relief;
-use render::visible::{Ray, Solid};
+use render::visible::Ray;
 use render::{Ground as GroundStyle, Scene};
+use std::collections::BTreeMap;
 use std::ops::Deref;
 use survey::SurveyGeometry;
-use survey::block::part_behind;
+use survey::block::{Body, part_behind};
 
 /// Cells along each side of a piece that is as good as flat.
 const PIECE: usize = 4;
 /// How far from the heights such a piece may be, samples.
-const FLAT: f64 = 0.12;
+const FLAT: f64 = 0.3;
+/// Smallest drop between two parts at one place that is an overhang, samples.
+const DROP: f64 = 0.02;
+/// Steps in which the foot of a scarp is looked for under an overhang, voxels, and how many of them at most.
+const UNDER: (f64, usize) = (0.25, 24);
 /// Halvings with which the end of a part is found between two nodes.
 const HALVINGS: usize = 12;
 /// How far above a point of the ground the block is asked for, samples: over bare fault it is the other one.
@@ -71,8 +77,20 @@ impl Deref for Ground<'_> {
     }
 }
 
-/// Pieces of the ground, and the lines between its parts.
-type Pieces = (Vec<Vec<DVec3>>, Vec<[DVec3; 2]>);
+/// Pieces of the ground, each with the fault whose plane it is, and the lines between its parts.
+type Pieces = (Vec<(Option<usize>, Vec<DVec3>)>, Vec<[DVec3; 2]>);
+
+/// The part of the ground in certain cut-outs.
+pub(crate) struct GroundPart {
+    /// Bit n stands for cut-out n: the part is there where none of them is.
+    pub cuts: u32,
+    /// The fault whose bare plane it is; `None` of the relief.
+    pub fault: Option<usize>,
+    /// Its triangles.
+    pub mesh: Mesh,
+    /// Lines of faults on the relief.
+    pub lines: Vec<[DVec3; 2]>,
+}
 
 impl Heights {
     /// The heights of a scene, with at most so many cells along an axis.
@@ -177,32 +195,86 @@ impl Ground<'_> {
         [a.0.lerp(b.0, first).extend(z), a.0.lerp(b.0, last).extend(w)]
     }
 
+    /// The edges of the scarp between two places: those of [`Self::ends`], the lower one moved under an overhang as far as
+    /// its block goes.
+    fn scarp(&self, [a, b]: [DVec3; 2]) -> [DVec3; 2] {
+        let off = (b - a).truncate();
+        let is_drop = (a.z - b.z).abs() > DROP && off.length() < 0.05 * self.step.min_element();
+        if !is_drop || a.z.max(b.z) > self.high.z {
+            return [a, b];
+        }
+        let lower = if a.z < b.z { b } else { a };
+        let Some(fault) = self.fault_at((a + b) * 0.5) else { return [a, b] };
+        // Straight to the fault, whichever way the edge runs, so that the feet of neighbours lie beside each other.
+        let across = self.model.faults().surfaces()[fault].frame_from_voxel.row(2).truncate();
+        let side = f64::from(self.model.faults().side(fault, lower.as_vec3()));
+        let towards = -across.normalize_or_zero() * side.signum();
+        let block_at = |far: f64| {
+            let p = lower.truncate() + towards * far;
+            self.model.block_at(p.extend(lower.z - DROP).as_vec3())
+        };
+        let own = block_at(0.0);
+        let (step, most) = UNDER;
+        let Some(beyond) = (1..=most).map(|n| n as f64 * step).find(|far| block_at(*far) != own) else {
+            return [a, b];
+        };
+        let (mut inside, mut outside) = (beyond - step, beyond);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (inside + outside);
+            if block_at(middle) == own { inside = middle } else { outside = middle }
+        }
+        let foot = lower + (towards * inside).extend(0.0);
+        if a.z < b.z { [a, foot] } else { [foot, b] }
+    }
+
     /// The pieces of a triangle, of one part each, and the scarps between them with their lines.
     fn cut(&self, corners: [Node; 3], (pieces, lines): &mut Pieces) {
         let point = |(at, spot): Node| at.extend(spot.z);
         let parts = corners.map(|(_, spot)| spot.part);
+        let of = |part: u32, at: DVec3| if part < NONE && part % 2 == 1 { self.fault_at(at) } else { None };
         if parts[0] == parts[1] && parts[1] == parts[2] {
-            pieces.push(corners.map(point).to_vec());
+            let corners = corners.map(point);
+            pieces.push((of(parts[0], corners[0]), corners.to_vec()));
             return;
         }
         if let Some(lone) = (0..3).find(|n| parts[(n + 1) % 3] == parts[(n + 2) % 3]) {
             let [a, b, c] = [0, 1, 2].map(|n| corners[(lone + n) % 3]);
-            let ([ab, ba], [ac, ca]) = (self.ends(a, b), self.ends(a, c));
-            pieces.push(vec![point(a), ab, ac]);
-            pieces.extend([vec![ab, ba, ca], vec![ab, ca, ac]]);
-            pieces.extend([vec![ba, point(b), point(c)], vec![ba, point(c), ca]]);
-            lines.extend([[ab, ac], [ba, ca]]);
+            let [ends_b, ends_c] = [self.ends(a, b), self.ends(a, c)];
+            let ([ab, ba], [ac, ca]) = (ends_b, ends_c);
+            let ([up_b, foot_b], [up_c, foot_c]) = (self.scarp(ends_b), self.scarp(ends_c));
+            let fault = self.fault_at((ab + ca) * 0.5);
+            let [own, others] = [(a, ab), (b, ba)].map(|((_, spot), at)| of(spot.part, at));
+            pieces.extend([(own, vec![point(a), ab, ac]), (own, vec![ab, up_b, up_c, ac])]);
+            pieces.extend([(fault, vec![up_b, foot_b, foot_c]), (fault, vec![up_b, foot_c, up_c])]);
+            pieces.push((others, vec![foot_b, ba, ca, foot_c]));
+            pieces.extend([(others, vec![ba, point(b), point(c)]), (others, vec![ba, point(c), ca])]);
+            lines.extend([[up_b, up_c], [foot_b, foot_c]]);
             return;
         }
         let mut middle = Vec::new();
         for n in 0..3 {
             let [before, own, next] = [2, 0, 1].map(|m| corners[(n + m) % 3]);
             let ([towards, beyond], [back, _]) = (self.ends(own, next), self.ends(own, before));
-            pieces.push(vec![point(own), towards, back]);
+            pieces.push((of(own.1.part, towards), vec![point(own), towards, back]));
             lines.push([towards, back]);
             middle.extend([towards, beyond]);
         }
-        pieces.extend(fan(middle.len()).map(|triangle| triangle.map(|n| middle[n]).to_vec()));
+        let fault = self.fault_at(middle[0]);
+        pieces.extend(fan(middle.len()).map(|triangle| (fault, triangle.map(|n| middle[n]).to_vec())));
+    }
+
+    /// The fault nearest to a point.
+    fn fault_at(&self, p: DVec3) -> Option<usize> {
+        let faults = self.model.faults();
+        let off = |fault: &usize| faults.side(*fault, p.as_vec3()).abs();
+        (0..faults.surfaces().len()).min_by(|f, g| off(f).total_cmp(&off(g)))
+    }
+
+    /// How bright the bare plane of a fault is beside level ground, seen from a direction in voxels.
+    pub fn shade(&self, fault: usize, towards_camera: DVec3) -> f32 {
+        let Some(surface) = self.model.faults().surfaces().get(fault) else { return 1.0 };
+        let normal = surface.frame_from_voxel.row(2).as_vec3();
+        self.relief.shade(if normal.dot(towards_camera.as_vec3()) < 0.0 { -normal } else { normal })
     }
 
     /// Whether [`PIECE`] by `PIECE` cells, or what of them there is, are as good as flat.
@@ -259,61 +331,67 @@ impl Ground<'_> {
         pieces.extend((0..rim.len()).map(|n| vec![middle, rim[n], rim[(n + 1) % rim.len()]]));
     }
 
-    /// The ground outside of what is cut out, and the lines of faults on it.
-    pub fn mesh(&self, solid: &Solid) -> (Mesh, Vec<[DVec3; 2]>) {
+    /// The ground, by the cut-outs in which it lies, each of some bodies.
+    pub fn parts(&self, cuts: &[Vec<Body>]) -> Vec<GroundPart> {
         let many = self.cells.map(|count| count.div_ceil(PIECE));
         let flat: Vec<bool> = (0..many[0] * many[1])
             .into_par_iter()
             .map(|n| self.is_flat([n / many[1] * PIECE, n % many[1] * PIECE]))
             .collect();
         let made = (0..many[0] * many[1]).into_par_iter().map(|n| {
-            let [i, j] = [n / many[1], n % many[1]];
-            let (mut pieces, mut lines) = (Vec::new(), Vec::new());
-            if flat[n] {
-                let beside = |di: isize, dj: isize| {
-                    let (i, j) = (i.checked_add_signed(di), j.checked_add_signed(dj));
-                    let inside = i.zip(j).filter(|(i, j)| *i < many[0] && *j < many[1]);
-                    inside.is_some_and(|(i, j)| flat[i * many[1] + j])
-                };
-                self.piece([i * PIECE, j * PIECE], beside, &mut pieces);
-            } else {
-                for x in i * PIECE..((i + 1) * PIECE).min(self.cells[0]) {
-                    for y in j * PIECE..((j + 1) * PIECE).min(self.cells[1]) {
-                        let mut all: Pieces = (Vec::new(), Vec::new());
-                        self.triangles(x, y).into_iter().for_each(|triangle| self.cut(triangle, &mut all));
-                        pieces.extend(all.0);
-                        lines.extend(all.1);
-                    }
-                }
-            }
+            let (pieces, mut lines) = self.pieces([n / many[1], n % many[1]], many, &flat);
             let mut left = Vec::new();
-            for piece in pieces {
-                let mut parts = vec![part_behind(&piece, |p| p.z - self.high.z)];
-                for body in &solid.cut_outs {
-                    parts = parts.into_iter().flat_map(|part| outside(part, body)).collect();
-                }
-                left.extend(parts);
+            for (fault, piece) in pieces {
+                let within = part_behind(&piece, |p| p.z - self.high.z);
+                left.extend(by_cuts(within, cuts).into_iter().map(|(mask, piece)| (mask, fault, piece)));
             }
-            lines.retain(|ends| self.is_fault(*ends) && !is_cut_out(solid, *ends));
+            lines.retain(|ends| self.is_fault(*ends));
             (left, lines)
         });
-        let (mut welder, mut traces) = (Welder::default(), Vec::new());
+        let mut parts: BTreeMap<(u32, Option<usize>), (Welder, Vec<[DVec3; 2]>)> = BTreeMap::new();
         for (pieces, lines) in made.collect::<Vec<_>>() {
-            pieces.iter().for_each(|piece| welder.add(piece));
-            traces.extend(lines);
+            for (mask, fault, piece) in pieces {
+                parts.entry((mask, fault)).or_default().0.add(&piece);
+            }
+            for ends in lines {
+                let middle = ((ends[0] + ends[1]) * 0.5).as_vec3();
+                let holds = |bodies: &Vec<Body>| bodies.iter().any(|body| body.holds(middle));
+                let mask = cuts.iter().enumerate().map(|(n, cut)| u32::from(holds(cut)) << n).sum();
+                parts.entry((mask, None)).or_default().1.push(ends);
+            }
         }
-        (welder.mesh, traces)
+        let part =
+            |((cuts, fault), (welder, lines)): (_, (Welder, _))| GroundPart { cuts, fault, mesh: welder.mesh, lines };
+        parts.into_iter().map(part).collect()
+    }
+
+    /// What there is in one of the squares of [`PIECE`] cells, of so `many` along each axis.
+    fn pieces(&self, [i, j]: [usize; 2], many: [usize; 2], flat: &[bool]) -> Pieces {
+        let mut all: Pieces = (Vec::new(), Vec::new());
+        if flat[i * many[1] + j] {
+            let beside = |di: isize, dj: isize| {
+                let (i, j) = (i.checked_add_signed(di), j.checked_add_signed(dj));
+                let inside = i.zip(j).filter(|(i, j)| *i < many[0] && *j < many[1]);
+                inside.is_some_and(|(i, j)| flat[i * many[1] + j])
+            };
+            let mut pieces = Vec::new();
+            self.piece([i * PIECE, j * PIECE], beside, &mut pieces);
+            all.0.extend(pieces.into_iter().map(|piece| (None, piece)));
+            return all;
+        }
+        for x in i * PIECE..((i + 1) * PIECE).min(self.cells[0]) {
+            for y in j * PIECE..((j + 1) * PIECE).min(self.cells[1]) {
+                self.triangles(x, y).into_iter().for_each(|triangle| self.cut(triangle, &mut all));
+            }
+        }
+        all
     }
 
     /// Whether a line between two parts lies on a fault that is really there.
     fn is_fault(&self, [a, b]: [DVec3; 2]) -> bool {
-        let faults = self.model.faults();
-        let middle = ((a + b) * 0.5).as_vec3();
-        let off = |fault: &usize| faults.side(*fault, middle).abs();
-        let nearest = (0..faults.surfaces().len()).min_by(|f, g| off(f).total_cmp(&off(g)));
-        a.distance_squared(b) > 1e-12
-            && a.z.max(b.z) <= self.high.z
-            && nearest.is_some_and(|fault| faults.is_real(fault, middle))
+        let middle = (a + b) * 0.5;
+        let is_real = |fault: usize| self.model.faults().is_real(fault, middle.as_vec3());
+        a.distance_squared(b) > 1e-12 && a.z.max(b.z) <= self.high.z && self.fault_at(middle).is_some_and(is_real)
     }
 
     /// The pieces of a convex polygon on a plane with this normal that are rock, and the lines where the ground cuts it.
@@ -414,10 +492,27 @@ impl Ground<'_> {
     }
 }
 
-/// Whether the middle of a line is cut out.
-fn is_cut_out(solid: &Solid, [a, b]: [DVec3; 2]) -> bool {
-    let middle = ((a + b) * 0.5).as_vec3();
-    solid.cut_outs.iter().any(|body| body.holds(middle))
+/// The pieces of a convex polygon with the cut-outs in which each lies.
+fn by_cuts(polygon: Vec<DVec3>, cuts: &[Vec<Body>]) -> Vec<(u32, Vec<DVec3>)> {
+    let mut pieces = vec![(0, polygon)];
+    for (n, bodies) in cuts.iter().enumerate() {
+        let mut next = Vec::new();
+        for (mask, piece) in pieces {
+            let mut left = vec![piece];
+            for body in bodies {
+                let mut beyond = Vec::new();
+                for piece in left {
+                    let (outside, inside) = split(piece, body);
+                    beyond.extend(outside);
+                    next.extend(inside.map(|inside| (mask | 1 << n, inside)));
+                }
+                left = beyond;
+            }
+            next.extend(left.into_iter().map(|piece| (mask, piece)));
+        }
+        pieces = next;
+    }
+    pieces
 }
 
 /// The triangles of a fan, for what asks for a mesh of one polygon.

@@ -163,6 +163,13 @@ fn still_legend(model: &Model, page: &mut String) -> Result<(), ProjectError> {
         }
         page.push_str("</ul>\n");
     }
+    let doubtful = model.horizons.iter().filter(|horizon| horizon.picked_share < 0.995);
+    let doubtful: Vec<String> = doubtful
+        .map(|horizon| format!("{}: {:.0} % picked", escaped(&horizon.name), 100.0 * horizon.picked_share))
+        .collect();
+    if !doubtful.is_empty() {
+        let _ = writeln!(page, "<p>Filled or extrapolated in part: {}.</p>", doubtful.join(", "));
+    }
     if !model.notes.is_empty() {
         page.push_str("<h2>Notes</h2>\n<ul>\n");
         for note in &model.notes {

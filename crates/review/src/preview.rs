@@ -68,7 +68,7 @@ pub fn draw(model: &Model, scene: usize, turned: Option<[f64; 2]>, size_px: [u32
         Shown::Block => canvas.block(model, cut, scene),
         Shown::Surfaces => {
             for surface in model.horizons.iter().chain(&model.faults) {
-                canvas.surface(&surface.mesh, surface.colour);
+                canvas.surface(&surface.mesh, surface.shown(scene.ground.is_some()), surface.colour);
             }
         }
     }
@@ -127,7 +127,7 @@ impl Canvas {
         for face in &block.faces {
             let cover = &model.covers[face.cover];
             let colour = |voxel: DVec3| colour_of(cover, map.as_ref(), voxel, scene.blend);
-            self.mesh(&face.mesh, |_| (), |voxel, ()| colour(voxel));
+            self.fill((&face.mesh.points, &face.mesh.triangles), |_| (), |voxel, ()| colour(voxel));
         }
         let Scene { outlines, .. } = scene;
         for (kind, ends) in &block.lines {
@@ -141,7 +141,7 @@ impl Canvas {
     }
 
     /// A horizon or fault in the light.
-    fn surface(&mut self, mesh: &Mesh, colour: Colour) {
+    fn surface(&mut self, mesh: &Mesh, triangles: &[[u32; 3]], colour: Colour) {
         let tone = colour.to_unit().map(f64::from);
         let linear = self.linear;
         let lit = |corners: [DVec3; 3]| {
@@ -149,17 +149,22 @@ impl Canvas {
             let normal = (b - a).cross(c - a).normalize_or_zero();
             (normal * DVec3::new(1.0, 1.0, -1.0)).dot(LIGHT.normalize()).abs()
         };
-        self.mesh(mesh, lit, |_, light| {
+        self.fill((&mesh.points, triangles), lit, |_, light| {
             let part = |c: f64| c * 0.62 + (c + (1.0 - c) * 0.28 - c * 0.62) * light;
             tone.map(|c| (part(c) * 255.0).round() as u8)
         });
     }
 
     /// Fills triangles; `of` is computed once for each of them, `colour` at each pixel.
-    fn mesh<T: Copy>(&mut self, mesh: &Mesh, of: impl Fn([DVec3; 3]) -> T, colour: impl Fn(DVec3, T) -> [u8; 3]) {
-        let corners: Vec<Corner> = mesh.points.iter().map(|p| self.corner(*p)).collect();
+    fn fill<T: Copy>(
+        &mut self,
+        (points, triangles): (&[DVec3], &[[u32; 3]]),
+        of: impl Fn([DVec3; 3]) -> T,
+        colour: impl Fn(DVec3, T) -> [u8; 3],
+    ) {
+        let corners: Vec<Corner> = points.iter().map(|p| self.corner(*p)).collect();
         let (width, height) = (self.image.width() as usize, self.image.height() as usize);
-        for triangle in &mesh.triangles {
+        for triangle in triangles {
             let [a, b, c] = triangle.map(|n| corners[n as usize]);
             let area = (b.at - a.at).perp_dot(c.at - a.at);
             if area.abs() < 1e-9 {

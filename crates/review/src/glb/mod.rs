@@ -30,6 +30,8 @@ pub const TRIANGLES: [usize; 2] = [1000, 5_000_000];
 pub const OFFICE_TRIANGLES: usize = 100_000;
 /// Opacity of horizons and faults, which lie within the block.
 const SURFACE_OPACITY: f32 = 1.0;
+/// How far triangles of horizons may be from them where the triangles suffice, samples.
+const LEAST_ERROR: f64 = 0.4;
 /// Sides of the tube of a well.
 const SIDES: usize = 8;
 /// Most points of a well's path.
@@ -122,7 +124,8 @@ pub fn prepare(
             sections: 0,
             has_whole: false,
             ground_cells: (0.25 * budget).sqrt().clamp(8.0, 512.0) as usize,
-            surface_nodes: ((0.5 * budget / horizons / 2.0).sqrt() as usize).clamp(4, 512),
+            surface_nodes: ((0.25 * budget / horizons / 2.0).sqrt() as usize).clamp(4, 512),
+            surface_error: LEAST_ERROR / share,
             surface_triangles: (fault_budget / faults.max(1.0)).max(64.0) as usize,
             ..settings.clone()
         };
@@ -204,10 +207,11 @@ fn encoded(model: &Model) -> Result<(Vec<u8>, usize, WrittenModel), ProjectError
     for (title, surfaces) in [("Horizons", &model.horizons), ("Faults", &model.faults)] {
         let mut nodes = Vec::new();
         for surface in surfaces {
-            triangles += surface.mesh.triangles.len();
+            let shown = surface.shown(scene.scene.ground.is_some());
+            triangles += shown.len();
             deviation_m = deviation_m.max(surface.deviation_m);
             usual_deviation_m = usual_deviation_m.max(surface.usual_deviation_m);
-            nodes.extend(add_surface(&mut file, surface, &frame));
+            nodes.extend(add_surface(&mut file, (surface, shown), &frame));
         }
         groups.extend(file.group(title, &nodes));
     }
@@ -254,11 +258,11 @@ fn encoded(model: &Model) -> Result<(Vec<u8>, usize, WrittenModel), ProjectError
     Ok((bytes, pictures, written))
 }
 
-fn add_surface(file: &mut GlbFile, surface: &Surface, frame: &Frame) -> Option<usize> {
+fn add_surface(file: &mut GlbFile, (surface, triangles): (&Surface, &[[u32; 3]]), frame: &Frame) -> Option<usize> {
     let [r, g, b] = surface.colour.to_unit().map(ttf::linear_from_srgb);
     let material = file.material(&surface.name, [r, g, b, SURFACE_OPACITY], None);
     let points = frame.places(&surface.mesh.points);
-    let covered = Covered { points: &points, triangles: &surface.mesh.triangles, uv: Vec::new(), material, raw: None };
+    let covered = Covered { points: &points, triangles, uv: Vec::new(), material, raw: None };
     let extras = json!({ "pickedShare": surface.picked_share, "deviation_m": surface.deviation_m });
     file.mesh(&surface.name, &covered, &extras)
 }
