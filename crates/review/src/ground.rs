@@ -314,13 +314,11 @@ impl Ground<'_> {
         };
         let mut rim = Vec::new();
         let last = PIECE;
-        let sides: [((isize, isize), [usize; 2], [isize; 2]); 4] = [
-            ((0, -1), [0, 0], [1, 0]),
-            ((1, 0), [last, 0], [0, 1]),
-            ((0, 1), [last, last], [-1, 0]),
-            ((-1, 0), [0, last], [0, -1]),
-        ];
-        for ((dx, dy), [u, v], [du, dv]) in sides {
+        // Beside which a side lies, where it begins, and where it runs.
+        let beside = [(0, -1), (1, 0), (0, 1), (-1, 0)];
+        let begins = [[0, 0], [last, 0], [last, last], [0, last]];
+        let runs: [[isize; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
+        for (((dx, dy), [u, v]), [du, dv]) in beside.into_iter().zip(begins).zip(runs) {
             let stride = if is_flat(dx, dy) { PIECE } else { 1 };
             rim.extend((0..PIECE).step_by(stride).map(|n| {
                 let along = |from: usize, by: isize| from.saturating_add_signed(by * n as isize);
@@ -348,7 +346,7 @@ impl Ground<'_> {
             lines.retain(|ends| self.is_fault(*ends));
             (left, lines)
         });
-        let mut parts: BTreeMap<(u32, Option<usize>), (Welder, Vec<[DVec3; 2]>)> = BTreeMap::new();
+        let mut parts: BTreeMap<(u32, Option<usize>), (Welder, Vec<_>)> = BTreeMap::new();
         for (pieces, lines) in made.collect::<Vec<_>>() {
             for (mask, fault, piece) in pieces {
                 parts.entry((mask, fault)).or_default().0.add(&piece);

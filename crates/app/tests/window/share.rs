@@ -124,7 +124,7 @@ fn what_cannot_be_written_is_said_in_the_dialogue_and_a_stop_leaves_nothing() {
     click(&mut harness, "Write the file");
     wait(&mut harness, "it is under way", |harness| harness.query_all_by_label("Stop").count() > 0);
     harness.query_all_by_label("Stop").last().unwrap().click();
-    wait(&mut harness, "it is stopped", |harness| is_idle(harness));
+    wait(&mut harness, "it is stopped", is_idle);
     assert!(matches!(state(&harness).dialogue, Some(Dialogue::Share(_))), "it stays");
     let left: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert!(!left.iter().any(|name| name.to_string_lossy().contains("slow")), "{left:?}");
