@@ -22,7 +22,7 @@ use render::{FaceData, Scene};
 use state::picking::voxel_of;
 use state::{
     Action, Appearance, Choice, Compare, Dialogue, ExportForm, FileContent, How, Layout, Look, Notice, Panel,
-    PickingStep, Place, Target,
+    PickingStep, Place, ShareForm, Target,
 };
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -316,6 +316,11 @@ impl Tour {
         let note = NoteEntry { text, at: [174.0, 640.0, 700.0], scene: None };
         self.act(Action::Apply(Box::new(Command::AddNote(AddNote { note }))));
         self.click("Share…");
+        // Names without the folder in which the pictures are made.
+        let form = ShareForm::new(Path::new("demo.petro"));
+        self.ask(Dialogue::Share(form));
+        // The dialogue finds its place.
+        self.settle();
         self.click("Preview");
         self.shoot("share")?;
         self.click("Model for slides");

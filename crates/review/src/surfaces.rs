@@ -22,6 +22,8 @@ const BESIDE: f64 = 0.05;
 const COARSEST: f64 = 64.0;
 /// Times that an edge is halved at most.
 const FINEST: u32 = 5;
+/// Weights of the corners at the places within a triangle at which it is compared with the horizon.
+const WITHIN: [[f64; 3]; 4] = [[1.0 / 3.0; 3], [0.6, 0.2, 0.2], [0.2, 0.6, 0.2], [0.2, 0.2, 0.6]];
 /// Longest edge of a triangle that is cut at the ground, voxels, and how far beside a fault rock is looked for.
 const CUT_EDGE: f64 = 3.0;
 /// Distance from a fault at which there is rock or air beside it, voxels.
@@ -67,9 +69,12 @@ pub(crate) fn horizon(
                 let flat: f64 = corners.iter().zip(weights).map(|(corner, weight)| z(*corner) * weight).sum();
                 (z(at) - flat).abs() > error
             };
-            let is_far = match corners.len() {
-                2 => [0.5, 0.25, 0.75].iter().any(|share| far(&[*share, 1.0 - share])),
-                _ => far(&[1.0 / 3.0; 3]),
+            let is_far = match corners {
+                [a, b] => {
+                    let count = (2.0 * a.distance(*b)).ceil().clamp(3.0, 11.0) as usize;
+                    (1..=count).map(|n| n as f64 / (count + 1) as f64).any(|share| far(&[share, 1.0 - share]))
+                }
+                _ => WITHIN.iter().any(|weights| far(weights)),
             };
             let middle = corners.iter().sum::<DVec2>() / corners.len() as f64;
             is_far && (is_there(middle) || corners.iter().any(|corner| is_there(*corner)))
