@@ -7,25 +7,12 @@ use pictures::Device;
 use project::Project;
 use project::folder::refuse_inside_project;
 use project::memory_budget;
-use review::{ReviewSettings, glb, html};
+use review::glb::TRIANGLES;
+use review::html::SIZES_MB;
+use review::{DENSITIES, MOST_SECTIONS, ReviewSettings, glb, html};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use survey::Progress;
-
-/// Limits of the texels along the longest side of the block.
-const DENSITIES: [f64; 2] = [64.0, 4096.0];
-/// Most sections along an axis.
-const MOST_SECTIONS: usize = 200;
-/// Limits of the size of a page, MB.
-const SIZES_MB: [f64; 2] = [0.5, 2000.0];
-/// Limits of the triangles of a model.
-const TRIANGLES: [usize; 2] = [1000, 5_000_000];
-/// Nodes along each axis on which the horizons of a page are sampled.
-const SURFACE_NODES: usize = 56;
-/// Most cells along each axis on which the ground of a page is sampled.
-const GROUND_CELLS: usize = 80;
-/// Most triangles of a fault in a page.
-const SURFACE_TRIANGLES: usize = 4_000;
 
 /// A page that was asked for.
 #[derive(Debug)]
@@ -62,14 +49,7 @@ impl TryFrom<ReviewArgs> for ReviewRequest {
             project: typed.project,
             out: typed.out,
             limit: (typed.size_limit * 1e6) as u64,
-            settings: ReviewSettings {
-                sections: typed.sections,
-                surface_nodes: SURFACE_NODES,
-                surface_triangles: SURFACE_TRIANGLES,
-                ground_cells: GROUND_CELLS,
-                has_whole: true,
-                ..settings(typed.density, typed.scene, device, volume_bytes)?
-            },
+            settings: settings((typed.density, typed.sections), typed.scene, device, volume_bytes)?,
         })
     }
 }
@@ -88,7 +68,7 @@ impl TryFrom<ExportArgs> for ModelRequest {
             project: typed.project,
             out: typed.out,
             triangles: typed.triangles,
-            settings: settings(typed.density, typed.scene.into_iter().collect(), device, volume_bytes)?,
+            settings: settings((typed.density, 0), typed.scene.into_iter().collect(), device, volume_bytes)?,
         })
     }
 }
@@ -102,7 +82,7 @@ fn has_ending(out: &Path, endings: &[&str], what: &str) -> Result<(), Usage> {
 }
 
 fn settings(
-    density: f64,
+    (density, sections): (f64, usize),
     scenes: Vec<String>,
     device: Device,
     volume_bytes: Option<u64>,
@@ -111,17 +91,8 @@ fn settings(
     if !(density >= least && density <= most) {
         return Err(format!("--density {density}: expected {least} to {most} texels"));
     }
-    Ok(ReviewSettings {
-        density,
-        sections: 0,
-        surface_nodes: 0,
-        surface_triangles: 0,
-        ground_cells: 0,
-        has_whole: false,
-        scenes,
-        device,
-        volume_bytes: volume_bytes.unwrap_or_else(memory_budget::half_of_available),
-    })
+    let volume_bytes = volume_bytes.unwrap_or_else(memory_budget::half_of_available);
+    Ok(ReviewSettings::new(density, sections, scenes, device, volume_bytes))
 }
 
 /// Writes a page.

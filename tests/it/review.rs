@@ -53,15 +53,75 @@ fn a_page_holds_the_block_its_scenes_and_its_notes() {
     assert_eq!(data["notes"][0]["text"], "Reverse fault?");
     assert_eq!((&data["notes"][0]["scene"], &data["warning"]), (&Value::from("corner"), &Value::Null));
     // Four sides, two walls and the ground or a flat top; without cut-outs four sides and that.
-    let faces = |block: &Value| data["blocks"][block.as_u64().unwrap() as usize]["faces"].as_array().unwrap().len();
-    assert_eq!([faces(&data["scenes"][0]["cut"]), faces(&data["scenes"][0]["whole"])], [7, 5]);
-    assert_eq!([faces(&data["scenes"][1]["cut"]), faces(&data["scenes"][1]["whole"])], [7, 5]);
+    let block = |block: &Value| &data["blocks"][block.as_u64().unwrap() as usize];
+    let faces = |scene: usize, cuts: usize| {
+        let scene = &data["scenes"][scene];
+        let ground = scene["ground"].as_array().unwrap().iter().filter(|part| part["cuts"].as_u64() == Some(0));
+        let relief = ground.flat_map(|part| block(&part["block"])["faces"].as_array().unwrap());
+        let relief = relief.filter(|face| face["name"] == "ground").count();
+        block(&scene["variants"][cuts])["faces"].as_array().unwrap().len() + relief
+    };
+    assert_eq!([faces(0, 1), faces(0, 0), faces(1, 1), faces(1, 0)], [7, 5, 7, 5]);
+    assert_eq!(data["scenes"][0]["cuts"], serde_json::json!(["Cut-out"]));
+    let grounds = |scene: usize| data["scenes"][scene]["ground"].as_array().unwrap().len();
+    assert!(grounds(0) > 1 && grounds(1) == 0, "{} {}", grounds(0), grounds(1));
     assert_eq!(data["sections"].as_array().unwrap().len(), 3);
     // Pictures of faces that scenes share are there once.
     assert!(data["covers"].as_array().unwrap().iter().all(|cover| cover["illustrated"].is_string()));
     // The same again is the same page.
     run_in(at, &format!("review p.petro b.html --sections 1 {SMALL}")).done();
     assert!(fs::read(at.join("b.html")).unwrap() == text.into_bytes());
+}
+
+/// Cut-outs are switched one by one: a block for each set of them.
+#[test]
+fn each_cut_out_is_switched_by_itself() {
+    let folder = project();
+    let at = folder.path();
+    run_in(at, "scene add p.petro two --cut min-min,0.3,0.3 --cut max-max,0.4,0.4 --ground off").done();
+    run_in(at, &format!("review p.petro a.html --sections 0 {SMALL}")).done();
+    let data = data(&fs::read_to_string(at.join("a.html")).unwrap());
+    let scene = &data["scenes"][0];
+    assert_eq!(scene["cuts"], serde_json::json!(["Cut-out 1", "Cut-out 2"]));
+    let walls = |cuts: usize| {
+        let block = &data["blocks"][scene["variants"][cuts].as_u64().unwrap() as usize];
+        let faces = block["faces"].as_array().unwrap().iter();
+        faces.filter(|face| face["name"].as_str().unwrap().starts_with("wall")).count()
+    };
+    assert_eq!([0, 1, 2, 3].map(walls), [0, 2, 2, 4]);
+}
+
+/// What was not picked is named in the legend and marked, and a block that nobody interpreted says so.
+#[test]
+fn a_page_says_what_was_not_picked_and_what_nobody_interpreted() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    crate::unpicked::sparse(at);
+    run_in(at, &format!("review p.petro a.html --sections 0 {SMALL}")).done();
+    let text = fs::read_to_string(at.join("a.html")).unwrap();
+    assert!(text.contains("<p>Filled or extrapolated in part: Sparse: 27 % picked.</p>"));
+    let sparse = data(&text);
+    assert_eq!((&sparse["unpicked"], &sparse["warning"]), (&Value::from(true), &Value::Null));
+    let told = |name: &str, key: &str| {
+        let all = sparse["horizons"].as_array().unwrap();
+        all.iter().find(|horizon| horizon["name"] == name).unwrap()[key].clone()
+    };
+    assert!(told("Whole", "unsure").is_null() && told("Sparse", "unsure").is_string());
+    assert!(told("Sparse", "picked").as_f64().unwrap() < 0.3 && told("Whole", "picked") == 1.0);
+
+    run_in(at, "synth s --size 48x48x64 --seed 1").done();
+    run_in(at, "illustrate s/survey.sgy b.svg --layers 4 --device cpu --project u.petro").done();
+    run_in(at, &format!("review u.petro u.html --sections 0 {SMALL}")).done();
+    let text = fs::read_to_string(at.join("u.html")).unwrap();
+    let warning = "Uninterpreted: layers by computed geologic time, not by rock";
+    assert!(text.contains(&format!("<p class=\"warning\">{warning}</p>")));
+    let data = data(&text);
+    assert_eq!(data["warning"], warning);
+    assert!(data["layers"].as_array().unwrap().iter().all(|layer| layer["rock"] == "" && layer["age"] == ""));
+    run_in(at, &format!("export u.petro u.glb --model --triangles 20000 {SMALL}")).done();
+    let (document, _) = model(&at.join("u.glb"));
+    let root = document["nodes"].as_array().unwrap().last().unwrap();
+    assert!(root["name"].as_str().unwrap().contains("uninterpreted") && root["extras"]["warning"] == warning);
 }
 
 #[test]

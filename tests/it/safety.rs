@@ -59,6 +59,45 @@ fn a_full_disk_costs_nothing() {
     run_in(at, "undo disk/p.petro").done();
 }
 
+/// What the block is shared as: long enough under way to be interrupted, and larger than the small disk.
+const SHARED: [(&str, &str); 2] =
+    [("review p.petro OUT --sections 1 --device cpu", "a.html"), ("export p.petro OUT --model --device cpu", "a.glb")];
+
+#[test]
+fn a_full_disk_leaves_no_half_review() {
+    let folder = project();
+    let at = folder.path();
+    let disk = at.join("disk");
+    let Some(_mounted) = Mounted::small(&disk, 64) else { return };
+    for (line, name) in SHARED {
+        fs::write(disk.join(name), "the one before").unwrap();
+        let line = line.replace("OUT", &format!("disk/{name} --density 120"));
+        run_in(at, &line).failed(&["disk is full"]);
+        // What was there is as it was, with nothing beside it.
+        assert_eq!(bytes(&disk).into_values().collect::<Vec<_>>(), [b"the one before".to_vec()], "{name}");
+        fs::remove_file(disk.join(name)).unwrap();
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn an_interrupted_review_leaves_nothing() {
+    let folder = project();
+    let at = folder.path();
+    for (line, name) in SHARED {
+        let mut child = begin_in(at, &line.replace("OUT", &format!("{name} --density 4096")));
+        std::thread::sleep(Duration::from_millis(900));
+        assert!(child.try_wait().unwrap().is_none(), "{name} was finished before it could be interrupted");
+        let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        assert!(sent.success());
+        let run = Run::of(&child.wait_with_output().unwrap());
+        assert_eq!(run.code, 1, "{}{}", run.stdout, run.stderr);
+        assert!(run.stderr.contains("cancelled"), "{}", run.stderr);
+        let left: Vec<_> = fs::read_dir(at).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        assert!(!left.iter().any(|left| left.to_string_lossy().contains(name)), "{left:?}");
+    }
+}
+
 fn make(folder: &Path) -> std::path::PathBuf {
     fs::create_dir_all(folder).unwrap();
     folder.to_owned()

@@ -16,12 +16,13 @@ use egui_kittest::{Harness, TestRenderer};
 use formats::well::WellFiles;
 use glam::DVec3;
 use image::{Rgba, RgbaImage};
-use project::command::{AddScene, AddWell, Command};
+use project::command::{AddNote, AddScene, AddWell, Command};
+use project::document::NoteEntry;
 use render::{FaceData, Scene};
 use state::picking::voxel_of;
 use state::{
     Action, Appearance, Choice, Compare, Dialogue, ExportForm, FileContent, How, Layout, Look, Notice, Panel,
-    PickingStep, Place, Target,
+    PickingStep, Place, ShareForm, Target,
 };
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -289,6 +290,7 @@ impl Tour {
         self.harness.run_steps(3);
         self.shoot("export")?;
         self.act(Action::Answered);
+        self.share()?;
         self.ask(Dialogue::Shortcuts);
         self.shoot("shortcuts")?;
         self.act(Action::Answered);
@@ -302,6 +304,29 @@ impl Tour {
         for _ in 0..3 {
             self.act(Action::Dismiss(0));
         }
+        Ok(())
+    }
+
+    /// The page and the model as they are shared, with a note.
+    fn share(&mut self) -> anyhow::Result<()> {
+        if !self.is_wanted("share") && !self.is_wanted("share-model") {
+            return Ok(());
+        }
+        let text = "The reverse fault repeats the limestone here".to_owned();
+        let note = NoteEntry { text, at: [174.0, 640.0, 700.0], scene: None };
+        self.act(Action::Apply(Box::new(Command::AddNote(AddNote { note }))));
+        self.click("Share…");
+        // Names without the folder in which the pictures are made.
+        let form = ShareForm::new(Path::new("demo.petro"));
+        self.ask(Dialogue::Share(form));
+        // The dialogue finds its place.
+        self.settle();
+        self.click("Preview");
+        self.shoot("share")?;
+        self.click("Model for slides");
+        self.shoot("share-model")?;
+        self.act(Action::Answered);
+        self.act(Action::Undo);
         Ok(())
     }
 

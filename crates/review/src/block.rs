@@ -24,9 +24,11 @@ pub(crate) struct Wanted {
     pub plane: Option<BodyPlane>,
     /// The rectangle that the picture shows.
     pub rectangle: SectionPlane,
+    /// How bright the bare plane of a fault is beside the ground; absent of all else.
+    pub shade: Option<f32>,
 }
 
-/// The block of a scene, and the pictures that it needs; faces count them from 0.
+/// The block of a scene without its ground, and the pictures that it needs; faces count them from 0.
 pub(crate) fn block_of(
     scene: &Scene,
     geometry: &SurveyGeometry,
@@ -68,20 +70,29 @@ pub(crate) fn block_of(
         }
         let name = name_of(&face, scene, geometry, block.faces.len());
         block.faces.push(Face { cover: wanted.len(), name, mesh: mesh_of(&pieces) });
-        wanted.push(Wanted { plane: Some(face.plane), rectangle: face.rectangle });
+        wanted.push(Wanted { plane: Some(face.plane), rectangle: face.rectangle, shade: None });
     }
     add_curved(&mut block, &walls, ground);
-    if let (Some(ground), Some(model)) = (ground, model) {
-        let mesh = ground.mesh(&scene.solid(geometry));
-        if !mesh.triangles.is_empty() {
-            let traces = ground.fault_traces(&mesh, model);
-            block.lines.extend(traces.into_iter().map(|ends| (LineKind::Fault, ends)));
-            let [low, high] = [scene.box_in(geometry).low(), scene.box_in(geometry).high()];
-            block.faces.push(Face { cover: wanted.len(), name: "ground".into(), mesh });
-            wanted.push(Wanted { plane: None, rectangle: SectionPlane::slice(low.z, low, high) });
+    (block, wanted)
+}
+
+/// The pictures that parts of the ground need: the relief's, and those of bare faults.
+pub(crate) fn wanted_ground(
+    scene: &Scene,
+    geometry: &SurveyGeometry,
+    ground: &Ground,
+    fault: Option<usize>,
+) -> (&'static str, Wanted) {
+    let block = scene.box_in(geometry);
+    let rectangle = SectionPlane::slice(block.low().z, block.low(), block.high());
+    let towards = scene.view(geometry).towards_camera(block.centre());
+    match fault {
+        None => ("ground", Wanted { plane: None, rectangle, shade: None }),
+        Some(fault) => {
+            let shade = Some(ground.shade(fault, towards));
+            ("bare fault", Wanted { plane: None, rectangle, shade })
         }
     }
-    (block, wanted)
 }
 
 /// The top where the ground takes its place, and the underside unless the camera looks up at it.

@@ -1,7 +1,7 @@
 //! The pictures of faces: the illustration, and what a reader finds under the finger.
 
 use crate::block::Wanted;
-use crate::ground::Ground;
+use crate::ground::Heights;
 use crate::model::Cover;
 use glam::{DVec2, DVec3, Vec3};
 use image::RgbImage;
@@ -19,6 +19,8 @@ use ttf::RawColour;
 
 /// Samples a texel along each axis.
 const SAMPLES: u32 = 2;
+/// Most texels of bare faults along an axis: the colour of the rock beside them.
+const BARE_TEXELS: u32 = 96;
 /// Most nodes of the data along an axis.
 const MOST_NODES: f64 = 1024.0;
 /// Depths below the triangles of the ground at which its layer is looked for, voxels.
@@ -39,13 +41,14 @@ pub(crate) struct CoverMaker<'a> {
 
 impl CoverMaker<'_> {
     /// The pictures of a face.
-    pub fn make(&mut self, wanted: &Wanted, scene: &Scene, ground: Option<&Ground>) -> Result<Cover, ProjectError> {
+    pub fn make(&mut self, wanted: &Wanted, scene: &Scene, ground: Option<&Heights>) -> Result<Cover, ProjectError> {
         let rectangle = wanted.rectangle;
         let size = self.size_px(&rectangle, scene.exaggeration);
+        let size = if wanted.shade.is_some() { size.map(|side| side.min(BARE_TEXELS)) } else { size };
         let illustrated = match (&self.loaded.rock, &wanted.plane) {
             (None, _) => None,
             (Some(_), Some(plane)) => Some(self.face(plane, &rectangle, scene, size)?),
-            (Some(_), None) => Some(self.ground(&rectangle, scene, size)?),
+            (Some(_), None) => Some(shaded(self.ground(&rectangle, scene, size)?, wanted.shade.unwrap_or(1.0))),
         };
         let data = self.data(&rectangle, ground.filter(|_| wanted.plane.is_none()));
         Ok(Cover { rectangle, illustrated, is_smooth: wanted.plane.is_none(), data })
@@ -103,7 +106,7 @@ impl CoverMaker<'_> {
     }
 
     /// Raw value, layer and certainty at nodes from corner to corner.
-    fn data(&self, rectangle: &SectionPlane, ground: Option<&Ground>) -> RgbImage {
+    fn data(&self, rectangle: &SectionPlane, ground: Option<&Heights>) -> RgbImage {
         let nodes = |extent: f64, axis: DVec3| {
             let voxels = extent * axis.length();
             (voxels * self.nodes_per_voxel).round().clamp(1.0, MOST_NODES) + 1.0
@@ -115,13 +118,14 @@ impl CoverMaker<'_> {
         let volume = raw.and_then(|raw| volumes.iter().find(|volume| volume.name == raw.volume));
         let model = self.loaded.rock.as_ref().map(|rock| &rock.model);
         let [width, height] = size.map(|n| n as u32);
+        let ground = ground.zip(model).map(|(heights, model)| heights.on(model));
         let texel = |n: u32| {
             let mut p = rectangle.voxel(DVec2::new(f64::from(n % width), f64::from(n / width)) * step);
-            if let Some(ground) = ground {
+            if let Some(ground) = &ground {
                 p.z = ground.z_at(p.truncate());
             }
             let p = p.as_vec3();
-            let (layer, unsure) = match (model, ground) {
+            let (layer, unsure) = match (model, &ground) {
                 (None, _) => (0, 0),
                 (Some(model), None) => layer_at(model, p),
                 (Some(model), Some(_)) => layer_at(model, beneath(model, p)),
@@ -131,6 +135,15 @@ impl CoverMaker<'_> {
         let texels: Vec<[u8; 3]> = (0..width * height).into_par_iter().map(texel).collect();
         RgbImage::from_raw(width, height, texels.concat()).unwrap_or_default()
     }
+}
+
+/// A picture whose colours are multiplied.
+fn shaded(mut image: RgbImage, shade: f32) -> RgbImage {
+    if shade != 1.0 {
+        let darker = |c: &mut u8| *c = (f32::from(*c) * shade).round().clamp(0.0, 255.0) as u8;
+        image.pixels_mut().for_each(|pixel| pixel.0.iter_mut().for_each(darker));
+    }
+    image
 }
 
 /// A raw value in 1 to 255 over the domain of its colours; 0 where there is none.

@@ -8,6 +8,7 @@
 use crate::model::Model;
 use crate::page::{self, data_uri};
 use crate::picture::jpeg;
+use crate::size::SizeEstimate;
 use project::error::ProjectError;
 use project::folder::refuse_inside_project;
 use std::fmt::Write as _;
@@ -20,6 +21,10 @@ const VIEWER: &str = include_str!("../viewer/dist/viewer.js");
 const STYLE: &str = include_str!("../viewer/dist/viewer.css");
 /// SHA-256 of both in base64, a line each.
 const HASHES: &str = include_str!("../viewer/dist/hashes.txt");
+/// Largest size of a page unless stated, MB.
+pub const SIZE_MB: f64 = 12.0;
+/// Limits of the size of a page, MB.
+pub const SIZES_MB: [f64; 2] = [0.5, 2000.0];
 /// Steps in which pictures are made smaller until the page fits.
 const ATTEMPTS: usize = 6;
 
@@ -78,11 +83,25 @@ pub fn write(model: &Model, path: &Path, limit: u64, progress: &Progress) -> Res
     }
     progress.step(1)?;
     store::replace_file(path, text.as_bytes())?;
-    let first = &model.scenes[0].cut.faces;
-    let triangles = first.iter().map(|face| face.mesh.triangles.len()).sum::<usize>();
-    let surfaces = model.horizons.iter().chain(&model.faults).map(|surface| surface.mesh.triangles.len());
-    let triangles = triangles + surfaces.sum::<usize>();
-    Ok(WrittenPage { bytes, density_share: share, scenes: model.scenes.len(), triangles })
+    Ok(WrittenPage { bytes, density_share: share, scenes: model.scenes.len(), triangles: triangles(model) })
+}
+
+/// Triangles of the first scene's block, horizons and faults.
+pub fn triangles(model: &Model) -> usize {
+    let faces = model.scenes.iter().take(1).flat_map(|scene| &scene.cut.faces).map(|face| &face.mesh);
+    let surfaces = model.horizons.iter().chain(&model.faults).map(|surface| &surface.mesh);
+    faces.chain(surfaces).map(|mesh| mesh.triangles.len()).sum()
+}
+
+/// About how large the page of a model is, with faces of other densities.
+///
+/// # Errors
+/// A picture has no pixels.
+pub fn estimate(model: &Model) -> Result<SizeEstimate, ProjectError> {
+    let illustrated = page::illustrations(&model.covers, 1.0)?;
+    let text = whole(model, &page::page(model, &illustrated, &page::data(&model.covers)?)?)?;
+    let pictures: usize = illustrated.iter().flatten().map(String::len).sum();
+    Ok(SizeEstimate::new(text.len(), pictures))
 }
 
 /// The text of the page.
@@ -143,6 +162,13 @@ fn still_legend(model: &Model, page: &mut String) -> Result<(), ProjectError> {
             );
         }
         page.push_str("</ul>\n");
+    }
+    let doubtful = model.horizons.iter().filter(|horizon| horizon.picked_share < 0.995);
+    let doubtful: Vec<String> = doubtful
+        .map(|horizon| format!("{}: {:.0} % picked", escaped(&horizon.name), 100.0 * horizon.picked_share))
+        .collect();
+    if !doubtful.is_empty() {
+        let _ = writeln!(page, "<p>Filled or extrapolated in part: {}.</p>", doubtful.join(", "));
     }
     if !model.notes.is_empty() {
         page.push_str("<h2>Notes</h2>\n<ul>\n");

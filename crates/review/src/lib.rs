@@ -11,6 +11,7 @@
 //! | [`Model`] | the model |
 //! | [`html`] | the page; its viewer is built from `viewer/` and kept in `viewer/dist` |
 //! | [`glb`] | glTF 2.0 in one binary file |
+//! | [`preview`] | a picture of the model's own triangles, for the window |
 //!
 //! Deliberately absent: any shading, any change of a project.
 
@@ -25,10 +26,13 @@ mod model;
 mod page;
 mod picture;
 mod polygon;
+pub mod preview;
+mod size;
 mod surfaces;
 
-pub use make::{DENSITY, ReviewSettings, make};
+pub use make::{DENSITIES, DENSITY, MOST_SECTIONS, ReviewSettings, SECTIONS, make};
 pub use model::{
     Block, Cover, Face, Layer, LineKind, Mesh, Model, Note, RawScale, SceneModel, SectionPlace, Stack, Surface,
     WellPath,
 };
+pub use size::SizeEstimate;

@@ -1,10 +1,12 @@
 //! Makes the model of a project: what a scene needs is loaded once, and each picture of a face is made once.
 
-use crate::block::{Wanted, block_of, lines_on};
+use crate::block::{Wanted, block_of, lines_on, wanted_ground};
 use crate::covers::CoverMaker;
-use crate::ground::Ground;
-use crate::model::{Block, Cover, Layer, Model, Note, RawScale, SceneModel, SectionPlace, Stack, Surface, WellPath};
-use crate::surfaces;
+use crate::ground::Heights;
+use crate::model::{
+    Block, Cover, Face, Layer, LineKind, Model, Note, RawScale, SceneModel, SectionPlace, Stack, Surface, WellPath,
+};
+use crate::surfaces::{self, Lattice};
 use figure::draw::swatch;
 use glam::DVec3;
 use image::{RgbImage, imageops};
@@ -16,6 +18,7 @@ use project::content;
 use project::document::{Document, NoteEntry};
 use project::error::ProjectError;
 use project::styles;
+use render::ground::is_air;
 use render::{Faces, Scene};
 use std::collections::HashMap;
 use survey::block::BodyPlane;
@@ -29,8 +32,10 @@ pub struct ReviewSettings {
     pub density: f64,
     /// Sections along each axis, for stepping through the volume; 0 for none.
     pub sections: usize,
-    /// Nodes along each axis of the lattice on which horizons are sampled.
+    /// Nodes along each axis of the lattice on which horizons are sampled, before it is made finer where that is needed.
     pub surface_nodes: usize,
+    /// How far triangles of horizons may be from them, samples.
+    pub surface_error: f64,
     /// Most triangles of a fault, and of a horizon that is no height field.
     pub surface_triangles: usize,
     /// Most cells along each axis of the lattice on which the ground is sampled.
@@ -47,16 +52,50 @@ pub struct ReviewSettings {
 
 /// Texels along the longest side of the block, unless stated.
 pub const DENSITY: f64 = 1000.0;
+/// Limits of the texels along the longest side of the block.
+pub const DENSITIES: [f64; 2] = [64.0, 4096.0];
+/// Sections along an axis, unless stated.
+pub const SECTIONS: usize = 3;
+/// Most sections along an axis.
+pub const MOST_SECTIONS: usize = 200;
+/// Nodes along each axis on which the horizons of a page are sampled.
+const PAGE_NODES: usize = 40;
+/// How far triangles of the horizons of a page may be from them, samples.
+const PAGE_ERROR: f64 = 0.9;
+/// Most cells along each axis on which the ground of a page is sampled.
+const PAGE_GROUND_CELLS: usize = 256;
+/// Most triangles of a fault in a page.
+const PAGE_TRIANGLES: usize = 4_000;
 /// Pixels of the pictures for readers without 3D.
 const PICTURE_PX: [u32; 2] = [1120, 840];
 /// Pixels of a swatch of the legend.
 const SWATCH_PX: [u32; 2] = [96, 52];
 /// Pixels to a millimetre of a pattern's tile in a swatch.
 const SWATCH_PX_PER_MM: f32 = 9.0;
+/// Most cut-outs of a scene that are switched one by one; more are switched together.
+const MOST_SWITCHED: usize = 4;
 /// Share of the texels that sections get along each axis.
 const SECTION_DENSITY: f64 = 0.4;
 /// Colours of faults.
 const FAULT: Colour = Colour::new(0x6b, 0x2a, 0x1a);
+
+impl ReviewSettings {
+    /// Settings of a page. A model's are the same: what of them depends on its triangles, its export chooses.
+    pub fn new(density: f64, sections: usize, scenes: Vec<String>, device: Device, volume_bytes: u64) -> Self {
+        Self {
+            density,
+            sections,
+            surface_nodes: PAGE_NODES,
+            surface_error: PAGE_ERROR,
+            surface_triangles: PAGE_TRIANGLES,
+            ground_cells: PAGE_GROUND_CELLS,
+            has_whole: true,
+            scenes,
+            device,
+            volume_bytes,
+        }
+    }
+}
 
 /// Makes the model of a project.
 ///
@@ -84,7 +123,7 @@ pub fn make(project: &Project, settings: &ReviewSettings, progress: &Progress) -
         made.push(maker.scene(name, scene)?);
     }
     let sections = maker.sections(&named[0].1)?;
-    let (horizons, faults) = maker.surfaces()?;
+    let (horizons, faults) = maker.surfaces(named.iter().any(|(_, scene)| scene.ground.is_some()))?;
     let wells = maker.wells()?;
     let layers = maker.layers(document)?;
     let loaded = maker.loaded;
@@ -142,6 +181,29 @@ fn scenes(
     Ok(named)
 }
 
+/// The cut-outs of a scene in the sets that are switched together: boxes first, then other shapes.
+fn switched(scene: &Scene) -> Vec<Vec<usize>> {
+    let count = scene.cut_outs.len() + scene.cut_shapes.len();
+    match count {
+        0 => Vec::new(),
+        1..=MOST_SWITCHED => (0..count).map(|n| vec![n]).collect(),
+        _ => vec![(0..count).collect()],
+    }
+}
+
+/// A scene with some sets of its cut-outs: bit n of `taken` stands for set n.
+fn with_cuts(scene: &Scene, sets: &[Vec<usize>], taken: u32) -> Scene {
+    let is_taken = |cut: usize| sets.iter().enumerate().any(|(n, set)| taken >> n & 1 == 1 && set.contains(&cut));
+    let boxes = scene.cut_outs.len();
+    let cut_outs = scene.cut_outs.iter().enumerate().filter(|(n, _)| is_taken(*n)).map(|(_, cut)| *cut);
+    let cut_shapes = scene.cut_shapes.iter().enumerate().filter(|(n, _)| is_taken(boxes + n));
+    Scene {
+        cut_outs: cut_outs.collect(),
+        cut_shapes: cut_shapes.map(|(_, shape)| shape.clone()).collect(),
+        ..scene.clone()
+    }
+}
+
 /// Makes what scenes share.
 struct Maker<'a> {
     project: &'a Project,
@@ -163,18 +225,38 @@ impl Maker<'_> {
         let ground = match (&scene.ground, &self.loaded.rock) {
             (Some(style), Some(rock)) => {
                 let cells = self.settings.ground_cells;
-                Some(Ground::of((style, &solid), &self.loaded.geometry, &rock.model, cells))
+                Some(Heights::of((style, &solid), &self.loaded.geometry, &rock.model, cells))
             }
             _ => None,
         };
-        let cut = self.block(&solid, ground.as_ref())?;
-        let uncut = Scene { cut_outs: Vec::new(), cut_shapes: Vec::new(), ..solid.clone() };
-        let has_whole = self.settings.has_whole && solid.has_cut_outs();
-        let whole = if has_whole { Some(self.block(&uncut, ground.as_ref())?) } else { None };
+        let sets = switched(&solid);
+        let all = (1u32 << sets.len()) - 1;
+        let ground_parts = self.ground(&solid, &sets, ground.as_ref())?;
+        let mut variants = Vec::new();
+        let first = if self.settings.has_whole { 0 } else { all };
+        for taken in first..=all {
+            variants.push(self.block(&with_cuts(&solid, &sets, taken), ground.as_ref())?);
+        }
+        let mut cut = variants.last().cloned().unwrap_or_default();
+        for (_, part) in ground_parts.iter().filter(|(cuts, _)| *cuts == 0) {
+            cut.faces.extend(part.faces.iter().cloned());
+            cut.lines.extend(part.lines.iter().copied());
+        }
+        let (variants, ground) = if self.settings.has_whole { (variants, ground_parts) } else { Default::default() };
+        let cuts = (1..=sets.len()).map(|n| if all == 1 { "Cut-out".to_owned() } else { format!("Cut-out {n}") });
+        let cuts: Vec<String> = cuts.collect();
         let shown = Scene { size_px: PICTURE_PX, samples: 2, ..scene.clone() };
         load::read_more(self.project, &self.loaded, &shown, self.progress)?.add_to(&mut self.loaded);
         let (picture, _) = self.painter.draw(&shown, &self.loaded, self.progress)?;
-        Ok(SceneModel { name: name.to_owned(), scene: scene.clone(), cut, whole, picture: on_white(&picture) })
+        Ok(SceneModel {
+            name: name.to_owned(),
+            scene: scene.clone(),
+            cut,
+            cuts,
+            variants,
+            ground,
+            picture: on_white(&picture),
+        })
     }
 
     /// Compiles the styles for the exaggeration and the preset of a scene.
@@ -190,9 +272,10 @@ impl Maker<'_> {
         Ok(())
     }
 
-    fn block(&mut self, scene: &Scene, ground: Option<&Ground>) -> Result<Block, ProjectError> {
+    fn block(&mut self, scene: &Scene, ground: Option<&Heights>) -> Result<Block, ProjectError> {
         let model = self.loaded.rock.as_ref().map(|rock| &rock.model);
-        let (mut block, wanted) = block_of(scene, &self.loaded.geometry, model, ground);
+        let on = ground.zip(model).map(|(heights, model)| heights.on(model));
+        let (mut block, wanted) = block_of(scene, &self.loaded.geometry, model, on.as_ref());
         let mut covers = Vec::with_capacity(wanted.len());
         for wanted in &wanted {
             covers.push(self.cover(wanted, scene, ground, 1.0)?);
@@ -201,12 +284,35 @@ impl Maker<'_> {
         Ok(block)
     }
 
+    /// The parts of the ground with their pictures, by the cut-outs in which they lie.
+    fn ground(
+        &mut self,
+        scene: &Scene,
+        sets: &[Vec<usize>],
+        ground: Option<&Heights>,
+    ) -> Result<Vec<(u32, Block)>, ProjectError> {
+        let Some((heights, rock)) = ground.zip(self.loaded.rock.as_ref()) else { return Ok(Vec::new()) };
+        let (geometry, on) = (&self.loaded.geometry, heights.on(&rock.model));
+        let bodies: Vec<_> = (0..sets.len()).map(|n| with_cuts(scene, sets, 1 << n).solid(geometry).cut_outs).collect();
+        let parts = on.parts(&bodies).into_iter().filter(|part| self.settings.has_whole || part.cuts == 0);
+        let parts = parts.map(|part| (wanted_ground(scene, geometry, &on, part.fault), part));
+        let mut made = Vec::new();
+        for ((name, wanted), part) in parts.collect::<Vec<_>>() {
+            let cover = self.cover(&wanted, scene, ground, 1.0)?;
+            let lines = part.lines.into_iter().map(|ends| (LineKind::Fault, ends)).collect();
+            let face = Face { cover, name: name.to_owned(), mesh: part.mesh };
+            let faces = Some(face).filter(|face| !face.mesh.triangles.is_empty()).into_iter().collect();
+            made.push((part.cuts, Block { faces, lines }));
+        }
+        Ok(made)
+    }
+
     /// The index of a picture, which is made unless it is there.
     fn cover(
         &mut self,
         wanted: &Wanted,
         scene: &Scene,
-        ground: Option<&Ground>,
+        ground: Option<&Heights>,
         share: f64,
     ) -> Result<usize, ProjectError> {
         let light = match (&wanted.plane, scene.face_tone > 0.0) {
@@ -214,8 +320,9 @@ impl Maker<'_> {
             _ => format!("{:?} {:?}", scene.ground, scene.camera),
         };
         let key = format!(
-            "{:?} {:?} {} {:?} {} {share} {light}",
+            "{:?} {:?} {:?} {} {:?} {} {share} {light}",
             wanted.rectangle,
+            wanted.shade,
             wanted.plane.map(|plane| plane.wall),
             scene.exaggeration,
             scene.preset,
@@ -264,7 +371,7 @@ impl Maker<'_> {
                     _ => SectionPlane::slice(at, low, high),
                 };
                 let plane = Some(BodyPlane::of_axis(axis, at as f32, 1.0));
-                let cover = self.cover(&Wanted { plane, rectangle }, scene, None, SECTION_DENSITY)?;
+                let cover = self.cover(&Wanted { plane, rectangle, shade: None }, scene, None, SECTION_DENSITY)?;
                 let model = self.loaded.rock.as_ref().map(|rock| &rock.model);
                 let lines = model.map_or_else(Vec::new, |model| lines_on(model, &rectangle));
                 stack.places.push(SectionPlace { at, cover, lines });
@@ -274,7 +381,7 @@ impl Maker<'_> {
         Ok(stacks)
     }
 
-    fn surfaces(&self) -> Result<(Vec<Surface>, Vec<Surface>), ProjectError> {
+    fn surfaces(&self, has_ground: bool) -> Result<(Vec<Surface>, Vec<Surface>), ProjectError> {
         let document = self.project.document();
         let geometry = &self.loaded.geometry;
         let Some(rock) = &self.loaded.rock else { return Ok((Vec::new(), Vec::new())) };
@@ -291,7 +398,8 @@ impl Maker<'_> {
                     surfaces::triangles(geometry, label, &mesh, self.settings.surface_triangles)
                 }
                 false => {
-                    surfaces::horizon(&rock.model, geometry, (index, label.0, label.1), self.settings.surface_nodes)
+                    let lattice = Lattice { nodes: self.settings.surface_nodes, error: self.settings.surface_error };
+                    surfaces::horizon(&rock.model, geometry, (index, label.0, label.1), lattice)
                 }
             };
             surface.picked_share = shares.get(index).copied().filter(|share| share.is_finite()).unwrap_or(1.0);
@@ -302,7 +410,11 @@ impl Maker<'_> {
             self.progress.step(1)?;
             let fault = content::read_fault(self.project.root(), entry)?;
             let most = self.settings.surface_triangles;
-            faults.push(surfaces::triangles(geometry, (&entry.name, FAULT), &fault.mesh, most));
+            let mut surface = surfaces::triangles(geometry, (&entry.name, FAULT), &fault.mesh, most);
+            if has_ground {
+                surfaces::cut_at_ground(&mut surface, |p| !is_air(&rock.model, p.as_vec3()));
+            }
+            faults.push(surface);
         }
         Ok((horizons, faults))
     }

@@ -40,6 +40,14 @@ pub struct Model {
     pub raw: Option<RawScale>,
 }
 
+impl Model {
+    /// Whether a face or a horizon shows what was filled or extrapolated, not picked.
+    pub fn has_unpicked(&self) -> bool {
+        let is_unpicked = |cover: &Cover| cover.data.pixels().any(|pixel| pixel.0[2] > 0);
+        self.horizons.iter().any(|horizon| horizon.is_picked.contains(&false)) || self.covers.iter().any(is_unpicked)
+    }
+}
+
 /// The scale of 8-bit raw values.
 pub struct RawScale {
     /// Name of the volume.
@@ -89,6 +97,7 @@ pub struct Mesh {
 }
 
 /// A part of a block that has one picture.
+#[derive(Clone)]
 pub struct Face {
     /// Index among the covers.
     pub cover: usize,
@@ -113,7 +122,7 @@ pub enum LineKind {
 }
 
 /// The faces of a block and the lines on them.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Block {
     /// Faces.
     pub faces: Vec<Face>,
@@ -129,8 +138,13 @@ pub struct SceneModel {
     pub scene: Scene,
     /// The block with its cut-outs.
     pub cut: Block,
-    /// The block without them; absent where nothing is cut out.
-    pub whole: Option<Block>,
+    /// The names of cut-outs that can be switched one by one.
+    pub cuts: Vec<String>,
+    /// The block without its ground for each set of those cut-outs: bit n of the index stands for cut-out n. Empty where
+    /// nothing is switched.
+    pub variants: Vec<Block>,
+    /// The parts of the ground with the set of cut-outs in which each lies; empty where nothing is switched.
+    pub ground: Vec<(u32, Block)>,
     /// The picture for readers that show no 3D.
     pub picture: RgbImage,
 }
@@ -141,8 +155,10 @@ pub struct Surface {
     pub name: String,
     /// Its colour.
     pub colour: Colour,
-    /// Its triangles.
+    /// Its triangles; the first [`Self::below`] of them lie below the ground, where that is shown.
     pub mesh: Mesh,
+    /// Triangles below the ground.
+    pub below: usize,
     /// For each corner, whether the place was picked (or tracked); not filled or extrapolated.
     pub is_picked: Vec<bool>,
     /// Share of the surface that was picked, 0 to 1.
@@ -151,6 +167,13 @@ pub struct Surface {
     pub deviation_m: f64,
     /// The distance within which 99 % of the places are that were compared, m.
     pub usual_deviation_m: f64,
+}
+
+impl Surface {
+    /// The triangles that a scene with or without a ground shows.
+    pub fn shown(&self, has_ground: bool) -> &[[u32; 3]] {
+        if has_ground { &self.mesh.triangles[..self.below] } else { &self.mesh.triangles }
+    }
 }
 
 /// A well.

@@ -72,6 +72,7 @@ pub(crate) fn page(model: &Model, illustrated: &[Option<String>], data: &[Vec<u8
         "title": model.title,
         "provenance": model.provenance,
         "warning": model.warning,
+        "unpicked": model.has_unpicked(),
         "geometry": geometry(&model.geometry),
         "raw": model.raw.as_ref().map(|raw| json!({
             "volume": raw.volume, "domain": raw.function.domain, "map": encode(&map(&raw.function)),
@@ -166,6 +167,7 @@ fn scene(model: &SceneModel, geometry: &SurveyGeometry, blocks: &mut Blocks) -> 
     let stroke = |stroke: render::Stroke| json!({ "width": stroke.width_px, "colour": stroke.colour.to_string() });
     json!({
         "name": model.name,
+        "hasGround": scene.ground.is_some(),
         "camera": {
             "azimuth": scene.camera.azimuth_for(geometry, &block), "elevation": elevation_deg, "fov": fov,
             "target": target, "zoom": zoom, "pan": pan, "margin": margin,
@@ -182,8 +184,13 @@ fn scene(model: &SceneModel, geometry: &SurveyGeometry, blocks: &mut Blocks) -> 
             "radius": scene.wells.radius, "colour": scene.wells.colour.to_string(),
             "top": scene.wells.top_colour.to_string(),
         },
-        "cut": blocks.index(&model.cut),
-        "whole": model.whole.as_ref().map(|block| blocks.index(block)),
+        "cuts": model.cuts,
+        "variants": model.variants.iter().map(|block| blocks.index(block)).collect::<Vec<_>>(),
+        "ground": model
+            .ground
+            .iter()
+            .map(|(cuts, block)| json!({ "cuts": cuts, "block": blocks.index(block) }))
+            .collect::<Vec<_>>(),
     })
 }
 
@@ -233,7 +240,7 @@ fn surface(surface: &Surface) -> Value {
     json!({
         "name": surface.name, "colour": surface.colour.to_string(), "mesh": mesh(&surface.mesh),
         "unsure": unsure.contains(&255).then(|| encode(&unsure)),
-        "picked": surface.picked_share, "deviation": surface.deviation_m,
+        "below": surface.below, "picked": surface.picked_share, "deviation": surface.deviation_m,
     })
 }
 

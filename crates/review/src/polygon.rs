@@ -13,8 +13,9 @@ pub(crate) fn fan(corners: usize) -> impl Iterator<Item = [usize; 3]> {
     (2..corners).map(|n| [0, n - 1, n])
 }
 
-/// A convex polygon less a convex body, in convex pieces. Whatever the body does not touch stays one piece.
-pub(crate) fn outside(polygon: Vec<DVec3>, body: &Body) -> Vec<Vec<DVec3>> {
+/// A convex polygon less a convex body, in convex pieces, and its part within the body. Whatever the body does not touch
+/// stays one piece.
+pub(crate) fn split(polygon: Vec<DVec3>, body: &Body) -> (Vec<Vec<DVec3>>, Option<Vec<DVec3>>) {
     let (mut pieces, mut rest) = (Vec::new(), polygon.clone());
     for plane in &body.planes {
         let side = |p: DVec3| plane.normal.as_dvec3().dot(p) - f64::from(plane.offset);
@@ -24,10 +25,10 @@ pub(crate) fn outside(polygon: Vec<DVec3>, body: &Body) -> Vec<Vec<DVec3>> {
             pieces.push(beyond);
         }
         if area(&rest) <= 1e-9 {
-            return vec![polygon];
+            return (vec![polygon], None);
         }
     }
-    pieces
+    (pieces, Some(rest))
 }
 
 fn area(polygon: &[DVec3]) -> f64 {
@@ -137,21 +138,23 @@ mod tests {
     #[test]
     fn a_square_less_a_box_has_the_area_that_is_left() {
         let body = Body::of_box([Vec3::new(1.0, 1.0, -1.0), Vec3::new(2.0, 3.0, 1.0)]);
-        let left: f64 = outside(square(0.0, 4.0), &body).iter().map(|piece| area(piece)).sum();
+        let left: f64 = split(square(0.0, 4.0), &body).0.iter().map(|piece| area(piece)).sum();
         assert!((left - 14.0).abs() < 1e-9, "{left}");
         let far = Body::of_box([Vec3::splat(7.0), Vec3::splat(8.0)]);
-        assert_eq!(outside(square(0.0, 4.0), &far), vec![square(0.0, 4.0)]);
+        assert_eq!(split(square(0.0, 4.0), &far), (vec![square(0.0, 4.0)], None));
+        let inside = split(square(0.0, 4.0), &body).1.unwrap();
+        assert!((area(&inside) - 2.0).abs() < 1e-9);
     }
 
     #[test]
     fn pieces_that_touch_have_one_border() {
         let body = Body::of_box([Vec3::new(1.0, -1.0, -1.0), Vec3::new(2.0, 5.0, 1.0)]);
-        let pieces = outside(square(0.0, 4.0), &body);
+        let (pieces, _) = split(square(0.0, 4.0), &body);
         let around: f64 = borders(&pieces).iter().map(|[a, b]| a.distance(*b)).sum();
         // Two strips of 1 × 4 and 2 × 4.
         assert!((around - 22.0).abs() < 1e-6, "{around}");
         let whole: f64 =
-            borders(&outside(square(0.0, 4.0), &Body::of_box([Vec3::new(3.0, 3.0, -1.0), Vec3::splat(9.0)])))
+            borders(&split(square(0.0, 4.0), &Body::of_box([Vec3::new(3.0, 3.0, -1.0), Vec3::splat(9.0)])).0)
                 .iter()
                 .map(|[a, b]| a.distance(*b))
                 .sum();

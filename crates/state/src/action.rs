@@ -1,7 +1,7 @@
 //! Actions, and the tasks for the workers that follow from them.
 
 use super::Appearance;
-use super::dialogue::{Dialogue, ExportForm, SurfaceForm};
+use super::dialogue::{Dialogue, ExportForm, ShareForm, SurfaceForm};
 use super::notice::{Notice, Place};
 use super::picking::{PickingStep, PickingTask};
 use super::session::Snapshot;
@@ -59,6 +59,8 @@ pub enum Action {
     Export(Box<ExportForm>),
     /// Write a horizon or fault for other programs.
     ExportSurface(Box<SurfaceForm>),
+    /// Write the page or the model of the block.
+    Share(Box<ShareForm>),
     /// Copy the picture to the clipboard.
     Copy,
     /// Show another scene: camera, box, cut-outs, blend.
@@ -140,6 +142,8 @@ pub enum Task {
     Export(Box<ExportForm>),
     /// Write a horizon or fault for other programs.
     ExportSurface(Box<SurfaceForm>),
+    /// Write the page or the model of the block.
+    Share(Box<ShareForm>),
     /// Copy the picture to the clipboard.
     Copy,
     /// Release everything that was loaded for the open project.

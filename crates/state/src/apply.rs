@@ -72,11 +72,8 @@ impl State {
                 self.quieten(Place::Foot);
                 return self.task(Task::Export(form));
             }
-            Action::ExportSurface(form) => {
-                self.quieten(Place::Foot);
-                self.quieten(Place::Dialogue);
-                return self.task(Task::ExportSurface(form));
-            }
+            Action::ExportSurface(form) => return self.writing(Task::ExportSurface(form)),
+            Action::Share(form) => return self.writing(Task::Share(form)),
             Action::Copy => return self.task(Task::Copy),
             Action::Picking(step) => return self.pick(step),
             Action::Extract(volume, settings) => {
@@ -209,6 +206,13 @@ impl State {
     /// A task that needs an open project.
     fn task(&self, task: Task) -> Vec<Task> {
         if self.session.is_some() { vec![task] } else { Vec::new() }
+    }
+
+    /// A task that writes a file from a dialogue: what was said of earlier ones is removed.
+    fn writing(&mut self, task: Task) -> Vec<Task> {
+        self.quieten(Place::Foot);
+        self.quieten(Place::Dialogue);
+        self.task(task)
     }
 
     /// Removes the messages of one place, because something new begins there.

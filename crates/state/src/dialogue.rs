@@ -2,6 +2,8 @@
 
 use figure::Annotation;
 use formats::{Format, SurfaceKind};
+use review::glb::OFFICE_TRIANGLES;
+use review::html::SIZE_MB;
 use std::path::{Path, PathBuf};
 
 /// What a file or folder is chosen for.
@@ -81,6 +83,8 @@ pub enum Dialogue {
     },
     /// Export the picture.
     Export(ExportForm),
+    /// Share the block with people without the program.
+    Share(ShareForm),
     /// Write a horizon or fault for other programs.
     Surface(SurfaceForm),
     /// The list of shortcuts.
@@ -188,9 +192,105 @@ impl ExportForm {
     }
 }
 
+/// What the block is shared as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ShareKind {
+    /// A page for browsers.
+    Page,
+    /// A model for slides.
+    Model,
+}
+
+/// What is shared, and where it is written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShareForm {
+    /// Whether it is the page or the model.
+    pub kind: ShareKind,
+    /// The page's file.
+    pub page: String,
+    /// The model's file.
+    pub model: String,
+    /// Scenes that the page leaves out.
+    pub left_out: Vec<String>,
+    /// The scene that the model shows; `None`: the first, or the default view.
+    pub scene: Option<String>,
+    /// Texels along the longest side of the block.
+    pub density: f64,
+    /// Sections of each kind to step through in the page.
+    pub sections: usize,
+    /// Largest size of the page, MB.
+    pub limit_mb: f64,
+    /// Most triangles of the model.
+    pub triangles: usize,
+}
+
+impl ShareForm {
+    /// The defaults, with files beside the project in `root`.
+    pub fn new(root: &Path) -> Self {
+        let beside = |ending: &str| root.with_extension(ending).display().to_string();
+        Self {
+            kind: ShareKind::Page,
+            page: beside("html"),
+            model: beside("glb"),
+            left_out: Vec::new(),
+            scene: None,
+            density: review::DENSITY,
+            sections: review::SECTIONS,
+            limit_mb: SIZE_MB,
+            triangles: OFFICE_TRIANGLES,
+        }
+    }
+
+    /// The file to write.
+    pub fn path(&self) -> &str {
+        match self.kind {
+            ShareKind::Page => self.page.trim(),
+            ShareKind::Model => self.model.trim(),
+        }
+    }
+
+    /// Whether the file has the ending of what it is.
+    pub fn has_ending(&self) -> bool {
+        let ending = Path::new(self.path()).extension().unwrap_or_default().to_ascii_lowercase();
+        match self.kind {
+            ShareKind::Page => ending == "html" || ending == "htm",
+            ShareKind::Model => ending == "glb",
+        }
+    }
+
+    /// The scenes that are shown of those that a project has; none of them: the default view.
+    pub fn scenes<'a>(&self, of_project: impl Iterator<Item = &'a str>) -> Vec<String> {
+        let is_wanted = |name: &str| match self.kind {
+            ShareKind::Page => !self.left_out.iter().any(|left_out| left_out == name),
+            ShareKind::Model => self.scene.as_deref() == Some(name),
+        };
+        of_project.filter(|name| is_wanted(name)).map(str::to_owned).collect()
+    }
+
+    /// What of it decides what is previewed: not where files lie, nor what only their size depends on.
+    pub fn previewed(&self) -> Self {
+        let (density, limit_mb) = (review::DENSITY, SIZE_MB);
+        Self { page: String::new(), model: String::new(), density, limit_mb, ..self.clone() }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_shared_has_the_ending_and_the_scenes_of_its_kind() {
+        let mut form = ShareForm::new(Path::new("work/north.petro"));
+        assert!(form.has_ending() && form.path().ends_with("north.html"));
+        form.left_out = vec!["b".to_owned()];
+        assert_eq!(form.scenes(["a", "b", "c"].into_iter()), ["a", "c"]);
+        (form.kind, form.scene) = (ShareKind::Model, Some("b".to_owned()));
+        assert!(form.has_ending() && form.path().ends_with("north.glb"));
+        assert_eq!(form.scenes(["a", "b", "c"].into_iter()), ["b"]);
+        let other = ShareForm { model: "x.gltf".to_owned(), density: 64.0, ..form.clone() };
+        assert!(!other.has_ending());
+        assert_eq!(other.previewed(), form.previewed());
+    }
 
     #[test]
     fn an_inch_has_its_dots() {

@@ -330,7 +330,7 @@ pub(in crate::cli) struct ExportArgs {
     #[arg(long, value_name = "NAME", requires = "model")]
     pub(in crate::cli) scene: Option<String>,
     /// Most triangles of the model; Office takes 100000
-    #[arg(long, value_name = "N", default_value_t = 100_000, requires = "model")]
+    #[arg(long, value_name = "N", default_value_t = review::glb::OFFICE_TRIANGLES, requires = "model")]
     pub(in crate::cli) triangles: usize,
     /// Texels along the longest side of the model's block
     #[arg(long, value_name = "TEXELS", default_value_t = review::DENSITY, requires = "model")]

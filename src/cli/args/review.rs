@@ -17,10 +17,10 @@ pub(in crate::cli) struct ReviewArgs {
     #[arg(long, value_name = "TEXELS", default_value_t = review::DENSITY)]
     pub(in crate::cli) density: f64,
     /// Inlines, crosslines and slices to step through, of each so many; 0 for none
-    #[arg(long, value_name = "N", default_value_t = 3)]
+    #[arg(long, value_name = "N", default_value_t = review::SECTIONS)]
     pub(in crate::cli) sections: usize,
     /// Largest size of the page in MB; pictures of faces get coarser until it fits
-    #[arg(long, value_name = "MB", default_value_t = 12.0)]
+    #[arg(long, value_name = "MB", default_value_t = review::html::SIZE_MB)]
     pub(in crate::cli) size_limit: f64,
     #[command(flatten)]
     pub(in crate::cli) drawing: DrawingArgs,

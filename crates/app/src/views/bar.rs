@@ -1,7 +1,7 @@
 //! The toolbar at the top: project menu, undo and redo, views, comparison of raw and illustrated, export.
 
 use crate::state::{
-    Action, Appearance, Choice, Compare, Dialogue, ExportForm, Layout as Arrangement, Panel, Session, State,
+    Action, Appearance, Choice, Compare, Dialogue, ExportForm, Layout as Arrangement, Panel, Session, ShareForm, State,
 };
 use eframe::egui::{Align, Button, Label, Layout, RichText, Ui};
 use render::Scene;
@@ -9,7 +9,7 @@ use widgets::obstacle::{needs, unless};
 use widgets::percent;
 
 /// Width of everything but the project's name and the comparison, points.
-const OTHERS: f32 = 680.0;
+const OTHERS: f32 = 760.0;
 /// Width of the comparison, points.
 const COMPARISON: f32 = 440.0;
 /// Width of the menu that the comparison folds into, points.
@@ -68,6 +68,10 @@ pub fn show(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Act
             let export = unless(ui, nothing, Button::new("Export…")).on_hover_text("Export the picture (Ctrl E)");
             if export.clicked() {
                 actions.push(Action::Ask(Box::new(Dialogue::Export(form))));
+            }
+            let share = unless(ui, nothing, Button::new("Share…"));
+            if share.on_hover_text("A page for browsers, or a model for slides").clicked() {
+                actions.push(Action::Ask(Box::new(Dialogue::Share(ShareForm::new(&session.root)))));
             }
         });
     });

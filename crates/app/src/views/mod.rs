@@ -25,6 +25,7 @@ pub mod pointed;
 pub mod present;
 pub mod print;
 pub mod sections;
+pub mod share;
 pub mod shortcuts;
 pub mod start;
 pub mod status;

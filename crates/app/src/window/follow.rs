@@ -99,6 +99,7 @@ impl Window {
                     }
                 }
                 Event::Previewed(page, preset) => self.preview.set(page, preset),
+                Event::ShareSeen(seen) => self.share.receive(seen),
                 Event::Told(notice) => self.act(Action::Tell(notice)),
             }
         }
@@ -116,8 +117,9 @@ impl Window {
             return;
         }
         self.swatches.follow(&session.root, &session.document);
-        // Neither named scenes nor the history change what is drawn.
-        let mut document = project::document::Document { scenes: Vec::new(), step: 0, ..session.document.clone() };
+        // Neither named scenes nor notes nor the history change what is drawn.
+        let mut document = session.document.clone();
+        (document.scenes, document.notes, document.step) = (Vec::new(), Vec::new(), 0);
         self.layers.draft_of(&mut document);
         self.functions.draft_of(&mut document);
         let root = session.root.clone();

@@ -4,6 +4,7 @@ mod follow;
 mod frames;
 mod page;
 mod present;
+mod share;
 
 use super::error::WindowError;
 use super::hold::Hold;
@@ -11,8 +12,8 @@ use super::views::dropped::{self, Dropped};
 use super::views::{
     block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, fence::FenceView, functions::Functions,
     import::Import, interpretation::Interpretation, layers::Layers, map::MapView, overlay::Overlay, patterns::Patterns,
-    picking::PickingPanel, pointed::Pointed, present::Presentation, print::Page, sections::Sections, shortcuts,
-    start::StartPage, status, surface, tiles::Tiles, well::WellDialogue,
+    picking::PickingPanel, pointed::Pointed, present::Presentation, print::Page, sections::Sections, share::ShareView,
+    shortcuts, start::StartPage, status, surface, tiles::Tiles, well::WellDialogue,
 };
 use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
 use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};
@@ -108,6 +109,7 @@ pub struct Window {
     titled: Option<String>,
     controls: Controls,
     preview: PagePreview,
+    share: ShareView,
     presentation: Presentation,
     /// Whether the window was asked to fill the screen.
     is_full: bool,
@@ -164,6 +166,7 @@ impl Window {
             titled: None,
             controls: Controls::default(),
             preview: PagePreview::default(),
+            share: ShareView::default(),
             presentation: Presentation::default(),
             is_full: false,
             previewed: None,
@@ -208,6 +211,9 @@ impl Window {
             }
             if let Task::Export(form) = &task {
                 self.export(form.as_ref().clone());
+            }
+            if let Task::Share(form) = &task {
+                self.share(form.as_ref().clone());
             }
             if let Task::ExportSurface(form) = &task {
                 self.export_surface(form.as_ref().clone());
@@ -273,6 +279,7 @@ impl Window {
         self.overlay = Overlay::default();
         self.picking = PickingPanel::default();
         self.preview = PagePreview::default();
+        self.share = ShareView::default();
         self.presentation = Presentation::default();
     }
 
@@ -428,8 +435,12 @@ impl Window {
                     }
                 }
             }
+            Some(Dialogue::Share(_)) => self.share_dialogue(ctx, actions),
             Some(Dialogue::Surface(form)) => surface::dialogue(ctx, &self.state, form, actions),
-            None => self.preview = PagePreview::default(),
+            None => {
+                self.preview = PagePreview::default();
+                self.share = ShareView::default();
+            }
         }
     }
 }

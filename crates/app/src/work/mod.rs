@@ -18,6 +18,7 @@ pub mod picks;
 pub mod picture;
 pub mod running;
 pub mod scan;
+pub mod share;
 pub mod slice;
 pub mod swatches;
 mod threads;
@@ -27,6 +28,7 @@ pub use map::Maps;
 pub use picks::{Interpreted, InterpretedHorizon, Picks, ShownFault, ShownPick, sheet};
 pub use picture::{Drawing, Drawn, PictureRequest, Touch};
 pub use running::{Running, RunningLine};
+pub use share::SharePreview;
 pub use slice::{SliceRequest, Slices};
 pub use swatches::Swatches;
 
@@ -106,6 +108,8 @@ pub enum Event {
     Exported(PathBuf),
     /// The page that a picture will be written from, and the preset it is printed in.
     Previewed(Arc<DisplayList>, Preset),
+    /// What is shared, as a reader will see it.
+    ShareSeen(Arc<SharePreview>),
     /// A message.
     Told(Notice),
 }
@@ -219,7 +223,7 @@ impl Work {
                 return;
             }
             // The window handles these itself.
-            Task::Remember | Task::Copy | Task::Export(_) | Task::ExportSurface(_) => return,
+            Task::Remember | Task::Copy | Task::Export(_) | Task::ExportSurface(_) | Task::Share(_) => return,
         };
         // The thread lives as long as this value.
         let _ = self.orders.send(order);

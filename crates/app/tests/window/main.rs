@@ -11,6 +11,7 @@ mod page;
 mod panel;
 mod picking;
 mod present;
+mod share;
 mod time;
 mod tree;
 mod unpicked;

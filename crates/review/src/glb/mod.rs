@@ -11,6 +11,7 @@ use crate::make::{ReviewSettings, make};
 use crate::model::{Cover, Model, Surface};
 use crate::page;
 use crate::picture::{drawing, jpeg};
+use crate::size::SizeEstimate;
 use file::{Covered, GlbFile};
 use glam::DVec3;
 use image::RgbImage;
@@ -23,8 +24,14 @@ use serde_json::{Value, json};
 use std::path::Path;
 use survey::Progress;
 
+/// Limits of the triangles of a model.
+pub const TRIANGLES: [usize; 2] = [1000, 5_000_000];
+/// Triangles of a model unless stated: what Office takes.
+pub const OFFICE_TRIANGLES: usize = 100_000;
 /// Opacity of horizons and faults, which lie within the block.
 const SURFACE_OPACITY: f32 = 1.0;
+/// How far triangles of horizons may be from them where the triangles suffice, samples.
+const LEAST_ERROR: f64 = 0.4;
 /// Sides of the tube of a well.
 const SIDES: usize = 8;
 /// Most points of a well's path.
@@ -51,12 +58,29 @@ pub struct WrittenModel {
     pub usual_deviation_m: f64,
 }
 
+/// A model that is made and not yet written.
+pub struct Prepared {
+    /// What is in it.
+    pub model: Model,
+    /// What is said of it.
+    pub facts: WrittenModel,
+    bytes: Vec<u8>,
+    /// Bytes of the pictures of faces.
+    pictures: usize,
+}
+
+impl Prepared {
+    /// About how large its file is, with faces of other densities.
+    pub fn estimate(&self) -> SizeEstimate {
+        SizeEstimate::new(self.bytes.len(), self.pictures)
+    }
+}
+
 /// Writes the block of the first of the settings' scenes (or of the project) with at most so many triangles; completely or
 /// not at all.
 ///
 /// # Errors
-/// There is nothing to show, data are damaged, the triangles are too few for the block, the file lies inside a project or
-/// cannot be written, or the user cancelled.
+/// As [`prepare`]; the file lies inside a project or cannot be written.
 pub fn export(
     project: &Project,
     settings: &ReviewSettings,
@@ -65,6 +89,22 @@ pub fn export(
     progress: &Progress,
 ) -> Result<WrittenModel, ProjectError> {
     refuse_inside_project(path)?;
+    let prepared = prepare(project, settings, triangles, progress)?;
+    progress.check()?;
+    store::replace_file(path, &prepared.bytes)?;
+    Ok(prepared.facts)
+}
+
+/// Makes the model of the first of the settings' scenes (or of the project) with at most so many triangles.
+///
+/// # Errors
+/// There is nothing to show, data are damaged, the triangles are too few for the block, or the user cancelled.
+pub fn prepare(
+    project: &Project,
+    settings: &ReviewSettings,
+    triangles: usize,
+    progress: &Progress,
+) -> Result<Prepared, ProjectError> {
     let document = project.document();
     let scenes = match (settings.scenes.first(), document.scenes.first()) {
         (Some(name), _) => vec![name.clone()],
@@ -83,19 +123,19 @@ pub fn export(
             scenes: scenes.clone(),
             sections: 0,
             has_whole: false,
-            ground_cells: (0.1 * budget).sqrt().clamp(8.0, 220.0) as usize,
-            surface_nodes: ((0.5 * budget / horizons / 2.0).sqrt() as usize).clamp(4, 512),
+            ground_cells: (0.25 * budget).sqrt().clamp(8.0, 512.0) as usize,
+            surface_nodes: ((0.25 * budget / horizons / 2.0).sqrt() as usize).clamp(4, 512),
+            surface_error: LEAST_ERROR / share,
             surface_triangles: (fault_budget / faults.max(1.0)).max(64.0) as usize,
             ..settings.clone()
         };
         let model = make(project, &settings, progress)?;
-        let (bytes, written) = encoded(&model)?;
-        if written.triangles <= triangles {
-            store::replace_file(path, &bytes)?;
-            return Ok(written);
+        let (bytes, pictures, facts) = encoded(&model)?;
+        if facts.triangles <= triangles {
+            return Ok(Prepared { model, facts, bytes, pictures });
         }
-        least = written.triangles;
-        share *= 0.9 * triangles as f64 / written.triangles as f64;
+        least = facts.triangles;
+        share *= 0.9 * triangles as f64 / facts.triangles as f64;
     }
     let [found, limit] = [least, triangles].map(|count| format!("{count} triangles"));
     Err(ProjectError::OverBudget { what: "the model", found, limit })
@@ -118,25 +158,26 @@ impl Frame {
     }
 }
 
-/// The bytes of a model's first scene.
-fn encoded(model: &Model) -> Result<(Vec<u8>, WrittenModel), ProjectError> {
+/// The bytes of a model's first scene, and how many of them are pictures.
+fn encoded(model: &Model) -> Result<(Vec<u8>, usize, WrittenModel), ProjectError> {
     let scene = &model.scenes[0];
     let block = scene.scene.box_in(&model.geometry);
     let frame = Frame { metric: model.geometry.metric_from_voxel(), centre: block.centre() };
     let mut file = GlbFile::default();
-    let mut triangles = 0;
+    let (mut triangles, mut pictures) = (0, 0);
     let has_raw = model.raw.is_some() && model.covers.iter().any(|cover| cover.illustrated.is_some());
     let mut faces = Vec::new();
     for face in &scene.cut.faces {
         let cover = &model.covers[face.cover];
         let raw = model.raw.as_ref().map(|raw| raw_picture(cover, &page::map(&raw.function)));
-        let shown = match &cover.illustrated {
-            Some(image) if cover.is_smooth => {
-                file.picture(&face.name, "image/jpeg", &jpeg(&inked(image, cover, scene))?)
-            }
-            Some(image) => file.picture(&face.name, "image/png", &drawing(&inked(image, cover, scene))?),
-            None => file.picture(&face.name, "image/jpeg", &jpeg(raw.as_ref().unwrap_or(&cover.data))?),
+        let (mime, bytes) = match &cover.illustrated {
+            Some(image) if cover.is_smooth => ("image/jpeg", jpeg(&inked(image, cover, scene))?),
+            Some(image) => ("image/png", drawing(&inked(image, cover, scene))?),
+            None => ("image/jpeg", jpeg(raw.as_ref().unwrap_or(&cover.data))?),
         };
+        // Raw values lie on nodes, at any density.
+        pictures += cover.illustrated.as_ref().map_or(0, |_| bytes.len());
+        let shown = file.picture(&face.name, mime, &bytes);
         let material = file.material(&face.name, [1.0; 4], Some(shown));
         let variant = match raw.filter(|_| has_raw) {
             Some(raw) => {
@@ -166,10 +207,11 @@ fn encoded(model: &Model) -> Result<(Vec<u8>, WrittenModel), ProjectError> {
     for (title, surfaces) in [("Horizons", &model.horizons), ("Faults", &model.faults)] {
         let mut nodes = Vec::new();
         for surface in surfaces {
-            triangles += surface.mesh.triangles.len();
+            let shown = surface.shown(scene.scene.ground.is_some());
+            triangles += shown.len();
             deviation_m = deviation_m.max(surface.deviation_m);
             usual_deviation_m = usual_deviation_m.max(surface.usual_deviation_m);
-            nodes.extend(add_surface(&mut file, surface, &frame));
+            nodes.extend(add_surface(&mut file, (surface, shown), &frame));
         }
         groups.extend(file.group(title, &nodes));
     }
@@ -213,14 +255,14 @@ fn encoded(model: &Model) -> Result<(Vec<u8>, WrittenModel), ProjectError> {
         deviation_m,
         usual_deviation_m,
     };
-    Ok((bytes, written))
+    Ok((bytes, pictures, written))
 }
 
-fn add_surface(file: &mut GlbFile, surface: &Surface, frame: &Frame) -> Option<usize> {
+fn add_surface(file: &mut GlbFile, (surface, triangles): (&Surface, &[[u32; 3]]), frame: &Frame) -> Option<usize> {
     let [r, g, b] = surface.colour.to_unit().map(ttf::linear_from_srgb);
     let material = file.material(&surface.name, [r, g, b, SURFACE_OPACITY], None);
     let points = frame.places(&surface.mesh.points);
-    let covered = Covered { points: &points, triangles: &surface.mesh.triangles, uv: Vec::new(), material, raw: None };
+    let covered = Covered { points: &points, triangles, uv: Vec::new(), material, raw: None };
     let extras = json!({ "pickedShare": surface.picked_share, "deviation_m": surface.deviation_m });
     file.mesh(&surface.name, &covered, &extras)
 }

@@ -99,9 +99,9 @@ function geometryOf({ corners, indices }) {
 }
 
 /** A part of the block with its picture. */
-export function faceMesh(geometry, cover, name) {
+export function faceMesh(geometry, uniforms, cover, name) {
   const material = new ShaderMaterial({
-    uniforms: cover.uniforms, vertexShader: faceVertex, fragmentShader: faceFragment, side: DoubleSide,
+    uniforms, vertexShader: faceVertex, fragmentShader: faceFragment, side: DoubleSide,
     // Lines lie in the faces: faces stand back a little.
     polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4,
   });
@@ -115,7 +115,7 @@ export function faceMesh(geometry, cover, name) {
 export function sectionGroup(cover, place, scene) {
   const group = new Group();
   group.matrixAutoUpdate = false;
-  group.add(sectionMesh(cover), ...strokes(place, scene));
+  group.add(sectionMesh(cover), ...strokes([place], scene));
   return group;
 }
 
@@ -123,7 +123,9 @@ function sectionMesh(cover) {
   const { origin, s, t } = cover.source;
   const add = (...parts) => origin.map((part, n) => parts.reduce((sum, other) => sum + other[n], part));
   const corners = new Float32Array([origin, add(s), add(s, t), add(t)].flat());
-  return faceMesh(geometryOf({ corners, indices: new Uint16Array([0, 1, 2, 0, 2, 3]) }), cover, "section");
+  // A section stays opaque where the block is clear.
+  const uniforms = { ...cover.uniforms, opacity: { value: 1 } };
+  return faceMesh(geometryOf({ corners, indices: new Uint16Array([0, 1, 2, 0, 2, 3]) }), uniforms, cover, "section");
 }
 
 /** Straight pieces as lines of a width in pixels. */
@@ -139,13 +141,23 @@ export function lines(ends, { width, colour }) {
   return object;
 }
 
-/** The lines of a block or section, those that were not picked marked as doubtful. */
-function strokes(source, scene) {
+function joined(arrays) {
+  const all = new Float32Array(arrays.reduce((sum, array) => sum + array.length, 0));
+  let at = 0;
+  for (const array of arrays) {
+    all.set(array, at);
+    at += array.length;
+  }
+  return all;
+}
+
+/** The lines of sources, those that were not picked marked as doubtful. */
+function strokes(sources, scene) {
   const kinds = [
     ["horizons", scene.lines], ["unpicked", scene.lines], ["faults", scene.faults], ["edges", scene.edges],
   ];
   const objects = kinds.map(([kind, stroke]) => {
-    const object = lines(points(source[kind]), stroke);
+    const object = lines(joined(sources.map((source) => points(source[kind]))), stroke);
     if (object) {
       object.userData.isDoubtful = kind === "unpicked";
       object.renderOrder = 2;
@@ -155,16 +167,15 @@ function strokes(source, scene) {
   return objects.filter(Boolean);
 }
 
-/** The faces and lines of a block. */
-export async function blockGroup(model, source, scene, covers) {
+/** The faces and lines of a block, which is made of some sources. */
+export async function blockGroup(sources, scene, covers) {
   const group = new Group();
   group.matrixAutoUpdate = false;
-  for (const face of source.faces) {
-    group.add(faceMesh(geometryOf(mesh(face.mesh)), covers[face.cover], face.name));
-  }
-  const drawn = strokes(source, scene);
+  const faces = sources.flatMap((source) => source.faces);
+  for (const face of faces) group.add(faceMesh(geometryOf(mesh(face.mesh)), covers[face.cover].uniforms, covers[face.cover], face.name));
+  const drawn = strokes(sources, scene);
   if (drawn.length) group.add(...drawn);
-  await Promise.all(source.faces.map((face) => covers[face.cover].load()));
+  await Promise.all(faces.map((face) => covers[face.cover].load()));
   return group;
 }
 

@@ -5,6 +5,9 @@ import { draw, make } from "./dom.js";
 /** How far from the place that it points at a note stands, pixels. */
 const OFFSET = [56, -74];
 
+/** Height of the name of a top, pixels. */
+const NAME_PX = 15;
+
 export class Overlay {
   constructor(model, stage, parent) {
     this.model = model;
@@ -93,12 +96,22 @@ export class Overlay {
   updateNames(view, isPair) {
     clearTimeout(this.later);
     this.later = setTimeout(() => this.updateHidden(), 140);
+    const shown = [];
     for (const name of this.names) {
       const isShown = this.stage.show.wells && !isPair && name.isSeen;
       name.label.hidden = !isShown;
       if (!isShown) continue;
       const [x, y] = view.project(name.at ?? this.head(name.well));
-      name.label.style.transform = `translate(${x + 7}px, ${y - (name.at ? 8 : 20)}px)`;
+      shown.push({ label: name.label, x: x + 7, y: y - (name.at ? 8 : 20) });
+    }
+    // Tops that lie close together stand below one another.
+    const put = [];
+    for (const name of shown.sort((a, b) => a.y - b.y)) {
+      const width = name.label.offsetWidth;
+      const hits = (other) => name.x < other.x + other.width && other.x < name.x + width && name.y < other.y + NAME_PX;
+      for (const other of put) if (hits(other)) name.y = Math.max(name.y, other.y + NAME_PX);
+      put.push({ ...name, width });
+      name.label.style.transform = `translate(${name.x}px, ${name.y}px)`;
     }
   }
 

@@ -1,6 +1,6 @@
 // The panel beside the block: legend, what is shown, sections, and where the data come from.
 
-import { choice, make, slider, tick } from "./dom.js";
+import { make, slider, tick } from "./dom.js";
 
 const AXES = ["Inline", "Crossline", "Slice"];
 
@@ -31,7 +31,11 @@ export class Legend {
       this.rows.set(number, row);
       rows.unshift(make("li", {}, row));
     });
-    this.element = rows.length ? part("Layers", make("ul", { class: "legend" }, ...rows)) : null;
+    const unpicked = model.unpicked && tick("Hatch what was filled or extrapolated, not picked", false, (isOn) => {
+      stage.shared.hatch.value = isOn ? 1 : 0;
+      stage.ask();
+    }, make("i", { class: "hatch" }));
+    this.element = rows.length ? part("Layers", make("ul", { class: "legend" }, ...rows), unpicked || null) : null;
   }
 
   press(number) {
@@ -58,16 +62,20 @@ function shown(model, stage) {
     stage.show[name] = isOn;
     stage.ask();
   };
-  if (model.scenes.some((scene) => scene.whole !== null)) add("Cut-outs", true, (isOn) => stage.setCut(isOn));
+  const block = tick("Block", true, flag("block"));
+  ticks.push(block);
+  const cuts = make("div", { class: "ticks" });
+  let cutsOf = null;
+  stage.onScene(() => {
+    if (cutsOf === stage.index) return;
+    cutsOf = stage.index;
+    const isOn = (n) => Boolean((stage.cuts[stage.index] >> n) & 1);
+    cuts.replaceChildren(...stage.scene.cuts.map((name, n) => tick(name, isOn(n), (on) => stage.setCut(n, on))));
+  });
+  ticks.push(cuts);
   add("Lines", true, flag("lines"));
   if (model.wells.length) add("Wells", true, flag("wells"));
   if (model.notes.length) add("Notes", true, flag("notes"));
-  if (model.layers.length) {
-    add("Hatch what was not picked", false, (isOn) => {
-      stage.shared.hatch.value = isOn ? 1 : 0;
-      stage.ask();
-    });
-  }
   const opacity = slider(
     "Block", { min: 0, max: 1, step: 0.05, value: 1, words: (v) => `${Math.round(100 * v)} %` },
     (value) => {
@@ -79,7 +87,11 @@ function shown(model, stage) {
   const hint = isDoubtful
     ? make("p", { class: "hint" }, "Lines of horizons are pale where they were filled or extrapolated.")
     : null;
-  return part("Show", make("div", { class: "ticks" }, ...ticks), opacity.element, hint);
+  const setBlock = (isOn) => {
+    const box = block.querySelector("input");
+    if (box.checked !== isOn) box.click();
+  };
+  return { element: part("Show", make("div", { class: "ticks" }, ...ticks), opacity.element, hint), setBlock };
 }
 
 function surfaces(model, stage) {
@@ -106,53 +118,56 @@ function surfaces(model, stage) {
   return part("Horizons and faults", make("div", { class: "ticks" }, ...ticks), opacity.element, hint);
 }
 
-/** Steps through the sections of the volume. */
+/** Steps through the sections of the volume: each kind is switched by itself, alone, with others, or within the block. */
 export class Scrubber {
-  constructor(model, stage) {
-    this.stage = stage;
-    this.stacks = model.sections;
-    this.model = model;
+  constructor(model, stage, setBlock) {
+    Object.assign(this, { model, stage, setBlock });
     this.element = null;
     if (!model.sections.length) return;
-    this.stack = null;
-    const entries = [[-1, "Block"], ...model.sections.map((stack, n) => [n, AXES[stack.axis]])];
-    this.kind = choice("Sections", entries, -1, (n) => this.choose(n));
-    this.slider = slider("Place", { min: 0, max: 0, step: 1, value: 0, words: (n) => this.word(n) }, (n) => this.go(n));
-    this.slider.element.hidden = true;
+    this.rows = model.sections.map((stack, n) => this.row(stack, n));
+    this.last = 0;
     this.straight = make("button", { type: "button", class: "plain", hidden: true, onclick: () => this.look() }, "Look straight at it");
-    this.element = part("Step through the volume", this.kind.element, this.slider.element, this.straight);
+    const rows = this.rows.map(({ element }) => element);
+    this.element = part("Step through the volume", make("div", { class: "ticks" }, ...rows), this.straight);
   }
 
-  word(n) {
-    const stack = this.stacks[this.stack];
-    if (!stack) return "";
-    const { at } = stack.places[n];
+  row(stack, n) {
+    const name = AXES[stack.axis];
+    const last = stack.places.length - 1;
+    const at = Math.floor(last / 2);
+    const words = (index) => this.word(stack, index);
+    const place = slider(`Place of the ${name.toLowerCase()}`, { min: 0, max: last, step: 1, value: at, words }, () => this.show(n));
+    place.element.querySelector("label").className = "for-readers";
+    place.element.hidden = true;
+    const box = tick(name, false, (isOn) => {
+      place.element.hidden = !isOn;
+      this.show(n, isOn);
+    });
+    return { element: make("div", {}, box, place.element), box: box.querySelector("input"), place: place.input };
+  }
+
+  /** Shows or hides the section of a row; the block makes room for the first, and comes back after the last. */
+  show(n, isOn = true) {
+    const { rows, stage } = this;
+    const others = rows.some(({ box }, m) => m !== n && box.checked);
+    if (!others && stage.blockOpacity === 1 && isOn !== Boolean(stage.shown.has(n))) this.setBlock(!isOn);
+    this.last = n;
+    stage.setSection(n, isOn ? this.model.sections[n].places[Number(rows[n].place.value)] : null);
+    this.straight.hidden = !rows.some(({ box }) => box.checked);
+  }
+
+  word({ axis, places }, n) {
+    const { at } = places[n];
     const { inlines, crosslines, vertical } = this.model.geometry;
-    if (stack.axis === 2) return `${Math.round(vertical.first + vertical.interval * at)} ${vertical.unit}`;
-    const axis = stack.axis === 0 ? inlines : crosslines;
-    return `${AXES[stack.axis].toLowerCase()} ${Math.round(axis.first + axis.step * at)}`;
+    if (axis === 2) return `${Math.round(vertical.first + vertical.interval * at)} ${vertical.unit}`;
+    const line = axis === 0 ? inlines : crosslines;
+    return `${Math.round(line.first + line.step * at)}`;
   }
 
-  choose(n) {
-    this.stack = n < 0 ? null : n;
-    this.slider.element.hidden = this.straight.hidden = n < 0;
-    if (n < 0) {
-      this.stage.setSection(null);
-      return;
-    }
-    const last = this.stacks[n].places.length - 1;
-    this.slider.input.max = last;
-    this.slider.set(Math.floor(last / 2));
-    this.go(Math.floor(last / 2));
-  }
-
-  go(n) {
-    this.stage.setSection(this.stacks[this.stack].places[n]);
-  }
-
-  /** Turns the camera square to the section, on the side it looks from now. */
+  /** Turns the camera square to the section that was moved last, on the side it looks from now. */
   look() {
-    const { axis } = this.stacks[this.stack];
+    const shown = this.rows[this.last].box.checked ? this.last : this.rows.findIndex(({ box }) => box.checked);
+    const { axis } = this.model.sections[shown];
     const { pose } = this.stage;
     this.stage.flight = null;
     if (axis === 2) {
@@ -187,8 +202,9 @@ function about(model) {
 /** The whole panel. */
 export function panel(model, stage) {
   const legend = new Legend(model, stage);
-  const scrubber = new Scrubber(model, stage);
-  const parts = [legend.element, scrubber.element, shown(model, stage), surfaces(model, stage), about(model)];
+  const show = shown(model, stage);
+  const scrubber = new Scrubber(model, stage, show.setBlock);
+  const parts = [legend.element, scrubber.element, show.element, surfaces(model, stage), about(model)];
   const element = make("aside", { class: "panel", "aria-label": "Legend and what is shown" }, ...parts);
   return { element, legend, scrubber };
 }

@@ -24,15 +24,19 @@ export class Stage {
     this.covers = model.covers.map((_, index) => new Cover(model, index, this.shared, anisotropy));
     this.blocks = new Map();
     this.sections = new Map();
+    // Sections that are shown, by the index of their stack.
+    this.shown = new Map();
     this.surfaces = [...model.horizons, ...model.faults].map((surface) => surfaceMesh(surface, this.shared));
     this.surfaces.forEach((object) => this.world.add(object));
     this.compare = "blend";
     this.wipe = 0.5;
-    this.show = { block: true, cut: true, lines: true, wells: true, notes: true };
+    this.show = { block: true, lines: true, wells: true, notes: true };
+    // For each scene the cut-outs that are taken out: bit n stands for the nth.
+    this.cuts = model.scenes.map((scene) => (1 << scene.cuts.length) - 1);
     this.blockOpacity = 1;
     this.surfaceOpacity = 1;
-    this.section = null;
     this.listeners = new Set();
+    this.sceneListeners = new Set();
     this.isDirty = true;
     this.frames = 0;
     this.frameMs = 0;
@@ -42,6 +46,11 @@ export class Stage {
   /** Calls back after each frame. */
   onFrame(listener) {
     this.listeners.add(listener);
+  }
+
+  /** Calls back after each change of the scene. */
+  onScene(listener) {
+    this.sceneListeners.add(listener);
   }
 
   async start(index) {
@@ -55,7 +64,7 @@ export class Stage {
   async setScene(index, isAtOnce = false) {
     const scene = this.model.scenes[index];
     const turn = (this.turn = (this.turn ?? 0) + 1);
-    const group = await this.block(scene);
+    const group = await this.block(index);
     if (turn !== this.turn) return false;
     const to = poseOf(scene);
     const isStill = isAtOnce || STILL.matches || !this.pose;
@@ -71,6 +80,7 @@ export class Stage {
     this.wells?.forEach((well) => this.world.remove(well));
     this.wells = this.model.wells.map((well) => wellLine(well, scene.wells)).filter(Boolean);
     this.wells.forEach((well) => this.world.add(well));
+    this.sceneListeners.forEach((listener) => listener());
     this.ask();
     return true;
   }
@@ -79,13 +89,18 @@ export class Stage {
     return this.model.scenes[this.index];
   }
 
-  /** The objects of a scene's block, with or without its cut-outs. */
-  async block(scene) {
-    const index = !this.show.cut && scene.whole !== null ? scene.whole : scene.cut;
-    if (!this.blocks.has(index)) {
-      this.blocks.set(index, await blockGroup(this.model, this.model.blocks[index], scene, this.covers));
+  /** The objects of a scene's block without the cut-outs that are taken out. */
+  async block(index) {
+    const scene = this.model.scenes[index];
+    const cuts = this.cuts[index];
+    const ground = scene.ground.filter((part) => (part.cuts & cuts) === 0).map((part) => part.block);
+    const parts = [scene.variants[cuts], ...ground];
+    const key = parts.join(" ");
+    if (!this.blocks.has(key)) {
+      const sources = parts.map((part) => this.model.blocks[part]);
+      this.blocks.set(key, await blockGroup(sources, scene, this.covers));
     }
-    return this.blocks.get(index);
+    return this.blocks.get(key);
   }
 
   swap(group) {
@@ -95,14 +110,20 @@ export class Stage {
     this.ask();
   }
 
-  async setCut(isOn) {
-    this.show.cut = isOn;
-    this.swap(await this.block(this.scene));
+  /** Takes a cut-out of the scene out, or leaves the rock in it. */
+  async setCut(cut, isOn) {
+    const { index } = this;
+    this.cuts[index] = isOn ? this.cuts[index] | (1 << cut) : this.cuts[index] & ~(1 << cut);
+    const asked = (this.askedCut = (this.askedCut ?? 0) + 1);
+    const group = await this.block(index);
+    if (asked === this.askedCut && index === this.index) this.swap(group);
   }
 
-  /** Shows a section instead of the block, or the block again. */
-  async setSection(place) {
-    const asked = (this.asked = (this.asked ?? 0) + 1);
+  /** Shows one section of a stack, or none of it. */
+  async setSection(stack, place) {
+    this.asked ??= new Map();
+    const asked = (this.asked.get(stack) ?? 0) + 1;
+    this.asked.set(stack, asked);
     let object = null;
     if (place !== null) {
       const cover = this.covers[place.cover];
@@ -110,16 +131,16 @@ export class Stage {
       if (!this.sections.has(place)) this.sections.set(place, sectionGroup(cover, place, this.scene));
       object = this.sections.get(place);
     }
-    if (asked !== this.asked) return;
-    if (this.section) this.world.remove(this.section);
-    this.section = object;
+    if (asked !== this.asked.get(stack)) return;
+    if (this.shown.has(stack)) this.world.remove(this.shown.get(stack));
+    this.shown.delete(stack);
     if (object) {
+      this.shown.set(stack, object);
       this.world.add(object);
-      this.frame ??= this.boxEdges();
-      this.world.add(this.frame);
-    } else if (this.frame) {
-      this.world.remove(this.frame);
     }
+    this.frame ??= this.boxEdges();
+    if (this.shown.size) this.world.add(this.frame);
+    else this.world.remove(this.frame);
     this.ask();
   }
 
@@ -215,7 +236,7 @@ export class Stage {
     const { shared, show } = this;
     shared.pixel.value = this.pixelRatio;
     shared.wipe.value = this.compare === "wipe" ? this.wipe * this.width * this.pixelRatio : -1;
-    shared.opacity.value = this.section ? 1 : this.blockOpacity;
+    shared.opacity.value = this.blockOpacity;
     const scale = Math.min(width, this.height) / NOMINAL_PX;
     const place = (object) => {
       object.matrix.copy(view.matrix);
@@ -224,26 +245,30 @@ export class Stage {
         object.material.linewidth = Math.max(object.userData.width * scale, 0.75);
       }
     };
-    this.group.visible = show.block && !this.section;
-    const shown = this.section ?? this.group;
-    shown.matrix.copy(view.matrix);
-    shown.matrixWorldNeedsUpdate = true;
-    for (const object of shown.children) {
-      if (object.material.isLineMaterial) {
-        place(object);
-        object.matrix.identity();
-        object.visible = show.lines || object.renderOrder === 0;
-        object.material.opacity = (object.userData.isDoubtful ? 0.45 : 1) * (this.blockOpacity < 1 && !this.section ? 0.5 : 1);
-        object.material.transparent = object.material.opacity < 1;
-      } else {
-        const isClear = this.blockOpacity < 1 && !this.section;
-        object.material.transparent = isClear;
-        object.material.depthWrite = !isClear;
-        object.renderOrder = isClear ? 3 : 0;
+    this.group.visible = show.block;
+    const isClear = this.blockOpacity < 1;
+    for (const shown of [this.group, ...this.shown.values()]) {
+      const fades = isClear && shown === this.group;
+      shown.matrix.copy(view.matrix);
+      shown.matrixWorldNeedsUpdate = true;
+      for (const object of shown.children) {
+        if (object.material.isLineMaterial) {
+          place(object);
+          object.matrix.identity();
+          object.visible = show.lines || object.renderOrder === 0;
+          object.material.opacity = (object.userData.isDoubtful ? 0.45 : 1) * (fades ? 0.5 : 1);
+          object.material.transparent = object.material.opacity < 1;
+        } else {
+          object.material.transparent = fades;
+          object.material.depthWrite = !fades;
+          object.renderOrder = fades ? 3 : 0;
+        }
       }
     }
     for (const object of this.surfaces) {
       place(object);
+      const { below } = object.userData.surface;
+      object.geometry.setDrawRange(0, this.scene.hasGround ? 3 * below : Infinity);
       const { uniforms } = object.material;
       uniforms.low.value.set(...this.scene.low);
       uniforms.high.value.set(...this.scene.high);
@@ -255,7 +280,7 @@ export class Stage {
       place(well);
       well.visible = show.wells;
     }
-    if (this.section) place(this.frame);
+    if (this.shown.size) place(this.frame);
   }
 
   /** What lies under a place of the window, in pixels of the page. */
@@ -265,9 +290,11 @@ export class Stage {
     const inHalf = this.compare === "pair" && x >= width ? x - width : x;
     const ray = new Raycaster();
     ray.setFromCamera(new Vector2((2 * inHalf) / width - 1, 1 - (2 * y) / this.height), this.lastView.camera);
-    const faces = (this.section ?? this.group).children.filter((object) => object.userData.cover);
+    const isBlock = this.group.visible && this.blockOpacity >= 0.5;
+    const groups = [...(isBlock ? [this.group] : []), ...this.shown.values()];
+    const faces = groups.flatMap((group) => group.children.filter((object) => object.userData.cover));
     const shown = this.surfaces.filter((object) => object.visible);
-    const hits = ray.intersectObjects(this.blockOpacity < 0.5 && !this.section ? shown : [...faces, ...shown], false);
+    const hits = ray.intersectObjects([...faces, ...shown], false);
     for (const hit of hits) {
       const voxel = hit.object.worldToLocal(hit.point.clone()).toArray();
       const { cover, surface } = hit.object.userData;
