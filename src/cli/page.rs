@@ -37,6 +37,7 @@ pub(super) struct PageRequest {
     caption: Option<String>,
     size_cm: Option<[f64; 2]>,
     file: Option<PathBuf>,
+    fonts: Vec<PathBuf>,
 }
 
 impl PageRequest {
@@ -78,6 +79,7 @@ impl PageRequest {
             caption: typed.caption,
             size_cm,
             file: typed.figure,
+            fonts: typed.font,
         };
         let parts = meant.sections.len()
             + usize::from(!meant.fence.is_empty())
@@ -202,7 +204,8 @@ pub(super) fn draw(
 ) -> anyhow::Result<Report> {
     let figure = page.figure(scene, request.dpi, project)?;
     let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
-    let settings = FigureSettings { device: request.device, volume_bytes, has_vectors: request.format.has_vectors() };
+    let (device, has_vectors) = (request.device, request.format.has_vectors());
+    let settings = FigureSettings { device, volume_bytes, has_vectors, fonts: page.fonts.clone() };
     let made = figures::make(project, &figure, &InterpreterView::default(), &settings, progress)?;
     figures::write(&made.page, request.format, &request.out, figure.dpi, &figures::title(project))?;
     let mut report = Report::line(written(&request.out, figure.size_px(), figure.dpi));

@@ -84,7 +84,7 @@ impl Page {
             }
         }
         let volume_bytes = memory_budget::half_of_available();
-        let settings = FigureSettings { device: Device::Auto, volume_bytes, has_vectors: false };
+        let settings = FigureSettings { device: Device::Auto, volume_bytes, has_vectors: false, fonts: Vec::new() };
         let made = compute(|| figures::make(&project, &figure, &self.view, &settings, progress))?;
         Ok((made.page, figure.printed_in()))
     }
@@ -101,6 +101,7 @@ impl Page {
             device: Device::Auto,
             volume_bytes: memory_budget::half_of_available(),
             has_vectors: format.has_vectors(),
+            fonts: Vec::new(),
         };
         compute(|| {
             let made = figures::make(&project, &self.figure, &self.view, &settings, progress)?;

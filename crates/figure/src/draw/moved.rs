@@ -26,6 +26,10 @@ pub struct Movable {
 
 /// The labels of a page, in the order of drawing.
 pub fn movable(list: &DisplayList) -> Vec<Movable> {
+    list.faces.scope(|| found(list))
+}
+
+fn found(list: &DisplayList) -> Vec<Movable> {
     let mut found = Vec::new();
     for group in list.items.iter().filter_map(as_group) {
         match group.kind {
@@ -48,15 +52,17 @@ pub fn movable(list: &DisplayList) -> Vec<Movable> {
 /// without changes.
 pub fn changed(list: &DisplayList, changes: &[LabelChange], preset: Preset) -> DisplayList {
     let mut list = list.clone();
-    for item in &mut list.items {
-        if let Item::Group(panel) = item
-            && panel.kind == GroupKind::Panel
-            && panel.name == BLOCK
-        {
-            change(&mut panel.items, changes);
+    list.faces.clone().scope(|| {
+        for item in &mut list.items {
+            if let Item::Group(panel) = item
+                && panel.kind == GroupKind::Panel
+                && panel.name == BLOCK
+            {
+                change(&mut panel.items, changes);
+            }
         }
-    }
-    change(&mut list.items, changes);
+        change(&mut list.items, changes);
+    });
     list.print(preset);
     list
 }

@@ -6,11 +6,13 @@
 
 mod batch;
 mod confusion;
+mod fonts;
 mod interpreter;
 mod output;
 
 pub use batch::{WrittenFigure, make_all};
 pub use confusion::{NamedConfusion, confusions};
+pub use fonts::faces;
 pub use interpreter::{InterpreterView, borrowed};
 pub use output::{FigureFormat, title, write};
 
@@ -31,6 +33,7 @@ use project::error::ProjectError;
 use project::styles;
 use render::vector::{VectorBlock, vectors};
 use render::{FaceData, Faces, Media, RenderError, Scene};
+use std::path::PathBuf;
 use std::time::Instant;
 use survey::{Progress, Well, memory};
 use ttf::{LayerStyle, LayerTtf, Preset, TextureLibrary};
@@ -55,6 +58,8 @@ pub struct FigureSettings {
     pub volume_bytes: u64,
     /// Whether blocks are drawn as paths where they can be; otherwise they are pictures.
     pub has_vectors: bool,
+    /// Font files for letters that the embedded face and the project's own fonts lack.
+    pub fonts: Vec<PathBuf>,
 }
 
 /// The page itself refuses longer sides.
@@ -68,6 +73,17 @@ const PIXEL_BYTES: usize = 8;
 /// # Errors
 /// Data are damaged, a place or horizon does not exist, the page has no room, or the user cancelled.
 pub fn make(
+    project: &Project,
+    figure: &Figure,
+    view: &InterpreterView,
+    settings: &FigureSettings,
+    progress: &Progress,
+) -> Result<MadeFigure, ProjectError> {
+    faces(project, &settings.fonts)?.scope(|| lettered(project, figure, view, settings, progress))
+}
+
+/// The same, lettered in the faces of this thread.
+fn lettered(
     project: &Project,
     figure: &Figure,
     view: &InterpreterView,
@@ -130,7 +146,8 @@ fn warn_of_boxes(page: &DisplayList, progress: &Progress) {
         let more = if texts.len() > 1 { format!(" and {} more", texts.len() - 1) } else { String::new() };
         progress.warn(format!(
             "\"{first}\"{more} has letters that the figures' face lacks, and they are drawn as boxes; the face has Latin, \
-             Greek and Cyrillic letters: write the name in one of these, or set the text in a program that edits SVG"
+             Greek and Cyrillic letters: name a font file with the others by --font FILE, or by `fonts = [\"FILE\"]` at the \
+             top of project.toml"
         ));
     }
 }
