@@ -111,6 +111,8 @@ impl PageRequest {
             return toml::from_str(&text).with_context(|| format!("{} is not a figure", file.display()));
         }
         let show = scene.face_data;
+        let has_block = self.has_block
+            || self.sections.is_empty() && self.fence.is_empty() && self.map.is_none() && self.correlation.is_none();
         let section = |(kind, at): &(SectionKind, f64)| {
             Part::Section(SectionPart { kind: *kind, at: *at, show, zoom: Zoom::default() })
         };
@@ -142,6 +144,8 @@ impl PageRequest {
             interpretation: self.is_interpretation,
             preset: Some(scene.preset),
             hidden: Vec::new(),
+            // A block brings those of its scene.
+            labels: if has_block { Vec::new() } else { scene.labels.clone() },
         })
     }
 }
@@ -205,7 +209,7 @@ pub(super) fn draw(
     let figure = page.figure(scene, request.dpi, project)?;
     let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
     let (device, has_vectors) = (request.device, request.format.has_vectors());
-    let settings = FigureSettings { device, volume_bytes, has_vectors, fonts: page.fonts.clone() };
+    let settings = FigureSettings { device, volume_bytes, has_vectors, fonts: page.fonts.clone(), picture_dpi: None };
     let made = figures::make(project, &figure, &InterpreterView::default(), &settings, progress)?;
     figures::write(&made.page, request.format, &request.out, figure.dpi, &figures::title(project))?;
     let mut report = Report::line(written(&request.out, figure.size_px(), figure.dpi));

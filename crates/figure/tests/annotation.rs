@@ -319,6 +319,8 @@ fn a_legend_lists_what_is_seen_and_nothing_else() {
     let ground = legend(&Scene { ground: Some(Ground::default()), ..above });
     assert!(ground.contains(&"Bed 2".to_owned()) && !ground.contains(&"Bed 3".to_owned()), "{ground:?}");
     assert!(!ground.contains(&"Bed 0".to_owned()), "{ground:?}");
+    // The fault breaks the ground; no face shows it.
+    assert!(ground.contains(&"Fault".to_owned()), "{ground:?}");
     // Zoomed in on the cut-out's foot.
     let mut near = whole.clone();
     (near.camera.zoom, near.camera.elevation_deg) = (9.0, 30.0);

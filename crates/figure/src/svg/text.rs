@@ -2,7 +2,8 @@
 
 use super::numbers::number;
 use super::{attribute, base64};
-use crate::list::{DisplayList, Letter, Text};
+use crate::list::{DisplayList, Text};
+use glam::DVec2;
 use std::fmt::Write;
 use ttf::subset::used;
 use ttf::text::set;
@@ -41,15 +42,29 @@ pub(super) fn faces(into: &mut String, list: &DisplayList) -> String {
 /// Adds a line of text: its left end on its baseline, at the length that the page gives it.
 pub(super) fn text(into: &mut String, line: &Text, families: &str) {
     let start = line.baseline_start();
-    let each =
-        |of: fn(&Letter) -> f64| line.letters.iter().map(|letter| number(of(letter))).collect::<Vec<_>>().join(" ");
-    let place = match line.letters.is_empty() {
-        true => format!("x=\"{}\" y=\"{}\"", number(start.x), number(start.y)),
+    // A bent line is written as turned altogether, so that programs that place the first letter alone set it along its
+    // chord.
+    let chord = match &line.letters[..] {
+        [first, .., last] => (last.at - first.at).normalize_or(DVec2::X),
+        _ => DVec2::X,
+    };
+    let letters: Vec<(DVec2, f64)> = line
+        .letters
+        .iter()
+        .map(|letter| {
+            let at = start + DVec2::new(chord.x, -chord.y).rotate(letter.at - start);
+            (at, (letter.turn_deg - chord.to_angle().to_degrees() + 540.0).rem_euclid(360.0) - 180.0)
+        })
+        .collect();
+    let each = |of: fn(&(DVec2, f64)) -> f64| letters.iter().map(|l| number(of(l))).collect::<Vec<_>>().join(" ");
+    let (place, turn_deg) = match line.letters.is_empty() {
+        true => (format!("x=\"{}\" y=\"{}\"", number(start.x), number(start.y)), line.turn_deg),
         false => {
-            let [x, y, turn] = [each(|letter| letter.at.x), each(|letter| letter.at.y), each(|letter| letter.turn_deg)];
-            format!("x=\"{x}\" y=\"{y}\" rotate=\"{turn}\"")
+            let [x, y, turn] = [each(|(at, _)| at.x), each(|(at, _)| at.y), each(|(_, turn)| *turn)];
+            (format!("x=\"{x}\" y=\"{y}\" rotate=\"{turn}\""), chord.to_angle().to_degrees())
         }
     };
+    let pivot = if line.letters.is_empty() { line.at } else { start };
     let _ = write!(
         into,
         "<text {place} font-family=\"{families}\" font-weight=\"300\" font-size=\"{}\" xml:space=\"preserve\"",
@@ -63,14 +78,8 @@ pub(super) fn text(into: &mut String, line: &Text, families: &str) {
         let _ = write!(into, " direction=\"rtl\" text-anchor=\"end\"");
     }
     attribute(into, "fill", line.ink);
-    if line.turn_deg != 0.0 && line.letters.is_empty() {
-        let _ = write!(
-            into,
-            " transform=\"rotate({} {} {})\"",
-            number(line.turn_deg),
-            number(line.at.x),
-            number(line.at.y)
-        );
+    if turn_deg != 0.0 {
+        let _ = write!(into, " transform=\"rotate({} {} {})\"", number(turn_deg), number(pivot.x), number(pivot.y));
     }
     if let Some(halo) = line.halo {
         attribute(into, "stroke", halo.ink);

@@ -60,6 +60,9 @@ pub struct FigureSettings {
     pub has_vectors: bool,
     /// Font files for letters that the embedded face and the project's own fonts lack.
     pub fonts: Vec<PathBuf>,
+    /// Coarsest resolution that pictures of blocks may have, dots an inch, where a page is looked at soon; absent: the
+    /// figure's. All else is laid out as at the figure's.
+    pub picture_dpi: Option<f64>,
 }
 
 /// The page itself refuses longer sides.
@@ -125,7 +128,9 @@ fn lettered(
     };
     let library = library.as_ref().filter(|_| settings.has_vectors);
     let (device, preset) = (settings.device, figure.printed_in());
-    let mut painter = FigurePainter { painter: None, device, loaded: &loaded, library, preset, stages, progress };
+    let share = settings.picture_dpi.map_or(1.0, |dpi| (dpi / figure.dpi).min(1.0));
+    let mut painter =
+        FigurePainter { painter: None, device, loaded: &loaded, library, preset, share, stages, progress };
     let page = figure::make(figure, &inputs, &mut painter)?;
     warn_of_boxes(&page, progress);
     let device = painter.painter.map(|painter| painter.device().to_owned());
@@ -160,6 +165,8 @@ struct FigurePainter<'a> {
     /// The patterns, where blocks are drawn as paths.
     library: Option<&'a TextureLibrary>,
     preset: Preset,
+    /// Share of the pixels along each side that pictures are painted with.
+    share: f64,
     stages: Vec<Stage>,
     progress: &'a Progress,
 }
@@ -175,7 +182,8 @@ impl FigurePainter<'_> {
 
 impl BlockPainter for FigurePainter<'_> {
     fn paint(&mut self, scene: &Scene) -> Result<RgbaImage, RenderError> {
-        let scene = self.shown(scene);
+        let mut scene = self.shown(scene);
+        scene.size_px = scene.size_px.map(|side| (f64::from(side) * self.share).round().max(1.0) as u32);
         let painter = match &mut self.painter {
             Some(painter) => painter,
             empty => empty.insert(Painter::new(self.device, self.progress)?),
