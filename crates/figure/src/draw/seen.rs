@@ -22,6 +22,8 @@ const COLUMNS: u32 = 160;
 const BEHIND: f32 = 0.02;
 /// Faces that are seen smaller than this are seen edge on, square pixels.
 const LEAST_PX: f64 = 1.0;
+/// As far as it is told how far rock lies before or behind water, voxels.
+const FAR: f64 = 5.0;
 /// Places of the ground this close on the map, as a share of the block's longest side, are neighbours.
 const NEAR: f32 = 0.04;
 /// How far below a line rock has to lie for it to be a line on rock, voxels.
@@ -92,6 +94,15 @@ impl<'a> Sight<'a> {
         self.relief.as_ref().is_some_and(|relief| relief.is_air(self.model, p))
     }
 
+    /// How far behind the surface of water rock is met at a pixel, voxels, where `block` is the block without what rises
+    /// above the water; far behind where there is none.
+    pub(crate) fn behind_water(&self, block: &Solid, px: DVec2) -> f64 {
+        let ray = Ray::from(self.view.ray(px));
+        let water = block.next_span(&ray, f32::MIN).filter(|span| self.is_air(ray.at(span.entry.t + BEHIND)));
+        let (Some(water), Some((rock, _))) = (water, self.rock(&ray)) else { return FAR };
+        f64::from(rock - water.entry.t).clamp(-FAR, FAR)
+    }
+
     /// Where a ray meets rock, and just behind.
     fn rock(&self, ray: &Ray) -> Option<(f32, Vec3)> {
         let mut from = f32::MIN;
@@ -121,7 +132,7 @@ impl<'a> Sight<'a> {
         let near = NEAR * (high - low).max_element();
         let rows = (f64::from(COLUMNS) * self.size.y / self.size.x).ceil().clamp(1.0, 4.0 * f64::from(COLUMNS)) as u32;
         let row = |row: u32| {
-            let (mut found, mut last) = (BTreeSet::new(), None);
+            let (mut found, mut last) = (BTreeSet::new(), None::<Vec3>);
             for column in 0..COLUMNS {
                 let share = DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
                 let pixel = share / DVec2::new(f64::from(COLUMNS), f64::from(rows)) * self.size;

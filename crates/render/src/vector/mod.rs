@@ -20,7 +20,7 @@ mod pattern;
 mod sections;
 mod visible;
 
-pub use sections::{SeenSection, seen_sections};
+pub use sections::{SeenSection, sections_of, seen_sections};
 pub(crate) use visible::rock_cells;
 
 use crate::error::RenderError;
