@@ -115,9 +115,10 @@ fn on_face(
     }
     let opacity = if face.axis == 2 { water.opacity } else { (SIDES * water.opacity).min(1.0) };
     let edge = Stroke::new(EDGE_PT, Ink::glass(water.colour, (2.0 * water.opacity).min(1.0)));
-    let filled = PathItem { rule: Rule::EvenOdd, ..PathItem::filled(area.clone(), Ink::glass(water.colour, opacity)) };
-    (!area.segments.is_empty())
-        .then(|| Group::new(GroupKind::Part, "seen").clipped(seen).with([filled.outlined(edge).into()]).into())
+    let is_there = !area.segments.is_empty();
+    let filled = PathItem { rule: Rule::EvenOdd, ..PathItem::filled(area, Ink::glass(water.colour, opacity)) };
+    let body = [filled.into(), PathItem::stroked(edges, edge).into()];
+    is_there.then(|| Group::new(GroupKind::Part, "seen").clipped(seen).with(body).into())
 }
 
 /// The colour of water on white paper, for legends.
