@@ -37,7 +37,7 @@ well B-1 432600,6780900 --tops "$made/tops.csv"
 well B-2 433500,6782600
 "$petroglyph" render "$made/wells.petro" "$folder/demo-correlation.png" --correlation --datum Unconformity \
     --size-cm 17x11 --dpi 150 --legend --scale-bar
-"$petroglyph" render "$made/wells.petro" "$folder/demo-water.png" --cut nearest,0.45,0.45 --blend 0 --water 0 \
+"$petroglyph" render "$project" "$folder/demo-water.png" --cut nearest,0.45,0.45 --blend 0 --water 330 \
     --annotate all --size-cm 17x11.5 --dpi 150 --samples 4
 
 "$petroglyph" synth "$made/salt" --salt --size 112x112x96 > /dev/null 2>&1

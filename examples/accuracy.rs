@@ -214,7 +214,7 @@ fn boundaries(cases: &[Case]) -> Result<()> {
             spreads[0].extend(model::accuracy::boundaries(&plane, ZOOM, ours, truth));
             spreads[1].extend(model::accuracy::boundaries(&plane, ZOOM, paper, truth));
         }
-        let worst = |set: &[model::accuracy::BoundaryAccuracy], of: fn(&render::accuracy::BoundaryAccuracy) -> f64| {
+        let worst = |set: &[model::accuracy::BoundaryAccuracy], of: fn(&model::accuracy::BoundaryAccuracy) -> f64| {
             set.iter().map(of).fold(0.0, f64::max)
         };
         let [ours, paper] = &spreads;

@@ -11,7 +11,7 @@ use project::Project;
 use project::folder::refuse_inside_project;
 use project::memory_budget;
 use render::{FaceData, Scene};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use survey::{Progress, VerticalUnit, memory};
 
 /// Memory that is needed for each pixel: its colour as floats and as bytes, and once more in the file.
@@ -77,12 +77,12 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
 pub(super) fn figures(
     root: &Path,
     out: &Path,
-    device: Device,
-    volume_bytes: Option<u64>,
+    fonts: &[PathBuf],
+    (device, volume_bytes): (Device, Option<u64>),
     progress: &Progress,
 ) -> anyhow::Result<Report> {
     let volume_bytes = volume_bytes.unwrap_or_else(memory_budget::half_of_available);
-    let made = figures::make_all(&Project::open(root)?, out, device, volume_bytes, progress)?;
+    let made = figures::make_all(&Project::open(root)?, out, (device, volume_bytes), fonts, progress)?;
     let mut report = Report::default();
     let mut pairs: Vec<NamedConfusion> = Vec::new();
     for figure in &made {

@@ -37,6 +37,7 @@ pub(super) struct PageRequest {
     caption: Option<String>,
     size_cm: Option<[f64; 2]>,
     file: Option<PathBuf>,
+    fonts: Vec<PathBuf>,
 }
 
 impl PageRequest {
@@ -78,6 +79,7 @@ impl PageRequest {
             caption: typed.caption,
             size_cm,
             file: typed.figure,
+            fonts: typed.font,
         };
         let parts = meant.sections.len()
             + usize::from(!meant.fence.is_empty())
@@ -109,6 +111,8 @@ impl PageRequest {
             return toml::from_str(&text).with_context(|| format!("{} is not a figure", file.display()));
         }
         let show = scene.face_data;
+        let has_block = self.has_block
+            || self.sections.is_empty() && self.fence.is_empty() && self.map.is_none() && self.correlation.is_none();
         let section = |(kind, at): &(SectionKind, f64)| {
             Part::Section(SectionPart { kind: *kind, at: *at, show, zoom: Zoom::default() })
         };
@@ -140,6 +144,8 @@ impl PageRequest {
             interpretation: self.is_interpretation,
             preset: Some(scene.preset),
             hidden: Vec::new(),
+            // A block brings those of its scene.
+            labels: if has_block { Vec::new() } else { scene.labels.clone() },
         })
     }
 }
@@ -202,7 +208,8 @@ pub(super) fn draw(
 ) -> anyhow::Result<Report> {
     let figure = page.figure(scene, request.dpi, project)?;
     let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
-    let settings = FigureSettings { device: request.device, volume_bytes, has_vectors: request.format.has_vectors() };
+    let (device, has_vectors) = (request.device, request.format.has_vectors());
+    let settings = FigureSettings { device, volume_bytes, has_vectors, fonts: page.fonts.clone(), picture_dpi: None };
     let made = figures::make(project, &figure, &InterpreterView::default(), &settings, progress)?;
     figures::write(&made.page, request.format, &request.out, figure.dpi, &figures::title(project))?;
     let mut report = Report::line(written(&request.out, figure.size_px(), figure.dpi));

@@ -82,7 +82,7 @@ pub(super) enum Request {
     /// Draw an animation.
     Animate(AnimateRequest),
     /// Make all figures of a project, with at most so many bytes of memory for the samples of a volume.
-    Figures { project: PathBuf, out: PathBuf, device: Device, volume_bytes: Option<u64> },
+    Figures { project: PathBuf, out: PathBuf, fonts: Vec<PathBuf>, device: Device, volume_bytes: Option<u64> },
     /// Open the window.
     Window { project: Option<PathBuf>, frame_times: Option<PathBuf> },
     /// Draw all patterns.
@@ -199,7 +199,7 @@ impl TryFrom<Action> for Request {
             Action::Note(action) => note(action)?,
             Action::Figures(typed) => {
                 let (device, volume_bytes) = drawing(&typed.drawing)?;
-                Self::Figures { project: typed.project, out: typed.out, device, volume_bytes }
+                Self::Figures { project: typed.project, out: typed.out, fonts: typed.font, device, volume_bytes }
             }
             Action::Patterns { out, project } => Self::Patterns { out, project },
             Action::Bench(typed) => {

@@ -101,8 +101,8 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
         Request::Animate(request) => animate::animate(&request, &progress)?,
         Request::Review(request) => review::review(&request, &progress)?,
         Request::ExportModel(request) => review::export_model(&request, &progress)?,
-        Request::Figures { project, out, device, volume_bytes } => {
-            draw::figures(&project, &out, device, volume_bytes, &progress)?
+        Request::Figures { project, out, fonts, device, volume_bytes } => {
+            draw::figures(&project, &out, &fonts, (device, volume_bytes), &progress)?
         }
         Request::Patterns { out, project } => patterns(&out, project.as_deref())?,
         Request::BenchSegy { side, folder } => told(bench::segy::run(side, &folder, &progress)?),

@@ -4,7 +4,7 @@ use super::args::ViewArgs;
 use super::cut::{self, Cut, LineBox, voxel_box};
 use super::request::{Usage, counts, numbers};
 use project::Project;
-use render::{Background, FaceData, Ground, Lookup, Outlines, PatternSize, Projection, Scene, Unpicked};
+use render::{Background, FaceData, Ground, Lookup, Outlines, PatternSize, Projection, Scene, Unpicked, Water};
 use survey::SurveyGeometry;
 use ttf::Preset;
 
@@ -141,11 +141,15 @@ impl ViewChanges {
             None => {}
             Some(None) => scene.water = None,
             Some(Some(level)) => {
-                scene.water = Some(scene.water.unwrap_or_default());
+                let level = geometry.vertical.index_of(level);
+                scene.water = Some(Water { level: Some(level), ..scene.water.unwrap_or_default() });
                 scene.ground = scene.ground.or(Some(Ground::default()));
+                // The block reaches up to the water at least; below its foot there is none to fill.
                 let mut block = scene.box_in(geometry);
-                block.min[2] = geometry.vertical.index_of(level);
-                scene.roaming_box = Some(block);
+                if level < block.min[2] || level >= block.max[2] {
+                    block.min[2] = level;
+                    scene.roaming_box = Some(block);
+                }
             }
         }
         scene.face_data = self.face_data.unwrap_or(scene.face_data);

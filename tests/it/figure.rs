@@ -118,6 +118,13 @@ fn odd_names_and_tiny_pages_make_sensible_figures() {
         assert!(told.stderr.contains("boxes") && told.stderr.contains("Latin"), "{}", told.stderr);
         run_in(at, &format!("render p.petro {file} --legend --size-cm 1x1 --dpi 60")).failed(&["no room"]);
     }
+    let fonts = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/ttf/tests/fonts");
+    let given = format!("--font {fonts}/arabic.ttf --font {fonts}/han.otf");
+    for file in ["a.svg", "a.pdf", "a.png"] {
+        let told = run_in(at, &format!("render p.petro {file} --title 石灰岩 --caption حجر {given} {SMALL}")).done();
+        assert!(!told.stderr.contains("boxes"), "{}", told.stderr);
+    }
+    run_in(at, &format!("render p.petro a.svg --title 石 --font p.petro/project.toml {SMALL}")).failed(&["TrueType"]);
     run_in(at, &format!("render p.petro a.svg --title '<&>' --inline 120 {SMALL}")).done();
     assert!(fs::read_to_string(at.join("a.svg")).unwrap().contains("&lt;&amp;&gt;"));
     // A block alone needs no room for words.

@@ -123,6 +123,8 @@ pub fn run(
         device: settings.device,
         volume_bytes: settings.volume_bytes,
         has_vectors: format.has_vectors(),
+        fonts: Vec::new(),
+        picture_dpi: None,
     };
     let made = figures::make(&project, &figure, &InterpreterView::default(), &drawing, progress)?;
     figures::write(&made.page, format, out, DPI, &figures::title(&project))?;

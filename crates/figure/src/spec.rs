@@ -8,7 +8,7 @@ use crate::cut::SectionKind;
 use crate::draw::block::Comparison;
 use crate::draw::section::Zoom;
 use glam::DVec2;
-use render::{FaceData, Scene};
+use render::{FaceData, LabelChange, Scene};
 use serde::{Deserialize, Serialize};
 use ttf::Preset;
 
@@ -57,6 +57,10 @@ pub struct Figure {
     /// Horizons and faults, by name, whose lines sections leave out, and surfaces in front of blocks. Default none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub hidden: Vec<String>,
+    /// What is changed about labels of the page and of its maps, sections and wells, besides what the scene of a block says:
+    /// a label on one of these is called by the panel's name, a colon, and its own. Default nothing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub labels: Vec<LabelChange>,
     /// How its colours are printed. Default as its first block's scene says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preset: Option<Preset>,
@@ -77,6 +81,7 @@ impl Default for Figure {
             caption: None,
             interpretation: false,
             hidden: Vec::new(),
+            labels: Vec::new(),
             preset: None,
         }
     }
@@ -91,6 +96,15 @@ impl Figure {
     /// Whether a horizon or fault of this name is left out.
     pub fn hides(&self, name: &str) -> bool {
         self.hidden.iter().any(|hidden| hidden == name)
+    }
+
+    /// What is changed about labels: by the scene of its first block, and by itself.
+    pub(crate) fn all_labels(&self) -> Vec<LabelChange> {
+        let blocks = self.parts.iter().find_map(|part| match part {
+            Part::Block(block) => Some(block.scene.labels.clone()),
+            _ => None,
+        });
+        blocks.into_iter().flatten().chain(self.labels.iter().cloned()).collect()
     }
 
     /// How its colours are printed.

@@ -319,6 +319,8 @@ fn a_legend_lists_what_is_seen_and_nothing_else() {
     let ground = legend(&Scene { ground: Some(Ground::default()), ..above });
     assert!(ground.contains(&"Bed 2".to_owned()) && !ground.contains(&"Bed 3".to_owned()), "{ground:?}");
     assert!(!ground.contains(&"Bed 0".to_owned()), "{ground:?}");
+    // The fault breaks the ground; no face shows it.
+    assert!(ground.contains(&"Fault".to_owned()), "{ground:?}");
     // Zoomed in on the cut-out's foot.
     let mut near = whole.clone();
     (near.camera.zoom, near.camera.elevation_deg) = (9.0, 30.0);
@@ -370,6 +372,30 @@ fn labels_stand_where_a_scene_moves_them_and_what_marks_a_place_stays() {
     assert_eq!(page.texts().into_iter().find(|text| text.text.starts_with("F1")).unwrap().size, 12.0);
 }
 
+/// Ground at samples 14 and 26 on the two sides of a fault, water up to sample 20 between them.
+#[test]
+fn ground_above_the_water_stays_dry_and_hides_what_lies_behind() {
+    let survey = Survey::new(|geometry| ClosedForm::flat(geometry, &[14.0, 36.0]).with_fault(65.0, 12.0));
+    let mut scene = Scene { ground: Some(Ground::default()), ..Scene::default() };
+    let clip = |scene: &Scene| {
+        let (page, _) = survey.page(scene, &[]);
+        let mut found = Vec::new();
+        groups(&page.items, "Water", &mut found);
+        found.first().map(|group| group.clip.clone())
+    };
+    scene.water = Some(Water { level: Some(20.0), ..Water::default() });
+    // From either end, the high side before the water or behind it.
+    let sizes = [20.0, 200.0].map(|azimuth| {
+        let mut seen = scene.clone();
+        (seen.camera.azimuth_deg, seen.camera.elevation_deg) = (Some(azimuth), 12.0);
+        let clip = clip(&seen).expect("there is water").expect("it is hidden in places");
+        clip.segments.len()
+    });
+    assert!(sizes[0].max(sizes[1]) > 10, "{sizes:?}");
+    scene.water = Some(Water::default());
+    assert_eq!(clip(&scene), Some(None), "nothing rises above the block's top");
+}
+
 /// Flat ground at sample 14: the sides of the water are as high as the air, and its upper face is the block's.
 #[test]
 fn water_lies_between_the_ground_and_the_top_of_the_block_and_not_in_cut_outs() {
@@ -406,5 +432,22 @@ fn water_lies_between_the_ground_and_the_top_of_the_block_and_not_in_cut_outs() 
     assert!(paths.len() > 3, "{}", paths.len());
     assert_eq!(drawn(&Scene { cut_outs: Vec::new(), ..scene.clone() }).0[0].items.len(), 3);
     assert!(drawn(&Scene { ground: None, ..scene.clone() }).0.is_empty(), "no ground, no water");
+    // Up to a level only, and not at all below the ground.
+    let up_to = |level: f64| {
+        let water = Some(Water { level: Some(level), ..Water::default() });
+        drawn(&Scene { water, cut_outs: Vec::new(), ..scene.clone() }).0
+    };
+    let inner = |group: &Group| match &group.items[0] {
+        Item::Group(face) => match &face.items[0] {
+            Item::Path(path) => path.path.bounds().unwrap(),
+            _ => panic!("no path"),
+        },
+        _ => panic!("no face"),
+    };
+    let top = corners(10.0).into_iter().fold(f64::INFINITY, f64::min) * 72.0 / DPI;
+    let shallow = up_to(10.0);
+    let highest = shallow[0].items.len();
+    assert!(highest == 3 && inner(&shallow[0]).min.y > high - 1.0 && top > high + 2.0);
+    assert!(up_to(20.0).is_empty());
     assert!(drawn(&Scene { water: None, ..scene }).0.is_empty());
 }

@@ -3,6 +3,7 @@
 use figure::cut::SectionSource;
 use figure::draw::NamedColour;
 use figure::draw::block::Comparison;
+use figure::draw::moved::{LabelChange, changed, movable};
 use figure::list::{DisplayList, Text};
 use figure::{
     Annotation, BlockPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part, Rect, SectionKind,
@@ -191,6 +192,30 @@ fn what_has_no_page_is_refused() {
     assert!(matches!(made(&seen), Err(FigureError::NoInterpretation)));
     let short = Part::Fence(FencePart { corners: vec![[2.0, 3.0]; 3], show: FaceData::Rock });
     assert!(matches!(made(&figure(vec![short])), Err(FigureError::ShortFence { corners: 1 })));
+}
+
+#[test]
+fn labels_of_maps_and_sections_stand_where_they_were_moved() {
+    let plain = Figure { title: Some("North".into()), ..figure(parts()) };
+    let page = made(&plain).unwrap();
+    let before = movable(&page);
+    let by = DVec2::new(2.0, -1.5);
+    let names = before.iter().map(|label| label.label.as_str()).collect::<Vec<_>>();
+    assert!(names.contains(&"Inline 12: heading") && names.contains(&"Inline 12: axes"), "{names:?}");
+    assert!(names.iter().any(|name| name.ends_with(": north arrow")), "{names:?}");
+    for label in ["Inline 12: heading", "Inline 12: scale bar", "title", "legend"] {
+        let moved = LabelChange { label: label.into(), moved_mm: by.to_array(), ..LabelChange::default() };
+        let dragged = changed(&page, std::slice::from_ref(&moved), ttf::Preset::Colour);
+        // What the preview shows is what is made.
+        assert_eq!(dragged, made(&Figure { labels: vec![moved], ..plain.clone() }).unwrap(), "{label}");
+        for (a, b) in before.iter().zip(movable(&dragged)) {
+            let expected = if a.label == label { by * 72.0 / 25.4 } else { DVec2::ZERO };
+            assert!((b.bounds.min - a.bounds.min - expected).length() < 1e-6, "{label} {}", a.label);
+        }
+    }
+    let hidden = LabelChange { label: "Inline 12: heading".into(), is_hidden: true, ..LabelChange::default() };
+    let without = made(&Figure { labels: vec![hidden], ..plain }).unwrap();
+    assert!(!movable(&without).iter().any(|label| label.label == "Inline 12: heading"));
 }
 
 /// Numbers that look random, the same in every run (Knuth's linear congruential generator).

@@ -44,7 +44,7 @@ pub enum ModelError {
         holes: usize,
     },
     /// There are more horizons or faults than the model can hold.
-    #[error("{found} {what} were given, at most {limit} can be used")]
+    #[error("{found} {what} were given, at most {limit} can be used; leave some to a project of their own")]
     TooMany {
         /// "horizons" or "faults".
         what: &'static str,

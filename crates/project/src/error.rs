@@ -272,6 +272,14 @@ pub enum ProjectError {
     /// A transfer function or texture that cannot be drawn.
     #[error(transparent)]
     Style(#[from] ttf::TtfError),
+    /// A font file that cannot be used.
+    #[error("{}: {fact}", path.display())]
+    Font {
+        /// The file.
+        path: PathBuf,
+        /// Why not, and what to do.
+        fact: String,
+    },
     /// A view that shows nothing.
     #[error(transparent)]
     Scene(#[from] render::SceneError),

@@ -62,7 +62,7 @@ pub struct Scene {
     /// The ground as relief of the topmost horizon. Absent: the block has a flat top.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ground: Option<Ground>,
-    /// Water over the ground, up to the block's top; figures draw it. Absent: air.
+    /// Water over the ground, up to its level or the block's top; figures draw it. Absent: air.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub water: Option<Water>,
     /// The volume that is shown as raw data, and its colours. Absent: those of the transfer functions.
@@ -92,7 +92,7 @@ pub struct Scene {
     pub labels: Vec<LabelChange>,
 }
 
-/// A translucent body of water between the ground and the top of the block.
+/// A translucent body of water between the ground and a level, or the top of the block.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Water {
@@ -100,11 +100,14 @@ pub struct Water {
     pub colour: Colour,
     /// Its opacity, from 0 to 1. Default 0.3.
     pub opacity: f32,
+    /// The sample at which its surface lies, where ground rises above it. Absent: the block's top.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub level: Option<f64>,
 }
 
 impl Default for Water {
     fn default() -> Self {
-        Self { colour: Colour::new(0x3f, 0x8c, 0xc4), opacity: 0.3 }
+        Self { colour: Colour::new(0x3f, 0x8c, 0xc4), opacity: 0.3, level: None }
     }
 }
 

@@ -11,6 +11,12 @@ pub enum TtfError {
         /// The text found.
         text: String,
     },
+    /// A file that holds no face that lettering could be set in.
+    #[error("this is no face that text can be set in ({reason}); give a TrueType or OpenType file (.ttf, .otf, .ttc)")]
+    UnusableFace {
+        /// What is wrong with it.
+        reason: String,
+    },
     /// A frequency that is not a positive finite number.
     #[error(
         "{place}: the frequency {horizontal} x {vertical} is not usable; both numbers must be finite and greater than 0"

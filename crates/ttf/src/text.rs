@@ -1,20 +1,31 @@
-//! Text drawn into images, for the contact sheet and for legends, in one upright sans-serif face.
+//! Text drawn into images, for the contact sheet and for legends, in an upright sans-serif face.
 //!
-//! The face is Ubuntu Light (Ubuntu Font Licence 1.0), embedded through `epaint_default_fonts`. Glyphs are
-//! outlined by `ab_glyph` with exact area coverage, kerned, and composited on sRGB-encoded values. Text runs
-//! left to right only. A character that the face lacks is drawn as its missing-glyph box.
-//! [`outline_text`] gives the same lettering as curves, for whoever turns it, strokes it or writes it as vectors;
-//! [`crate::subset`] gives the face itself, for files that carry it along.
+//! The face is Ubuntu Light (Ubuntu Font Licence 1.0), embedded through `epaint_default_fonts`. Characters that it lacks
+//! are set in the faces that a person gave ([`Faces`]), and are drawn as the missing-glyph box where none has them. A
+//! line is set once ([`set`]): right-to-left and joined scripts as Unicode asks. Glyphs are outlined by `skrifa`,
+//! covered exactly, and composited on sRGB-encoded values. [`outline_text`] gives the same lettering as curves, for
+//! whoever turns it, strokes it or writes it as vectors; [`crate::subset`] gives a face itself, for files that carry it
+//! along.
 
-use std::sync::OnceLock;
+mod face;
+mod line;
 
-use ab_glyph::{Font, FontRef, OutlineCurve, PxScale, ScaleFont};
+pub use face::{Face, Faces};
+pub use line::{Glyph, Line, set};
+
+pub(crate) use face::OpenFace;
+#[cfg(test)]
+pub(crate) use face::embedded_open;
+
+use ab_glyph_rasterizer::{Rasterizer, point};
 use image::RgbaImage;
 
 use crate::Colour;
 
 /// Exponent of the coverage: dark text in a light face looks too thin without it.
 const COVERAGE_EXPONENT: f32 = 0.75;
+/// A line that takes more pixels than this to either side is not drawn.
+const MOST_SIDE_PX: f32 = 16384.0;
 
 /// The extent of a line of text.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,15 +46,8 @@ pub struct TextExtent {
 /// assert!((large.width_px - 2.0 * small.width_px).abs() < 1e-3);
 /// ```
 pub fn measure_text(size_px: f32, text: &str) -> TextExtent {
-    let scaled = face().as_scaled(scale(size_px));
-    let mut width_px = 0.0;
-    let mut previous = None;
-    for character in text.chars() {
-        let glyph = scaled.glyph_id(character);
-        width_px += previous.map_or(0.0, |before| scaled.kern(before, glyph)) + scaled.h_advance(glyph);
-        previous = Some(glyph);
-    }
-    TextExtent { width_px, ascent_px: scaled.ascent(), descent_px: -scaled.descent() }
+    let Line { width, heights: [above, below], .. } = set(text);
+    TextExtent { width_px: width * size_px, ascent_px: above * size_px, descent_px: below * size_px }
 }
 
 /// Draws a line of text. `at_px` is the left end of its baseline (x right, y down), `size_px` the font size
@@ -59,40 +63,43 @@ pub fn measure_text(size_px: f32, text: &str) -> TextExtent {
 /// assert!(image != blank);
 /// ```
 pub fn draw_text(image: &mut RgbaImage, at_px: [f32; 2], size_px: f32, colour: Colour, text: &str) {
-    let scaled = face().as_scaled(scale(size_px));
-    let mut x = at_px[0];
-    let mut previous = None;
-    for character in text.chars() {
-        let glyph_id = scaled.glyph_id(character);
-        x += previous.map_or(0.0, |before| scaled.kern(before, glyph_id));
-        let glyph = glyph_id.with_scale_and_position(scale(size_px), ab_glyph::point(x, at_px[1]));
-        if let Some(outline) = scaled.outline_glyph(glyph) {
-            let corner = outline.px_bounds().min;
-            outline.draw(|dx, dy, coverage| {
-                let pixel = [corner.x + dx as f32, corner.y + dy as f32];
-                let inside = pixel[0] >= 0.0
-                    && pixel[1] >= 0.0
-                    && pixel[0] < image.width() as f32
-                    && pixel[1] < image.height() as f32;
-                if inside {
-                    let target = image.get_pixel_mut(pixel[0] as u32, pixel[1] as u32);
-                    blend(&mut target.0, colour, ink_of_coverage(coverage));
-                }
-            });
-        }
-        x += scaled.h_advance(glyph_id);
-        previous = Some(glyph_id);
+    let curves = outline_text(size_px, text);
+    let places = || curves.iter().flat_map(|curve| curve.places().iter().copied());
+    let low = places().fold([f32::MAX; 2], |low, p| [low[0].min(p[0]), low[1].min(p[1])]);
+    let high = places().fold([f32::MIN; 2], |high, p| [high[0].max(p[0]), high[1].max(p[1])]);
+    let corner = [0, 1].map(|axis| (at_px[axis] + low[axis]).floor() - 1.0);
+    let size = [0, 1].map(|axis| (at_px[axis] + high[axis]).ceil() + 1.0 - corner[axis]);
+    if !size.iter().all(|side| *side > 0.0 && *side < MOST_SIDE_PX) {
+        return;
     }
+    let mut rasterizer = Rasterizer::new(size[0] as usize + 1, size[1] as usize + 1);
+    let at = |p: [f32; 2]| point(at_px[0] + p[0] - corner[0], at_px[1] + p[1] - corner[1]);
+    for curve in &curves {
+        match *curve {
+            TextCurve::Line([a, b]) => rasterizer.draw_line(at(a), at(b)),
+            TextCurve::Quad([a, b, c]) => rasterizer.draw_quad(at(a), at(b), at(c)),
+            TextCurve::Cubic([a, b, c, d]) => rasterizer.draw_cubic(at(a), at(b), at(c), at(d)),
+        }
+    }
+    rasterizer.for_each_pixel_2d(|dx, dy, coverage| {
+        let pixel = [corner[0] + dx as f32, corner[1] + dy as f32];
+        let inside =
+            pixel[0] >= 0.0 && pixel[1] >= 0.0 && pixel[0] < image.width() as f32 && pixel[1] < image.height() as f32;
+        if inside && coverage > 0.0 {
+            let target = image.get_pixel_mut(pixel[0] as u32, pixel[1] as u32);
+            blend(&mut target.0, colour, ink_of_coverage(coverage));
+        }
+    });
 }
 
-/// Whether the face has a glyph for a character; one that it lacks is drawn as a box.
+/// Whether a face of this thread has a glyph for a character; one that all lack is drawn as a box.
 ///
 /// ```
 /// use ttf::text::is_known;
 /// assert!(is_known('ø') && is_known('Ж') && !is_known('石') && !is_known('ح'));
 /// ```
 pub fn is_known(character: char) -> bool {
-    face().glyph_id(character).0 != 0
+    Faces::current().holder(character).is_some()
 }
 
 /// A piece of a glyph's contour; contours are closed and follow one another.
@@ -104,6 +111,26 @@ pub enum TextCurve {
     Quad([[f32; 2]; 3]),
     /// A cubic Bézier curve: start, two control points, end.
     Cubic([[f32; 2]; 4]),
+}
+
+impl TextCurve {
+    /// Its places: the ends, with the control points between them.
+    pub fn places(&self) -> &[[f32; 2]] {
+        match self {
+            Self::Line(places) => places,
+            Self::Quad(places) => places,
+            Self::Cubic(places) => places,
+        }
+    }
+
+    /// The same with every place elsewhere.
+    fn placed(self, place: impl Fn([f32; 2]) -> [f32; 2]) -> Self {
+        match self {
+            Self::Line(places) => Self::Line(places.map(place)),
+            Self::Quad(places) => Self::Quad(places.map(place)),
+            Self::Cubic(places) => Self::Cubic(places.map(place)),
+        }
+    }
 }
 
 /// The contours of a line of text at a font size (per em), x right and y down from the left end of its baseline.
@@ -120,24 +147,21 @@ pub enum TextCurve {
 /// assert_eq!(begin, end);
 /// ```
 pub fn outline_text(size_px: f32, text: &str) -> Vec<TextCurve> {
-    let face = face();
-    let scaled = face.as_scaled(scale(size_px));
-    let per_unit = size_px / face.units_per_em().unwrap_or(1000.0);
-    let (mut x, mut previous) = (0.0, None);
+    outline(size_px, &set(text))
+}
+
+/// The contours of a line that is set, as [`outline_text`] gives them.
+pub fn outline(size_px: f32, line: &Line) -> Vec<TextCurve> {
+    let faces = Faces::current();
     let mut curves = Vec::new();
-    for character in text.chars() {
-        let glyph = scaled.glyph_id(character);
-        x += previous.map_or(0.0, |before| scaled.kern(before, glyph));
-        if let Some(outline) = face.outline(glyph) {
-            let place = |p: ab_glyph::Point| [x + p.x * per_unit, -p.y * per_unit];
-            curves.extend(outline.curves.iter().map(|curve| match *curve {
-                OutlineCurve::Line(a, b) => TextCurve::Line([a, b].map(place)),
-                OutlineCurve::Quad(a, b, c) => TextCurve::Quad([a, b, c].map(place)),
-                OutlineCurve::Cubic(a, b, c, d) => TextCurve::Cubic([a, b, c, d].map(place)),
-            }));
+    for (number, glyphs) in line.by_face() {
+        let Some(open) = faces.face(number).open() else { continue };
+        let per_unit = size_px / open.units_per_em;
+        for glyph in glyphs {
+            let place =
+                |p: [f32; 2]| [glyph.at[0] * size_px + p[0] * per_unit, -(glyph.at[1] * size_px + p[1] * per_unit)];
+            curves.extend(open.contours(glyph.id).into_iter().map(|curve| curve.placed(place)));
         }
-        x += scaled.h_advance(glyph);
-        previous = Some(glyph);
     }
     curves
 }
@@ -159,22 +183,6 @@ fn blend(pixel: &mut [u8; 4], colour: Colour, coverage: f32) {
         *channel = mixed.round() as u8;
     }
     pixel[3] = (alpha * 255.0).round() as u8;
-}
-
-/// The face.
-pub(crate) fn face() -> &'static FontRef<'static> {
-    static FACE: OnceLock<FontRef<'static>> = OnceLock::new();
-    FACE.get_or_init(|| {
-        FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT)
-            .expect("the embedded face is a constant of the program, and a test parses it")
-    })
-}
-
-/// `ab_glyph` scales by the height of the face; sizes here are per em, as in typography.
-fn scale(size_px: f32) -> PxScale {
-    let face = face();
-    let per_em = face.units_per_em().expect("the embedded face states its units per em");
-    PxScale::from(size_px * face.height_unscaled() / per_em)
 }
 
 #[cfg(test)]

@@ -67,6 +67,10 @@ pub(in crate::cli) struct FigureArgs {
     /// Whose data the figure shows, for the line of provenance
     #[arg(long, value_name = "TEXT")]
     pub(in crate::cli) credit: Option<String>,
+    /// Font file (.ttf, .otf, .ttc) for names in letters that the embedded face lacks, such as Arabic or Chinese; repeat
+    /// it for several. NAME.ttc#2 is the third face of a collection
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) font: Vec<PathBuf>,
     /// Title above the figure
     #[arg(long, value_name = "TEXT")]
     pub(in crate::cli) title: Option<String>,

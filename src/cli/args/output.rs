@@ -71,6 +71,9 @@ pub(in crate::cli) struct FiguresArgs {
     pub(in crate::cli) project: PathBuf,
     /// Folder to write into; created if it does not exist. Files of the figures' names are replaced, others stay
     pub(in crate::cli) out: PathBuf,
+    /// Font file for names in letters that the embedded face and the project's own fonts lack; repeat it for several
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) font: Vec<PathBuf>,
     #[command(flatten)]
     pub(in crate::cli) drawing: DrawingArgs,
 }

@@ -112,7 +112,8 @@ pub(in crate::cli) struct ViewArgs {
     /// Opacity of that relief
     #[arg(long, value_name = "0..1")]
     pub(in crate::cli) ground_opacity: Option<f32>,
-    /// Fill what lies above that relief with water, up to this depth or time, where the block then begins; `off`: air
+    /// Fill what lies above that relief with water, up to this depth or time, to which the block reaches at least; ground
+    /// above it stays dry; `off`: air
     #[arg(long, value_name = "LEVEL|off", allow_hyphen_values = true)]
     pub(in crate::cli) water: Option<String>,
     /// What faces show: the rock, the leaves of horizon candidates in colours, the distance to the nearest

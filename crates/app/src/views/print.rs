@@ -45,10 +45,14 @@ impl Page {
     ) -> Option<Self> {
         let geometry = session.document.geometry.as_ref()?;
         let is_interpreting = session.view.panel == Panel::Interpret;
+        let parts = parts(session, geometry, overlay, sections, mapped);
+        // A block brings those of its scene.
+        let has_block = parts.iter().any(|part| matches!(part, Part::Block(_)));
         let figure = Figure {
+            labels: if has_block { Vec::new() } else { session.view.scene.labels.clone() },
             size: PageSize::Cm(form.size_cm),
             dpi: form.dpi,
-            parts: parts(session, geometry, overlay, sections, mapped),
+            parts,
             legend: form.legend == Shown::Yes,
             scale_bar: form.scale_bar == Shown::Yes,
             north_arrow: form.north_arrow == Shown::Yes,
@@ -69,14 +73,14 @@ impl Page {
         &self.figure
     }
 
-    /// Lays the page out to be looked at, without changes to its labels; at a coarser resolution than it is written, so
-    /// that it is there soon.
+    /// Lays the page out to be looked at, exactly as it is written, but without changes to its labels, and with pictures
+    /// of blocks at a coarser resolution, so that it is there soon.
     ///
     /// # Errors
     /// As [`Self::write`].
     pub fn preview(&self, progress: &Progress) -> Result<(DisplayList, Preset), ProjectError> {
         let project = Project::open(&self.root)?;
-        let mut figure = Figure { dpi: PREVIEW_DPI, ..self.figure.clone() };
+        let mut figure = Figure { labels: Vec::new(), ..self.figure.clone() };
         for part in &mut figure.parts {
             if let Part::Block(block) = part {
                 block.scene.labels.clear();
@@ -84,7 +88,13 @@ impl Page {
             }
         }
         let volume_bytes = memory_budget::half_of_available();
-        let settings = FigureSettings { device: Device::Auto, volume_bytes, has_vectors: false };
+        let settings = FigureSettings {
+            device: Device::Auto,
+            volume_bytes,
+            has_vectors: false,
+            fonts: Vec::new(),
+            picture_dpi: Some(PREVIEW_DPI),
+        };
         let made = compute(|| figures::make(&project, &figure, &self.view, &settings, progress))?;
         Ok((made.page, figure.printed_in()))
     }
@@ -101,6 +111,8 @@ impl Page {
             device: Device::Auto,
             volume_bytes: memory_budget::half_of_available(),
             has_vectors: format.has_vectors(),
+            fonts: Vec::new(),
+            picture_dpi: None,
         };
         compute(|| {
             let made = figures::make(&project, &self.figure, &self.view, &settings, progress)?;

@@ -159,7 +159,7 @@ impl MapPanel<'_> {
             group.push(marks(&self.marks, &frame).clipped(Path::polygon(&outline)));
         }
         let title = Text::new(DVec2::new(room.min.x + 2.0, room.min.y + TITLE_PT), &self.title).sized(TITLE_PT);
-        group.push(title.fitted(room.width() - 2.0));
+        group.push(Group::new(GroupKind::Annotation, "heading").with([title.fitted(room.width() - 2.0).into()]));
         let column =
             Rect::sized(DVec2::new(body.max.x + 14.0, body.min.y), DVec2::new(COLUMN_PT - 14.0, body.height()));
         explained(self.map, self.geometry, column).into_iter().for_each(|part| group.push(part));

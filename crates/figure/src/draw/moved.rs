@@ -11,6 +11,8 @@ use ttf::Preset;
 
 /// What the groups of leaders are called before the name.
 const LEADER: &str = "leader to ";
+/// Between the name of a map, section or correlation panel and that of a label on it.
+const OF_PANEL: &str = ": ";
 /// The panel of a block, and the group in it of what is written on the block.
 pub(crate) const BLOCK: &str = "block";
 pub(crate) const ON_BLOCK: &str = "labels";
@@ -26,10 +28,20 @@ pub struct Movable {
 
 /// The labels of a page, in the order of drawing.
 pub fn movable(list: &DisplayList) -> Vec<Movable> {
+    list.faces.scope(|| found(list))
+}
+
+fn found(list: &DisplayList) -> Vec<Movable> {
     let mut found = Vec::new();
     for group in list.items.iter().filter_map(as_group) {
         match group.kind {
-            GroupKind::Panel if group.name != BLOCK => {}
+            GroupKind::Panel if group.name != BLOCK => {
+                for part in group.items.iter().filter_map(as_group).filter(|part| is_explanation(part)) {
+                    let label = format!("{}{OF_PANEL}{}", group.name, part.name);
+                    let bounds = bounds_of(&part.items).into_iter().reduce(|a, b| a.around(b.min).around(b.max));
+                    found.extend(bounds.map(|bounds| Movable { label, bounds }));
+                }
+            }
             GroupKind::Panel => {
                 for part in group.items.iter().filter_map(as_group).filter(|part| part.kind == GroupKind::Annotation) {
                     match part.name == ON_BLOCK {
@@ -44,19 +56,18 @@ pub fn movable(list: &DisplayList) -> Vec<Movable> {
     found
 }
 
-/// A page with the labels of its blocks and of itself changed, in the colours of a preset. The page must have been made
+/// A page with the labels of its panels and of itself changed, in the colours of a preset. The page must have been made
 /// without changes.
 pub fn changed(list: &DisplayList, changes: &[LabelChange], preset: Preset) -> DisplayList {
     let mut list = list.clone();
-    for item in &mut list.items {
-        if let Item::Group(panel) = item
-            && panel.kind == GroupKind::Panel
-            && panel.name == BLOCK
-        {
-            change(&mut panel.items, changes);
+    list.faces.clone().scope(|| {
+        for item in &mut list.items {
+            if let Item::Group(panel) = item {
+                change_panel(panel, changes);
+            }
         }
-    }
-    change(&mut list.items, changes);
+        change(&mut list.items, changes);
+    });
     list.print(preset);
     list
 }
@@ -86,6 +97,23 @@ fn bounds_of(items: &[Item]) -> Vec<Rect> {
         },
     };
     items.iter().flat_map(of).collect()
+}
+
+/// Makes changes to the labels of a panel: those of a block by their names, those of other panels by the panel's name
+/// and theirs.
+pub(crate) fn change_panel(panel: &mut Group, changes: &[LabelChange]) {
+    if panel.kind != GroupKind::Panel {
+        return;
+    }
+    if panel.name == BLOCK {
+        return change(&mut panel.items, changes);
+    }
+    let own = |change: &LabelChange| {
+        let label = change.label.strip_prefix(&panel.name)?.strip_prefix(OF_PANEL)?.to_owned();
+        Some(LabelChange { label, ..change.clone() })
+    };
+    let own: Vec<LabelChange> = changes.iter().filter_map(own).collect();
+    change(&mut panel.items, &own);
 }
 
 /// Makes changes to those of `items` that are labels: on the page all but its panels, in a panel all but its picture.
@@ -138,6 +166,12 @@ fn apply(group: &mut Group, change: &LabelChange) {
 /// Whether a group on a page or in a panel is written on what it shows.
 fn is_label(group: &Group) -> bool {
     !matches!(group.kind, GroupKind::Panel | GroupKind::Data)
+}
+
+/// Whether a group in a map, section or correlation panel explains it in words.
+fn is_explanation(group: &Group) -> bool {
+    let has_words = |item: &Item| as_text(item).is_some() || as_group(item).is_some_and(is_explanation);
+    matches!(group.kind, GroupKind::Annotation | GroupKind::Well) && group.items.iter().any(has_words)
 }
 
 /// Whether only the letters of a group move.

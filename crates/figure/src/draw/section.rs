@@ -223,10 +223,12 @@ impl SectionPanel<'_> {
         let across = across.inked(QUIET_INK).anchored(Across::End, Upright::Baseline);
         let title = Text::new(DVec2::new(body.min.x, baseline), &self.title).sized(TITLE_PT).inked(INK);
         // In little room the title says enough.
+        let mut heading = Group::new(GroupKind::Annotation, "heading");
         if title.width() + across.width() + 8.0 <= body.width() {
-            group.push(across);
+            heading.push(across);
         }
-        group.push(title.fitted(body.width()));
+        heading.push(title.fitted(body.width()));
+        group.push(heading);
         if let Some(caption) = &self.caption {
             let points_per_m = image.size() / self.extent_m;
             let strip = Rect::new(DVec2::new(body.min.x, body.max.y + 3.0), DVec2::new(body.max.x, room.max.y));

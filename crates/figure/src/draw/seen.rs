@@ -22,6 +22,10 @@ const COLUMNS: u32 = 160;
 const BEHIND: f32 = 0.02;
 /// Faces that are seen smaller than this are seen edge on, square pixels.
 const LEAST_PX: f64 = 1.0;
+/// As far as it is told how far rock lies before or behind water, voxels.
+const FAR: f64 = 5.0;
+/// Places of the ground this close on the map, as a share of the block's longest side, are neighbours.
+const NEAR: f32 = 0.04;
 /// How far below a line rock has to lie for it to be a line on rock, voxels.
 const BELOW: f64 = 0.3;
 
@@ -49,6 +53,7 @@ pub(crate) fn seen(scene: &Scene, geometry: &SurveyGeometry, model: &StructuralM
     }
     if sight.faces == Faces::All {
         sight.add_faces(scene, geometry, &mut seen);
+        seen.faults.extend(sight.faults_on_ground());
     }
     if scene.wells.radius > 0.0 {
         seen.wells = (0..wells.len())
@@ -89,6 +94,15 @@ impl<'a> Sight<'a> {
         self.relief.as_ref().is_some_and(|relief| relief.is_air(self.model, p))
     }
 
+    /// How far behind the surface of water rock is met at a pixel, voxels, where `block` is the block without what rises
+    /// above the water; far behind where there is none.
+    pub(crate) fn behind_water(&self, block: &Solid, px: DVec2) -> f64 {
+        let ray = Ray::from(self.view.ray(px));
+        let water = block.next_span(&ray, f32::MIN).filter(|span| self.is_air(ray.at(span.entry.t + BEHIND)));
+        let (Some(water), Some((rock, _))) = (water, self.rock(&ray)) else { return FAR };
+        f64::from(rock - water.entry.t).clamp(-FAR, FAR)
+    }
+
     /// Where a ray meets rock, and just behind.
     fn rock(&self, ray: &Ray) -> Option<(f32, Vec3)> {
         let mut from = f32::MIN;
@@ -106,6 +120,40 @@ impl<'a> Sight<'a> {
             from = span.end;
         }
         None
+    }
+
+    /// Faults that run over the ground: between neighbouring rays that meet it on their two sides.
+    fn faults_on_ground(&self) -> BTreeSet<usize> {
+        let faults = self.model.faults();
+        if self.relief.is_none() || faults.surfaces().is_empty() {
+            return BTreeSet::new();
+        }
+        let [low, high] = self.solid.roaming_box;
+        let near = NEAR * (high - low).max_element();
+        let rows = (f64::from(COLUMNS) * self.size.y / self.size.x).ceil().clamp(1.0, 4.0 * f64::from(COLUMNS)) as u32;
+        let row = |row: u32| {
+            let (mut found, mut last) = (BTreeSet::new(), None::<Vec3>);
+            for column in 0..COLUMNS {
+                let share = DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
+                let pixel = share / DVec2::new(f64::from(COLUMNS), f64::from(rows)) * self.size;
+                let met = self.rock(&Ray::from(self.view.ray(pixel))).map(|(_, p)| p);
+                let ground = met.filter(|p| self.is_air(*p - BELOW as f32 * Vec3::Z));
+                if let (Some(p), Some(q)) = (ground, last)
+                    && p.truncate().distance(q.truncate()) < near
+                {
+                    let [a, b] = [p, q].map(|place| faults.bits_at(place));
+                    let parted = (a ^ b) & faults.existing(a) & faults.existing(b);
+                    let is_parted = |fault: &usize| parted >> fault & 1 == 1 && faults.is_real(*fault, 0.5 * (p + q));
+                    found.extend((0..faults.surfaces().len()).filter(is_parted));
+                }
+                last = ground;
+            }
+            found
+        };
+        (0..rows).into_par_iter().map(row).reduce(BTreeSet::new, |mut one, other| {
+            one.extend(other);
+            one
+        })
     }
 
     fn layers_on_rays(&self) -> BTreeSet<u16> {

@@ -118,7 +118,14 @@ fn filled(
 ) -> Item {
     let mut outline = Path::default();
     area.rings.iter().for_each(|ring| append(&mut outline, ring, true, page));
+    let mut band = Path::default();
+    area.band.iter().flatten().for_each(|ring| append(&mut band, ring, true, page));
     let item: Item = match &area.fill {
+        // Over the layer's own colour, up to whose edge it reaches.
+        AreaFill::Colour(colour) if area.band.is_some() => {
+            let filled = PathItem::filled(band.clone(), *colour);
+            Group::new(GroupKind::Part, "interval").clipped(outline).with([filled.into()]).into()
+        }
         AreaFill::Colour(colour) => {
             let filled = PathItem { rule: Rule::EvenOdd, ..PathItem::filled(outline, *colour) };
             filled.outlined(Stroke::new(BLEED_PT, *colour)).into()
@@ -131,6 +138,10 @@ fn filled(
             let painted = picture.map(|picture| Picture::in_rect(Arc::clone(picture), pane).into());
             Group::new(GroupKind::Part, "painted").clipped(outline).with(painted).into()
         }
+    };
+    let item = match area.band {
+        Some(_) => Group::new(GroupKind::Part, "interval").clipped(band).with([item]).into(),
+        None => item,
     };
     match &area.seen {
         None => item,

@@ -20,7 +20,7 @@ pub(crate) use vectors::{KnownPictures, VectorWriter, png, write_vectors};
 use crate::Rect;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
+use ttf::text::Faces;
 
 /// Points in an inch.
 pub const POINTS_PER_INCH: f64 = 72.0;
@@ -50,12 +50,15 @@ pub struct DisplayList {
     pub paper: Option<Ink>,
     /// What is on it, back to front.
     pub items: Vec<Item>,
+    /// The faces that its text was laid out in, and is drawn in; a page that was read has the embedded one.
+    #[serde(skip)]
+    pub faces: Faces,
 }
 
 impl DisplayList {
-    /// An empty page on white paper.
+    /// An empty page on white paper, with the faces of this thread.
     pub fn new(size: DVec2) -> Self {
-        Self { size, paper: Some(Ink::WHITE), items: Vec::new() }
+        Self { size, paper: Some(Ink::WHITE), items: Vec::new(), faces: Faces::current() }
     }
 
     /// The whole page.
@@ -87,10 +90,10 @@ impl DisplayList {
         texts.collect()
     }
 
-    /// The characters of all texts that are not blank.
-    pub(crate) fn characters(&self) -> BTreeSet<char> {
+    /// The lines of text that are not blank, as they are set: letter by letter where a line is bent.
+    pub(crate) fn lines(&self) -> Vec<String> {
         let said = self.texts().into_iter().filter(|text| !text.text.trim().is_empty());
-        said.flat_map(|text| text.text.chars()).collect()
+        said.flat_map(|text| text.straight().into_iter().map(|line| line.text)).collect()
     }
 }
 

@@ -5,7 +5,7 @@ use crate::Rect;
 use crate::style::INK;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
-use ttf::text::{TextCurve, measure_text, outline_text};
+use ttf::text::{TextCurve, measure_text, outline_text, set};
 
 /// Share of the font size that capital letters are high: what is centred upright is centred on them.
 const CAPITALS: f64 = 0.69;
@@ -152,9 +152,15 @@ impl Text {
     }
 
     /// The same bent along a curve from left to right: half of the capitals' height lies on it, and the text's middle
-    /// this far along it. Before and after the curve it goes on straight.
+    /// this far along it. Before and after the curve it goes on straight. Scripts whose letters join, or run from right
+    /// to left, are not bent: such a line stands straight where its middle is.
     #[must_use]
     pub fn along(mut self, curve: &[DVec2], middle: f64) -> Self {
+        if !set(&self.text).is_plain {
+            let (at, along) = on_curve(curve, middle);
+            (self.at, self.turn_deg) = (at, along.to_angle().to_degrees());
+            return self.anchored(Across::Middle, Upright::Middle);
+        }
         let begin = middle - 0.5 * self.width();
         let mut said = String::new();
         let mut before = 0.0;

@@ -130,11 +130,15 @@ pub fn make(
     for ((part, prepared), room) in figure.parts.iter().zip(prepared).zip(rooms) {
         panels.push(maker.part(part, prepared, room, painter)?.into());
     }
-    let labels = figure.parts.iter().find_map(|part| match part {
-        Part::Block(block) => Some(&block.scene.labels[..]),
-        _ => None,
-    });
-    moved::change(&mut list.items, labels.unwrap_or_default());
+    let labels = figure.all_labels();
+    for panel in &mut panels {
+        match panel {
+            // A block was changed as its own scene says.
+            Item::Group(panel) if panel.name != moved::BLOCK => moved::change_panel(panel, &labels),
+            _ => {}
+        }
+    }
+    moved::change(&mut list.items, &labels);
     // The legend explains what is drawn before it.
     panels.append(&mut list.items);
     list.items = panels;

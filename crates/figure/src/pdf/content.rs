@@ -1,7 +1,7 @@
 //! What is drawn on a page, as operators: the page's points with y down, turned over once at the beginning.
 
-use super::font::PageFont;
-use super::{FACE, Refs, pictures};
+use super::font::PageFonts;
+use super::{Refs, pictures};
 use crate::error::FigureError;
 use crate::list::{
     Cap, Group, GroupKind, Ink, KnownPictures, Path, PathItem, Picture, Rule, Segment, Stroke, Text, VectorWriter,
@@ -34,7 +34,7 @@ pub(super) struct PageContent<'a> {
     known: KnownPictures,
     /// Layers that began and have not ended.
     open: Vec<usize>,
-    font: &'a PageFont,
+    fonts: &'a PageFonts,
     pdf: &'a mut Pdf,
     refs: &'a mut Refs,
 }
@@ -45,7 +45,7 @@ pub(super) fn name(kind: char, number: usize) -> String {
 }
 
 impl<'a> PageContent<'a> {
-    pub(super) fn new(font: &'a PageFont, height: f64, pdf: &'a mut Pdf, refs: &'a mut Refs) -> Self {
+    pub(super) fn new(fonts: &'a PageFonts, height: f64, pdf: &'a mut Pdf, refs: &'a mut Refs) -> Self {
         let mut content = Content::new();
         content.transform([1.0, 0.0, 0.0, -1.0, 0.0, height as f32]).set_line_join(LineJoinStyle::RoundJoin);
         Self {
@@ -56,7 +56,7 @@ impl<'a> PageContent<'a> {
             pictures: Vec::new(),
             known: KnownPictures::default(),
             open: Vec::new(),
-            font,
+            fonts,
             pdf,
             refs,
         }
@@ -185,13 +185,21 @@ impl VectorWriter for PageContent<'_> {
             let mut span = self.content.begin_marked_content_with_properties(Name(b"Span"));
             span.properties().actual_text(TextStr(&line.text));
         }
-        self.content.set_fill_rgb(r, g, b).begin_text().set_font(FACE, thousandths(line.size));
+        self.content.set_fill_rgb(r, g, b).begin_text();
+        let mut face = None;
         for straight in line.straight() {
             let (start, along) = straight.baseline();
             // Letters stand upright where y points down.
             let [x, y] = along.to_array().map(|part| (part * 1e6).round() as f32 / 1e6);
-            self.content.set_text_matrix([x, y, y, -x, number(start.x), number(start.y)]);
-            self.content.show(Str(&self.font.encoded(&straight.text)));
+            for shown in self.fonts.shown(&straight) {
+                if face.replace(shown.face) != Some(shown.face) {
+                    let named = name('F', shown.face);
+                    self.content.set_font(Name(named.as_bytes()), thousandths(line.size));
+                }
+                let at = start + along.rotate(shown.at);
+                self.content.set_text_matrix([x, y, y, -x, number(at.x), number(at.y)]);
+                self.content.show(Str(&shown.codes));
+            }
         }
         self.content.end_text();
         if is_bent {

@@ -1,61 +1,125 @@
-//! The lettering's face in the file: the glyphs that are used, how wide they are, and what they stand for.
+//! The lettering's faces in the file: the glyphs that are used, how wide they are, and what they stand for.
 //!
-//! Every character of the page has a number of its own (a CID) from 1. Characters that the face lacks share the glyph
-//! of the missing-glyph box and are still found as what they are.
+//! Each glyph has a number of its own (a CID) from 1 for each text that it stands for: characters that all faces lack
+//! share the missing-glyph box and are still found as what they are, and a letter is found as the same letter whatever
+//! form its neighbours give it. Glyphs are written in the order in which they are seen; readers of text turn words of
+//! scripts that run from right to left round.
 
 use super::Refs;
 use crate::compress::deflated;
-use crate::list::DisplayList;
+use crate::list::{DisplayList, Text};
+use glam::DVec2;
 use pdf_writer::types::{CidFontType, FontFlags, SystemInfo, UnicodeCmap};
 use pdf_writer::{Filter, Finish, Name, Pdf, Rect, Ref, Str};
-use std::collections::BTreeSet;
-use ttf::subset::{FontSubset, font_of};
+use std::collections::BTreeMap;
+use ttf::subset::{FontSubset, used};
+use ttf::text::{Glyph, set};
 
-/// Codes are two bytes that are the number of a character.
+/// Codes are two bytes that are the number of a glyph.
 const ENCODING: Name = Name(b"Identity-H");
 const IDENTITY: SystemInfo = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
 /// Height of capital letters and thickness of stems, thousandths of an em.
 const CAPITALS: f32 = 693.0;
 const STEM: f32 = 64.0;
 
-/// The face of a page.
-pub(super) struct PageFont {
-    /// The characters of the page; their numbers are their places here, from 1.
-    characters: Vec<char>,
+/// The faces of a page.
+pub(super) struct PageFonts {
+    faces: Vec<PageFace>,
+}
+
+/// A face of a page.
+pub(super) struct PageFace {
+    /// Its number among the faces of lettering.
+    number: usize,
+    /// The number of each glyph that stands for a text; in order, from 1.
+    codes: BTreeMap<(String, u16), u16>,
     subset: FontSubset,
     /// The name of the face behind six letters that mark the subset.
     name: String,
 }
 
-impl PageFont {
-    /// The face with all that a page says.
+/// Glyphs of one face that follow one another as wide as they are.
+pub(super) struct Shown {
+    /// The face, by its place in the file.
+    pub(super) face: usize,
+    /// The left end of the first glyph's baseline, from that of the line, which runs to the right; y down.
+    pub(super) at: DVec2,
+    /// Their codes.
+    pub(super) codes: Vec<u8>,
+}
+
+impl PageFonts {
+    /// The faces with all that a page says.
     pub(super) fn of(list: &DisplayList) -> Self {
-        let characters: BTreeSet<char> = list.characters();
-        let subset = font_of(&characters);
-        // Another subset has other letters, so that joined documents keep both.
-        let mut mark = subset.file.iter().fold(0u32, |mark, byte| mark.wrapping_mul(31).wrapping_add(u32::from(*byte)));
-        let mut name = String::new();
-        for _ in 0..6 {
-            name.push(char::from(b'A' + (mark % 26) as u8));
-            mark /= 26;
+        let lines = list.lines();
+        let mut faces = Vec::new();
+        for used in used(lines.iter().map(String::as_str)) {
+            let Some(subset) = used.file() else { continue };
+            let family: String = used.face.family().chars().filter(char::is_ascii_alphanumeric).collect();
+            let family = if used.number == 0 { "Ubuntu-Light" } else { &family };
+            let name = format!("{}+{family}", mark(&subset.file));
+            faces.push(PageFace { number: used.number, codes: BTreeMap::new(), subset, name });
         }
-        name.push_str("+Ubuntu-Light");
-        Self { characters: characters.into_iter().collect(), subset, name }
+        for text in &lines {
+            for glyph in set(text).glyphs {
+                if let Some(face) = faces.iter_mut().find(|face| face.number == glyph.face) {
+                    face.codes.insert((text[glyph.said].to_owned(), glyph.id), 0);
+                }
+            }
+        }
+        for face in &mut faces {
+            face.codes.values_mut().zip(1..).for_each(|(code, place)| *code = place);
+        }
+        Self { faces }
     }
 
-    /// Whether there is no text.
-    pub(super) fn is_empty(&self) -> bool {
-        self.characters.is_empty()
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.faces.len()
     }
 
-    /// A line as codes, in the order in which it is seen.
-    pub(super) fn encoded(&self, text: &str) -> Vec<u8> {
-        let number = |character| self.characters.binary_search(&character).map_or(0, |place| place as u16 + 1);
-        as_seen(text).into_iter().flat_map(|character| number(character).to_be_bytes()).collect()
+    /// A straight line as codes, in the order in which it is seen.
+    pub(super) fn shown(&self, line: &Text) -> Vec<Shown> {
+        let mut shown: Vec<Shown> = Vec::new();
+        let mut end = DVec2::ZERO;
+        for glyph in set(&line.text).glyphs {
+            let Some(face) = self.faces.iter().position(|face| face.number == glyph.face) else { continue };
+            let at = DVec2::new(f64::from(glyph.at[0]), -f64::from(glyph.at[1])) * line.size;
+            let code = self.faces[face].code(&line.text, &glyph).to_be_bytes();
+            match shown.last_mut() {
+                // To a hundredth of a point, as places are written.
+                Some(last) if last.face == face && (at - end).length() < 0.005 => last.codes.extend(code),
+                _ => shown.push(Shown { face, at, codes: code.to_vec() }),
+            }
+            end = at + DVec2::new(f64::from(glyph.advance) * line.size, 0.0);
+        }
+        shown
+    }
+
+    /// Writes the faces as these objects.
+    pub(super) fn write(&self, pdf: &mut Pdf, ids: &[Ref], refs: &mut Refs) {
+        self.faces.iter().zip(ids).for_each(|(face, id)| face.write(pdf, *id, refs));
+    }
+}
+
+/// Six letters that mark a subset: another one has other letters, so that joined documents keep both.
+fn mark(file: &[u8]) -> String {
+    let mut mark = file.iter().fold(0u32, |mark, byte| mark.wrapping_mul(31).wrapping_add(u32::from(*byte)));
+    let mut letters = String::new();
+    for _ in 0..6 {
+        letters.push(char::from(b'A' + (mark % 26) as u8));
+        mark /= 26;
+    }
+    letters
+}
+
+impl PageFace {
+    fn code(&self, text: &str, glyph: &Glyph) -> u16 {
+        self.codes.get(&(text[glyph.said.clone()].to_owned(), glyph.id)).copied().unwrap_or(0)
     }
 
     /// Writes the face as object `id`.
-    pub(super) fn write(&self, pdf: &mut Pdf, id: Ref, refs: &mut Refs) {
+    fn write(&self, pdf: &mut Pdf, id: Ref, refs: &mut Refs) {
         let name = Name(self.name.as_bytes());
         let [descendant, descriptor, file, meanings, places] = [(); 5].map(|()| refs.next());
         pdf.type0_font(id)
@@ -63,14 +127,15 @@ impl PageFont {
             .encoding_predefined(ENCODING)
             .descendant_font(descendant)
             .to_unicode(meanings);
-        let glyphs: Vec<u16> = [0].into_iter().chain(self.characters.iter().map(|c| self.subset.glyphs[c])).collect();
-        let advance = |glyph: &u16| f32::from(self.subset.advances[usize::from(*glyph)]);
+        let number = |glyph: &u16| self.subset.numbers.get(glyph).copied().unwrap_or(0);
+        let glyphs: Vec<u16> = [0].into_iter().chain(self.codes.keys().map(|(_, glyph)| number(glyph))).collect();
+        let advance = |glyph: &u16| self.subset.advances.get(usize::from(*glyph)).copied().unwrap_or(0.0);
         let mut face = pdf.cid_font(descendant);
         face.subtype(CidFontType::Type2).base_font(name).system_info(IDENTITY).font_descriptor(descriptor);
         face.default_width(0.0).cid_to_gid_map_stream(places).widths().consecutive(0, glyphs.iter().map(advance));
         face.finish();
-        let bounds = self.subset.bounds.map(f32::from);
-        let [ascent, descent] = self.subset.heights.map(f32::from);
+        let bounds = self.subset.bounds;
+        let [ascent, descent] = self.subset.heights;
         pdf.font_descriptor(descriptor)
             .name(name)
             .flags(FontFlags::SYMBOLIC)
@@ -88,42 +153,9 @@ impl PageFont {
         let places_of_glyphs: Vec<u8> = glyphs.iter().flat_map(|glyph| glyph.to_be_bytes()).collect();
         pdf.stream(places, &deflated(&places_of_glyphs)).filter(Filter::FlateDecode);
         let mut map = UnicodeCmap::new(Name(b"Petroglyph"), IDENTITY);
-        for (place, character) in self.characters.iter().enumerate().filter(|(_, c)| !c.is_control()) {
-            map.pair(place as u16 + 1, *character);
+        for ((said, _), code) in self.codes.iter().filter(|((said, _), _)| !said.chars().any(char::is_control)) {
+            map.pair_with_multiple(*code, said.chars());
         }
         pdf.stream(meanings, &deflated(&map.finish())).filter(Filter::FlateDecode);
-    }
-}
-
-/// A line from left to right: words of scripts that run from right to left are turned round, since readers of text turn
-/// them again. The face has none of these letters, and their boxes look the same in either order.
-fn as_seen(text: &str) -> Vec<char> {
-    let mut characters: Vec<char> = text.chars().collect();
-    let mut begin = 0;
-    while let Some(first) = characters[begin..].iter().position(|c| is_right_to_left(*c)).map(|at| begin + at) {
-        // As far as the last such word that only blanks part from the one before.
-        let length = characters[first..].iter().take_while(|c| is_right_to_left(**c) || c.is_whitespace()).count();
-        let word = characters[first..first + length].iter().rposition(|c| is_right_to_left(*c)).map_or(1, |at| at + 1);
-        characters[first..first + word].reverse();
-        begin = first + word;
-    }
-    characters
-}
-
-/// Whether a character belongs to a script that is written from right to left: Hebrew, Arabic and their neighbours.
-fn is_right_to_left(character: char) -> bool {
-    matches!(character, '\u{590}'..='\u{8ff}' | '\u{fb1d}'..='\u{fdff}' | '\u{fe70}'..='\u{feff}')
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_that_run_from_right_to_left_are_turned_round_where_they_stand() {
-        let seen = |text: &str| as_seen(text).into_iter().collect::<String>();
-        assert_eq!(seen("Top Chalk, 2 m"), "Top Chalk, 2 m");
-        assert_eq!(seen("a \u{5d0}\u{5d1} \u{5d2} b \u{5d3}\u{5d4}"), "a \u{5d2} \u{5d1}\u{5d0} b \u{5d4}\u{5d3}");
-        assert_eq!(seen(""), "");
     }
 }

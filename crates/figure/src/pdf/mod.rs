@@ -14,15 +14,13 @@ use crate::compress::deflated;
 use crate::error::FigureError;
 use crate::list::{DisplayList, write_vectors};
 use content::{Layer, PageContent};
-use font::PageFont;
+use font::PageFonts;
 use pdf_writer::types::PageMode;
 use pdf_writer::writers::Resources;
 use pdf_writer::{Array, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 
 /// What made the file.
 const CREATOR: &str = concat!("Petroglyph ", env!("CARGO_PKG_VERSION"));
-/// The name of the face in the page's resources.
-const FACE: Name = Name(b"F");
 
 /// Writes a page as a PDF document; `title` is what readers announce.
 ///
@@ -43,11 +41,15 @@ const FACE: Name = Name(b"F");
 /// # Errors
 /// A picture that cannot be encoded.
 pub fn pdf(list: &DisplayList, title: &str) -> Result<Vec<u8>, FigureError> {
+    list.faces.scope(|| written(list, title))
+}
+
+fn written(list: &DisplayList, title: &str) -> Result<Vec<u8>, FigureError> {
     let mut refs = Refs::default();
     let [catalogue, pages, page, drawn, information] = [(); 5].map(|()| refs.next());
     let mut pdf = Pdf::new();
-    let font = PageFont::of(list);
-    let mut content = PageContent::new(&font, list.size.y, &mut pdf, &mut refs);
+    let fonts = PageFonts::of(list);
+    let mut content = PageContent::new(&fonts, list.size.y, &mut pdf, &mut refs);
     write_vectors(list, &mut content)?;
     let PageContent { content, layers, roots, opacities, pictures, .. } = content;
     describe(&mut pdf, catalogue, pages, &layers, &roots);
@@ -58,12 +60,10 @@ pub fn pdf(list: &DisplayList, title: &str) -> Result<Vec<u8>, FigureError> {
     described.media_box(Rect::new(0.0, 0.0, list.size.x as f32, list.size.y as f32));
     // Colours are mixed as they are encoded.
     described.group().transparency().color_space().device_rgb();
-    let face = (!font.is_empty()).then(|| refs.next());
-    resources(&mut described.resources(), &layers, &opacities, &pictures, face);
+    let faces: Vec<Ref> = (0..fonts.count()).map(|_| refs.next()).collect();
+    resources(&mut described.resources(), &layers, &opacities, &pictures, &faces);
     described.finish();
-    if let Some(face) = face {
-        font.write(&mut pdf, face, &mut refs);
-    }
+    fonts.write(&mut pdf, &faces, &mut refs);
     pdf.stream(drawn, &deflated(&content.finish())).filter(Filter::FlateDecode);
     Ok(pdf.finish())
 }
@@ -93,7 +93,7 @@ fn describe(pdf: &mut Pdf, catalogue: Ref, pages: Ref, layers: &[Layer], roots: 
 }
 
 /// Lists what the page's operators name.
-fn resources(into: &mut Resources, layers: &[Layer], opacities: &[u16], pictures: &[Ref], face: Option<Ref>) {
+fn resources(into: &mut Resources, layers: &[Layer], opacities: &[u16], pictures: &[Ref], faces: &[Ref]) {
     if !layers.is_empty() {
         let mut named = into.insert(Name(b"Properties")).dict();
         for (number, layer) in layers.iter().enumerate() {
@@ -114,8 +114,11 @@ fn resources(into: &mut Resources, layers: &[Layer], opacities: &[u16], pictures
             named.pair(Name(content::name('P', number).as_bytes()), *picture);
         }
     }
-    if let Some(face) = face {
-        into.fonts().pair(FACE, face);
+    if !faces.is_empty() {
+        let mut named = into.fonts();
+        for (number, face) in faces.iter().enumerate() {
+            named.pair(Name(content::name('F', number).as_bytes()), *face);
+        }
     }
 }
 

@@ -37,9 +37,7 @@ pub fn raster(list: &DisplayList, dpi: f64) -> Result<RgbaImage, FigureError> {
     let scale = dpi / POINTS_PER_INCH;
     let [width, height] = size_px(list, dpi)?;
     let mut page = Prepared { ops: Vec::new(), clips: Vec::new(), scale };
-    for item in &list.items {
-        page.add(item, None);
-    }
+    list.faces.scope(|| list.items.iter().for_each(|item| page.add(item, None)));
     let paper = list.paper.map(paths::colour);
     let mut image = RgbaImage::new(width, height);
     image.par_chunks_mut(width as usize * 4 * BAND).enumerate().for_each(|(n, rows)| {

@@ -2,9 +2,9 @@
 //!
 //! Groups that stand for something have an `id` and are layers in Inkscape (`inkscape:groupmode`), so that a reader can
 //! switch a layer or fault off. Each picture is written once, as PNG inside the file, and used where it is seen. Clips
-//! are definitions that groups refer to. The glyphs that the page needs are embedded as a font ([`ttf::subset`]), so
-//! that browsers show the same letters everywhere; programs that know no fonts in files take an installed one, in the
-//! same length. Coordinates are points to a hundredth, relative from step to step.
+//! are definitions that groups refer to. The glyphs that the page needs are embedded as fonts ([`ttf::subset`]), with the
+//! rules of faces whose letters join, so that browsers show the same letters everywhere; programs that know no fonts in
+//! files take installed ones, in the same length. Coordinates are points to a hundredth, relative from step to step.
 
 mod numbers;
 mod text;
@@ -38,8 +38,12 @@ use text::{escaped, text};
 /// # Errors
 /// A picture that cannot be encoded.
 pub fn svg(list: &DisplayList, title: &str) -> Result<String, FigureError> {
+    list.faces.scope(|| written(list, title))
+}
+
+fn written(list: &DisplayList, title: &str) -> Result<String, FigureError> {
     let mut writer = Writer::default();
-    text::face(&mut writer.definitions, &list.characters());
+    writer.families = text::faces(&mut writer.definitions, list);
     write_vectors(list, &mut writer)?;
     let [width, height] = [number(list.size.x), number(list.size.y)];
     let Writer { body, definitions, .. } = writer;
@@ -63,8 +67,10 @@ pub fn svg(list: &DisplayList, title: &str) -> Result<String, FigureError> {
 #[derive(Default)]
 struct Writer {
     body: String,
-    /// The face, clips and pictures.
+    /// The faces, clips and pictures.
     definitions: String,
+    /// The faces by name.
+    families: String,
     clips: usize,
     /// How often each name of a group was used.
     names: HashMap<String, usize>,
@@ -114,7 +120,7 @@ impl VectorWriter for Writer {
     }
 
     fn text(&mut self, line: &Text) {
-        text(&mut self.body, line);
+        text(&mut self.body, line, &self.families);
     }
 
     /// A picture: a square of one unit, laid on its parallelogram.

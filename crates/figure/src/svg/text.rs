@@ -2,55 +2,84 @@
 
 use super::numbers::number;
 use super::{attribute, base64};
-use crate::list::{Letter, Text};
-use std::collections::BTreeSet;
+use crate::list::{DisplayList, Text};
+use glam::DVec2;
 use std::fmt::Write;
-use ttf::subset::font_of;
+use ttf::subset::used;
+use ttf::text::set;
 
-/// The face by name, and what stands in for it where it is not installed.
-const FAMILY: &str = "'Ubuntu Light', Ubuntu, 'DejaVu Sans', sans-serif";
+/// The embedded face by name, and what stands in for it where it is not installed.
+const FACE: &str = "Ubuntu Light";
+const OTHERS: &str = "Ubuntu, 'DejaVu Sans', sans-serif";
 
-/// Adds the face with these characters; nothing without any.
-pub(super) fn face(into: &mut String, characters: &BTreeSet<char>) {
-    if !characters.is_empty() {
-        let file = base64(&font_of(characters).file);
+/// Adds the faces with what the page needs of them; returns the list of their names.
+pub(super) fn faces(into: &mut String, list: &DisplayList) -> String {
+    let mut names = vec![format!("'{FACE}'")];
+    let lines = list.lines();
+    for used in used(lines.iter().map(String::as_str)) {
+        let Some(subset) = used.file_to_set_text() else { continue };
+        let (name, weight) = match used.number {
+            0 => (FACE.to_owned(), "300"),
+            // Of faces of one family each keeps its own letters.
+            number if names.iter().any(|known| known.trim_matches('\'') == used.face.family()) => {
+                (format!("{} {number}", used.face.family()), "100 900")
+            }
+            _ => (used.face.family().to_owned(), "100 900"),
+        };
+        let file = base64(&subset.file);
         let _ = writeln!(
             into,
-            "<style>@font-face {{ font-family: 'Ubuntu Light'; font-weight: 300; \
+            "<style>@font-face {{ font-family: '{name}'; font-weight: {weight}; \
              src: url('data:font/ttf;base64,{file}') format('truetype'); }}</style>"
         );
+        if used.number > 0 {
+            names.push(format!("'{name}'"));
+        }
     }
+    format!("{}, {OTHERS}", names.join(", "))
 }
 
 /// Adds a line of text: its left end on its baseline, at the length that the page gives it.
-pub(super) fn text(into: &mut String, line: &Text) {
+pub(super) fn text(into: &mut String, line: &Text, families: &str) {
     let start = line.baseline_start();
-    let each =
-        |of: fn(&Letter) -> f64| line.letters.iter().map(|letter| number(of(letter))).collect::<Vec<_>>().join(" ");
-    let place = match line.letters.is_empty() {
-        true => format!("x=\"{}\" y=\"{}\"", number(start.x), number(start.y)),
+    // A bent line is written as turned altogether, so that programs that place the first letter alone set it along its
+    // chord.
+    let chord = match &line.letters[..] {
+        [first, .., last] => (last.at - first.at).normalize_or(DVec2::X),
+        _ => DVec2::X,
+    };
+    let letters: Vec<(DVec2, f64)> = line
+        .letters
+        .iter()
+        .map(|letter| {
+            let at = start + DVec2::new(chord.x, -chord.y).rotate(letter.at - start);
+            (at, (letter.turn_deg - chord.to_angle().to_degrees() + 540.0).rem_euclid(360.0) - 180.0)
+        })
+        .collect();
+    let each = |of: fn(&(DVec2, f64)) -> f64| letters.iter().map(|l| number(of(l))).collect::<Vec<_>>().join(" ");
+    let (place, turn_deg) = match line.letters.is_empty() {
+        true => (format!("x=\"{}\" y=\"{}\"", number(start.x), number(start.y)), line.turn_deg),
         false => {
-            let [x, y, turn] = [each(|letter| letter.at.x), each(|letter| letter.at.y), each(|letter| letter.turn_deg)];
-            format!("x=\"{x}\" y=\"{y}\" rotate=\"{turn}\"")
+            let [x, y, turn] = [each(|(at, _)| at.x), each(|(at, _)| at.y), each(|(_, turn)| *turn)];
+            (format!("x=\"{x}\" y=\"{y}\" rotate=\"{turn}\""), chord.to_angle().to_degrees())
         }
     };
+    let pivot = if line.letters.is_empty() { line.at } else { start };
     let _ = write!(
         into,
-        "<text {place} font-family=\"{FAMILY}\" font-weight=\"300\" font-size=\"{}\" xml:space=\"preserve\"",
+        "<text {place} font-family=\"{families}\" font-weight=\"300\" font-size=\"{}\" xml:space=\"preserve\"",
         number(line.size)
     );
     if line.letters.is_empty() {
         let _ = write!(into, " textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\"", number(line.width()));
     }
+    if set(&line.text).is_right_to_left {
+        // The end of such a line is its left end.
+        let _ = write!(into, " direction=\"rtl\" text-anchor=\"end\"");
+    }
     attribute(into, "fill", line.ink);
-    if line.turn_deg != 0.0 && line.letters.is_empty() {
-        let _ = write!(
-            into,
-            " transform=\"rotate({} {} {})\"",
-            number(line.turn_deg),
-            number(line.at.x),
-            number(line.at.y)
-        );
+    if turn_deg != 0.0 {
+        let _ = write!(into, " transform=\"rotate({} {} {})\"", number(turn_deg), number(pivot.x), number(pivot.y));
     }
     if let Some(halo) = line.halo {
         attribute(into, "stroke", halo.ink);

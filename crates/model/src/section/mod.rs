@@ -23,11 +23,13 @@
 //! evaluation of each fault and sheet per cell corner; about 20 ms for 256 × 256 cells, three faults and four
 //! horizons on one core.
 
+mod band;
 mod clip;
 mod lines;
 mod plane;
 mod trace;
 
+pub use band::band;
 pub use plane::SectionPlane;
 
 use crate::{Region, StructuralModel};

@@ -32,7 +32,7 @@ pub struct WrittenFigure {
 }
 
 /// Makes every figure that the project lists, and writes them to the folder `out`, which is created. `volume_bytes` is
-/// the largest memory for the samples of a volume.
+/// the largest memory for the samples of a volume, `fonts` are files for letters that the project has no face for.
 ///
 /// # Errors
 /// The project lists no figures; one of them has the name of another, a name that is no file's, an ending without a
@@ -40,8 +40,8 @@ pub struct WrittenFigure {
 pub fn make_all(
     project: &Project,
     out: &Path,
-    device: Device,
-    volume_bytes: u64,
+    (device, volume_bytes): (Device, u64),
+    fonts: &[PathBuf],
     progress: &Progress,
 ) -> Result<Vec<WrittenFigure>, ProjectError> {
     let meant = check(project.document(), progress)?;
@@ -49,7 +49,7 @@ pub fn make_all(
         refuse_inside_project(&out.join(file))?;
     }
     let is_new = !out.exists();
-    let written = stage(project, out, &meant, (device, volume_bytes), progress);
+    let written = stage(project, out, &meant, (device, volume_bytes, fonts), progress);
     if written.is_err() && is_new {
         // What was staged is gone by now; a folder in which someone else has put something stays.
         let _ = fs::remove_dir(out);
@@ -65,12 +65,13 @@ fn stage(
     project: &Project,
     out: &Path,
     meant: &[Meant],
-    (device, volume_bytes): (Device, u64),
+    (device, volume_bytes, fonts): (Device, u64, &[PathBuf]),
     progress: &Progress,
 ) -> Result<Vec<WrittenFigure>, ProjectError> {
     let mut staged = Vec::new();
     for (file, format, figure) in meant {
-        let settings = FigureSettings { device, volume_bytes, has_vectors: format.has_vectors() };
+        let (has_vectors, fonts) = (format.has_vectors(), fonts.to_vec());
+        let settings = FigureSettings { device, volume_bytes, has_vectors, fonts, picture_dpi: None };
         let made = make(project, figure, &InterpreterView::default(), &settings, progress).map_err(of_figure(file))?;
         let path = out.join(file);
         let replacement = Replacement::of(&path)?;

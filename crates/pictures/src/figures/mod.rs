@@ -6,11 +6,13 @@
 
 mod batch;
 mod confusion;
+mod fonts;
 mod interpreter;
 mod output;
 
 pub use batch::{WrittenFigure, make_all};
 pub use confusion::{NamedConfusion, confusions};
+pub use fonts::faces;
 pub use interpreter::{InterpreterView, borrowed};
 pub use output::{FigureFormat, title, write};
 
@@ -31,6 +33,7 @@ use project::error::ProjectError;
 use project::styles;
 use render::vector::{VectorBlock, vectors};
 use render::{FaceData, Faces, Media, RenderError, Scene};
+use std::path::PathBuf;
 use std::time::Instant;
 use survey::{Progress, Well, memory};
 use ttf::{LayerStyle, LayerTtf, Preset, TextureLibrary};
@@ -55,6 +58,11 @@ pub struct FigureSettings {
     pub volume_bytes: u64,
     /// Whether blocks are drawn as paths where they can be; otherwise they are pictures.
     pub has_vectors: bool,
+    /// Font files for letters that the embedded face and the project's own fonts lack.
+    pub fonts: Vec<PathBuf>,
+    /// Coarsest resolution that pictures of blocks may have, dots an inch, where a page is looked at soon; absent: the
+    /// figure's. All else is laid out as at the figure's.
+    pub picture_dpi: Option<f64>,
 }
 
 /// The page itself refuses longer sides.
@@ -68,6 +76,17 @@ const PIXEL_BYTES: usize = 8;
 /// # Errors
 /// Data are damaged, a place or horizon does not exist, the page has no room, or the user cancelled.
 pub fn make(
+    project: &Project,
+    figure: &Figure,
+    view: &InterpreterView,
+    settings: &FigureSettings,
+    progress: &Progress,
+) -> Result<MadeFigure, ProjectError> {
+    faces(project, &settings.fonts)?.scope(|| lettered(project, figure, view, settings, progress))
+}
+
+/// The same, lettered in the faces of this thread.
+fn lettered(
     project: &Project,
     figure: &Figure,
     view: &InterpreterView,
@@ -109,7 +128,9 @@ pub fn make(
     };
     let library = library.as_ref().filter(|_| settings.has_vectors);
     let (device, preset) = (settings.device, figure.printed_in());
-    let mut painter = FigurePainter { painter: None, device, loaded: &loaded, library, preset, stages, progress };
+    let share = settings.picture_dpi.map_or(1.0, |dpi| (dpi / figure.dpi).min(1.0));
+    let mut painter =
+        FigurePainter { painter: None, device, loaded: &loaded, library, preset, share, stages, progress };
     let page = figure::make(figure, &inputs, &mut painter)?;
     warn_of_boxes(&page, progress);
     let device = painter.painter.map(|painter| painter.device().to_owned());
@@ -130,7 +151,8 @@ fn warn_of_boxes(page: &DisplayList, progress: &Progress) {
         let more = if texts.len() > 1 { format!(" and {} more", texts.len() - 1) } else { String::new() };
         progress.warn(format!(
             "\"{first}\"{more} has letters that the figures' face lacks, and they are drawn as boxes; the face has Latin, \
-             Greek and Cyrillic letters: write the name in one of these, or set the text in a program that edits SVG"
+             Greek and Cyrillic letters: name a font file with the others by --font FILE, or by `fonts = [\"FILE\"]` at the \
+             top of project.toml"
         ));
     }
 }
@@ -143,6 +165,8 @@ struct FigurePainter<'a> {
     /// The patterns, where blocks are drawn as paths.
     library: Option<&'a TextureLibrary>,
     preset: Preset,
+    /// Share of the pixels along each side that pictures are painted with.
+    share: f64,
     stages: Vec<Stage>,
     progress: &'a Progress,
 }
@@ -158,7 +182,8 @@ impl FigurePainter<'_> {
 
 impl BlockPainter for FigurePainter<'_> {
     fn paint(&mut self, scene: &Scene) -> Result<RgbaImage, RenderError> {
-        let scene = self.shown(scene);
+        let mut scene = self.shown(scene);
+        scene.size_px = scene.size_px.map(|side| (f64::from(side) * self.share).round().max(1.0) as u32);
         let painter = match &mut self.painter {
             Some(painter) => painter,
             empty => empty.insert(Painter::new(self.device, self.progress)?),

@@ -55,6 +55,10 @@ pub struct Document {
     /// Names of the layers, youngest first; if empty, they are named after the horizons.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layer_names: Vec<String>,
+    /// Font files for names in letters that the figures' own face lacks, relative to the project's folder, in the order in
+    /// which they are asked for a character.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fonts: Vec<String>,
     /// Volumes in order of import; the first is the one shown as raw data.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub volumes: Vec<VolumeEntry>,
@@ -111,6 +115,7 @@ impl Document {
             step: 0,
             geometry,
             layer_names: Vec::new(),
+            fonts: Vec::new(),
             volumes: Vec::new(),
             extraction: None,
             fault_proposals: None,

@@ -96,6 +96,7 @@ impl ProjectError {
             | Self::OutdatedProposals
             | Self::PickOutside { .. }
             | Self::Placement { .. }
+            | Self::Font { .. }
             | Self::Scene(_)
             | Self::SeveralInFile { .. }
             | Self::ShortStick { .. }

@@ -38,16 +38,18 @@ pub(super) fn face_areas(
         let plane = face.face.section_plane();
         let section = Section::new(interpretation.model, &plane);
         let painter = FacePainter { resolved, interpretation, face: &face.face, plane, tiles: &tiles, tolerance_px };
-        // Colours of whole layers, so that no seam shows where a fault is only continued; then their patterns.
+        // Colours of whole layers, so that no seam shows where a fault is only continued; then what lies on them.
         let colours = section.layers.iter().map(|area| (area.layer, None, &area.rings));
         let patterns = section.polygons.iter().map(|area| (area.region.layer, Some(area.region), &area.rings));
         let all: Vec<_> = colours.chain(patterns).filter(|(layer, ..)| Some(*layer) != air).collect();
-        let drawn = all.into_par_iter().filter_map(|(layer, region, rings)| {
-            let fill = match region {
-                None => painter.colour(layer),
-                Some(region) => painter.pattern(region, rings)?,
+        let drawn = all.into_par_iter().flat_map_iter(|(layer, region, rings)| {
+            let fills = match region {
+                None => vec![(None, painter.colour(layer))],
+                Some(region) => painter.intervals(region, rings),
             };
-            Some(VectorArea { layer, rings: painter.outline(rings), seen: seen.clone(), fill })
+            let (outline, seen) = (painter.outline(rings), seen.clone());
+            let area = move |(band, fill)| VectorArea { layer, rings: outline.clone(), seen: seen.clone(), band, fill };
+            fills.into_iter().map(area)
         });
         areas.extend(drawn.collect::<Vec<_>>());
         progress.check()?;
@@ -64,6 +66,9 @@ fn tiles(resolved: &ResolvedScene, library: &TextureLibrary) -> Result<Vec<Optio
     };
     resolved.tables.patterns.iter().map(tile).collect()
 }
+
+/// The interval of a pattern that fills its layer.
+const EVERYWHERE: [f32; 2] = [f32::MIN, f32::MAX];
 
 /// Fills the areas of one face.
 struct FacePainter<'a> {
@@ -85,7 +90,7 @@ impl FacePainter<'_> {
     /// What a layer is filled with; the picture where paths cannot show it.
     fn colour(&self, layer: u16) -> AreaFill {
         match self.tile(layer) {
-            Fill::Plain(colour) | Fill::Tiled(colour, ..) => AreaFill::Colour(self.toned(colour)),
+            Fill::Tiled(colour, _) => AreaFill::Colour(self.toned(colour)),
             Fill::Painted => AreaFill::Picture,
         }
     }
@@ -94,16 +99,14 @@ impl FacePainter<'_> {
         let tables = &self.resolved.tables;
         let Some(layer) = tables.layers.get(usize::from(layer)) else { return Fill::Painted };
         let first = layer.first_interval as usize;
-        match &tables.intervals[first..first + layer.interval_count as usize] {
-            [] => Fill::Plain(layer.colour),
-            [interval] if interval.k == [f32::MIN, f32::MAX] => {
-                match self.tiles.get(interval.texture as usize).and_then(Option::as_ref) {
-                    Some(tile) => Fill::Tiled(interval.colour, interval, tile),
-                    None => Fill::Painted,
-                }
-            }
-            _ => Fill::Painted,
-        }
+        let intervals = &tables.intervals[first..first + layer.interval_count as usize];
+        let tile = |interval: &IntervalEntry| self.tiles.get(interval.texture as usize).and_then(Option::as_ref);
+        let tiled: Option<Vec<_>> = intervals.iter().map(|interval| Some((interval, tile(interval)?))).collect();
+        let colour = match intervals {
+            [only] if only.k == EVERYWHERE => only.colour,
+            _ => layer.colour,
+        };
+        tiled.map_or(Fill::Painted, |tiled| Fill::Tiled(colour, tiled))
     }
 
     /// A colour on a face of this direction.
@@ -111,10 +114,24 @@ impl FacePainter<'_> {
         Colour::from_unit([r, g, b].map(|channel| channel * self.resolved.tone(&self.face.plane)))
     }
 
-    /// The pattern of a layer's part in one block; `None` if it has none, or is painted.
-    fn pattern(&self, region: Region, rings: &[Vec<DVec2>]) -> Option<AreaFill> {
-        let Fill::Tiled(_, interval, tile) = self.tile(region.layer) else { return None };
-        let pattern = FacePattern {
+    /// What lies on the colour of a layer's part in one block: for each interval its colour, where that is another, and
+    /// its pattern, with the part of the area that the interval has if that is not all.
+    fn intervals(&self, region: Region, rings: &[Vec<DVec2>]) -> Vec<(Option<Vec<Vec<DVec2>>>, AreaFill)> {
+        let Fill::Tiled(below, tiled) = self.tile(region.layer) else { return Vec::new() };
+        let mut fills = Vec::new();
+        for (interval, tile) in tiled {
+            let pattern = self.pattern(region, interval);
+            let band = (interval.k != EVERYWHERE).then(|| pattern.band(rings, interval.k));
+            if interval.colour[..3] != below[..3] {
+                fills.push((band.clone(), AreaFill::Colour(self.toned(interval.colour))));
+            }
+            fills.push((band, self.drawn(&pattern, interval, rings, tile)));
+        }
+        fills
+    }
+
+    fn pattern(&self, region: Region, interval: &IntervalEntry) -> FacePattern<'_> {
+        FacePattern {
             resolved: self.resolved,
             interpretation: self.interpretation,
             frame: self.resolved.frame(&self.face.plane),
@@ -122,7 +139,10 @@ impl FacePainter<'_> {
             region,
             frequency: interval.frequency.map(|part| part * Frequencies::nearest(&self.resolved.tables.globals)),
             tolerance_px: self.tolerance_px,
-        };
+        }
+    }
+
+    fn drawn(&self, pattern: &FacePattern, interval: &IntervalEntry, rings: &[Vec<DVec2>], tile: &Tile) -> AreaFill {
         let ink = |[r, g, b]: [f32; 3]| self.toned(if interval.ink[3] > 0.5 { interval.ink } else { [r, g, b, 1.0] });
         let parts = pattern.drawn(rings, tile).into_iter().map(|part| PatternPart {
             paint: part.paint,
@@ -130,13 +150,13 @@ impl FacePainter<'_> {
             opacity: part.opacity * interval.colour[3],
             lines: part.lines,
         });
-        Some(AreaFill::Pattern(parts.collect()))
+        AreaFill::Pattern(parts.collect())
     }
 }
 
 /// What a layer is filled with.
 enum Fill<'a> {
-    Plain([f32; 4]),
-    Tiled([f32; 4], &'a IntervalEntry, &'a Tile),
+    /// A colour, and patterns over it.
+    Tiled([f32; 4], Vec<(&'a IntervalEntry, &'a Tile)>),
     Painted,
 }

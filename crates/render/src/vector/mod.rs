@@ -6,7 +6,7 @@
 //! Lines are those that the picture's outlines are stroked from, hidden ones gone.
 //!
 //! What is no path stays pixels: the relief of the ground and wells ([`VectorBlock::covered`]), and areas whose pattern
-//! has no drawing or several depth intervals ([`AreaFill::Picture`]). Scenes of raw data, volume rendering and textures
+//! is an image for a tile ([`AreaFill::Picture`]). Scenes of raw data, volume rendering and textures
 //! by value are pictures altogether: [`vectors`] then gives lines alone.
 //!
 //! Where a face is seen from both sides of the limit between two mappings ([`ttf::coordinates`]), pictures blend the
@@ -20,7 +20,7 @@ mod pattern;
 mod sections;
 mod visible;
 
-pub use sections::{SeenSection, seen_sections};
+pub use sections::{SeenSection, sections_of, seen_sections};
 pub(crate) use visible::rock_cells;
 
 use crate::error::RenderError;
@@ -65,6 +65,8 @@ pub struct VectorArea {
     pub rings: Vec<Vec<DVec2>>,
     /// The part of its face that is seen, in convex pieces that only share edges; `None`: all of it.
     pub seen: Option<Vec<Vec<DVec2>>>,
+    /// The part of it that is filled, by the non-zero rule; `None`: all of it.
+    pub band: Option<Vec<Vec<DVec2>>>,
     /// What it is filled with.
     pub fill: AreaFill,
 }

@@ -10,7 +10,7 @@ use super::{PatternPaint, Polyline};
 use crate::resolved::{ResolvedInterpretation, ResolvedScene};
 use glam::{DMat2, DVec2, Vec3};
 use model::Region;
-use model::section::SectionPlane;
+use model::section::{SectionPlane, band};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use ttf::{FaceFrame, Mapping, TileDrawing, TilePaint, TileSegment, TileShape};
@@ -193,6 +193,22 @@ impl FacePattern<'_> {
         let (_, jacobian) = self.interpretation.flat_at(p, Some(self.region));
         let weights = frame.weights((Vec3::from_array(jacobian[2]) / self.resolved.voxel_m).to_array()).to_array();
         (0..3).max_by(|a, b| weights[*a].total_cmp(&weights[*b]))
+    }
+
+    /// The rings, pixels, of the part of an area whose depth in the layer lies in an interval.
+    pub(super) fn band(&self, rings: &[Vec<DVec2>], k: [f32; 2]) -> Vec<Vec<DVec2>> {
+        let Some(lattice) = Lattice::over(rings) else { return Vec::new() };
+        let [columns, rows] = lattice.cells;
+        let depth = |n: usize| {
+            let st = lattice.low + lattice.step * DVec2::new((n / (rows + 1)) as f64, (n % (rows + 1)) as f64);
+            f64::from(self.interpretation.flat_at(self.plane.voxel(st).as_vec3(), Some(self.region)).0.k)
+        };
+        let depths: Vec<f64> = (0..(columns + 1) * (rows + 1)).into_par_iter().map(depth).collect();
+        let value = |x: usize, y: usize| depths[x * (rows + 1) + y];
+        let is_inside = |x: usize, y: usize| lattice.is_inside[x * rows + y];
+        let px = |at: &DVec2| self.px(lattice.low + lattice.step * *at);
+        let found = band(lattice.cells, value, is_inside, k.map(f64::from));
+        found.iter().map(|ring| ring.iter().map(px).collect()).collect()
     }
 
     fn px(&self, st: DVec2) -> DVec2 {

@@ -1,7 +1,9 @@
 //! The faces of a block that are seen, each with the section of the model on it: what labels are placed by.
 
 use super::visible::{seen_faces, seen_pieces};
+use crate::camera::View;
 use crate::scene::Scene;
+use crate::visible::Solid;
 use glam::DVec2;
 use model::StructuralModel;
 use model::section::Section;
@@ -40,12 +42,15 @@ pub struct SeenSection {
 /// # Ok::<(), model::ModelError>(())
 /// ```
 pub fn seen_sections(scene: &Scene, geometry: &SurveyGeometry, model: &StructuralModel) -> Vec<SeenSection> {
-    let view = scene.view(geometry);
-    let solid = scene.solid(geometry);
-    let faces = seen_faces(&solid, &view);
+    sections_of(&scene.solid(geometry), &scene.view(geometry), model)
+}
+
+/// The same of a solid that a view looks at.
+pub fn sections_of(solid: &Solid, view: &View, model: &StructuralModel) -> Vec<SeenSection> {
+    let faces = seen_faces(solid, view);
     let seen = (0..faces.len()).into_par_iter().filter_map(|index| {
         let face = &faces[index];
-        let pieces = seen_pieces(&faces, index, &view, false).unwrap_or_else(|| face.quads(&view));
+        let pieces = seen_pieces(&faces, index, view, false).unwrap_or_else(|| face.quads(view));
         let section = || Section::new(model, &face.face.section_plane());
         (!pieces.is_empty()).then(|| SeenSection { axis: face.face.nearest_axis(), section: section(), pieces })
     });

@@ -179,16 +179,29 @@ fn what_paths_cannot_show_is_left_to_the_picture() {
     let mut functions = TransferFunctions::default();
     let mut halves = LayerStyle::textured(&names[0], Colour::WHITE, "limestone");
     halves.intervals[0].k = [0.0, 0.5];
+    halves.intervals.push(ttf::DepthInterval {
+        k: [0.5, 1.0],
+        colour: Some(Colour::BLACK),
+        ..halves.intervals[0].clone()
+    });
     functions.layers.set(halves);
     functions.layers.set(LayerStyle::textured(&names[1], Colour::WHITE, "chalk"));
     let two = Block::of(&closed, &functions, &library());
+    let parts = traced(&head_on([200, 160]), &two);
     let fills = |layer: u16| {
-        let traced = traced(&head_on([200, 160]), &two);
-        let areas = traced.areas.into_iter().filter(|area| area.layer == layer);
-        areas.map(|area| matches!(area.fill, AreaFill::Picture)).collect::<Vec<_>>()
+        let areas = parts.areas.iter().filter(|area| area.layer == layer);
+        areas.map(|area| (matches!(area.fill, AreaFill::Colour(_)), area.band.is_some())).collect::<Vec<_>>()
     };
-    assert_eq!(fills(0), [true]);
-    assert_eq!(fills(1), [false, false]);
+    // The layer, the pattern of its lower half, and colour and pattern of the upper half.
+    assert_eq!(fills(0), [(true, false), (false, true), (true, true), (false, true)]);
+    assert_eq!(fills(1), [(true, false), (false, false)]);
+    // The halves lie one above the other, and meet.
+    let range = |area: &render::vector::VectorArea| {
+        let ys = || area.band.iter().flatten().flatten().map(|p| p.y);
+        [ys().fold(f64::INFINITY, f64::min), ys().fold(f64::NEG_INFINITY, f64::max)]
+    };
+    let halves: Vec<_> = parts.areas.iter().filter(|area| area.band.is_some()).map(range).collect();
+    assert!((halves[1][1] - halves[0][0]).abs() < 0.2 && halves[0][1] > halves[0][0] + 10.0, "{halves:?}");
     // A scene that is half raw is a picture with lines.
     let volume = survey::Volume::filled([21; 3], 0.5f32);
     let volumes = [render::NamedVolume::whole("seismic", &volume)];

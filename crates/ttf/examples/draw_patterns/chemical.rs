@@ -1,6 +1,6 @@
 //! Shales, carbonates, chert, coal, evaporites (FGDC 620–668, 677).
 
-use crate::tile::{Dice, LINE, Point, THIN, Tile, nodule};
+use crate::tile::{Dice, LINE, Point, THIN, Tile, nodule, shard};
 
 /// Rows of dashes, each row shifted against the one before. `each` is called with the left end and the length
 /// of every dash.
@@ -352,18 +352,23 @@ pub fn water() -> Tile {
     tile
 }
 
-/// 657: peat: tufts and fibres.
+/// 657: peat: leaning strokes all over, with short flat ones and lumps of wood.
 pub fn peat() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(657));
-    for root in tile.scatter(&mut dice, 7.6, &[], 0.0) {
-        for blade in -2_i32..=2 {
-            let lean = blade as f32 * 0.42 + dice.jitter(0.08);
-            let length = 3.4 - 0.35 * blade.abs() as f32 + dice.jitter(0.3);
-            let tip = [root[0] + length * lean.sin() * 1.1, root[1] - length * lean.cos()];
-            let middle = [root[0] + length * lean.sin() * 0.35, root[1] - length * 0.55 * lean.cos()];
-            tile.curve(&[root, middle, tip], 0.5);
-        }
-        tile.line([root[0] - 2.3, root[1] + 0.9], [root[0] + 2.3, root[1] + 0.9], 0.5);
+    for n in 0..15 {
+        let x = 4.0 * n as f32;
+        tile.line([x, 60.0], [x + 60.0, 0.0], 0.4);
+    }
+    let lumps: Vec<Point> = tile.scatter(&mut dice, 10.0, &[], 0.0);
+    for &centre in &lumps {
+        let radius = dice.between(2.0, 3.4);
+        let outline = shard(&mut dice, centre, radius);
+        tile.filled_polygon(&outline);
+    }
+    let taken: Vec<(Point, f32)> = lumps.iter().map(|&lump| (lump, 2.6)).collect();
+    for [x, y] in tile.scatter(&mut dice, 7.0, &taken, 2.0) {
+        let half = dice.between(1.8, 4.2);
+        tile.line([x - half, y], [x + half, y], 0.5);
     }
     tile
 }

@@ -1,6 +1,6 @@
 //! Metamorphic, volcanic and plutonic rocks (FGDC 703–730).
 
-use crate::tile::{Dice, LINE, Point, THIN, Tile, shard};
+use crate::tile::{Dice, LINE, Point, THIN, Tile, shard, staggered};
 
 /// 703: steep cleavage in close broken lines, crossed by faint bedding.
 pub fn slate() -> Tile {
@@ -77,37 +77,29 @@ pub fn gneiss() -> Tile {
     tile
 }
 
-/// 710: curled fibres of serpentine.
+/// 710: bundles of three curled fibres, one beside the other.
 pub fn serpentinite() -> Tile {
-    let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(710));
-    for point in tile.scatter(&mut dice, 5.6, &[], 0.0) {
-        let (turn, sense) = (dice.turn(), if dice.between(0.0, 1.0) < 0.5 { 1.0 } else { -1.0 });
-        let (sin, cos) = turn.sin_cos();
-        let points: Vec<Point> = (0..=8)
-            .map(|step| {
-                let t = step as f32 / 4.0 - 1.0;
-                let (x, y) = (2.9 * t, sense * 1.5 * (std::f32::consts::PI * t).sin());
-                [point[0] + x * cos - y * sin, point[1] + x * sin + y * cos]
-            })
-            .collect();
-        tile.curve(&points, THIN);
+    let mut tile = Tile::new(60.0);
+    let fibres: [&[Point]; 3] = [
+        &[[-0.2, -2.4], [-1.2, -1.2], [-1.0, 0.5]],
+        &[[0.8, -2.3], [-0.1, -1.2], [0.3, 0.0], [0.7, 1.1], [-0.1, 2.2]],
+        &[[1.1, -0.6], [1.6, 0.8], [0.9, 2.4]],
+    ];
+    for [x, y] in staggered(60.0, 12, 6) {
+        for fibre in fibres {
+            tile.curve(&fibre.iter().map(|[dx, dy]| [x + dx, y + dy]).collect::<Vec<Point>>(), 0.45);
+        }
     }
     tile
 }
 
-/// 711: chips of glass: small v's in all directions, most of them upright.
+/// 711: chips of glass: rows of forks that stand and hang in turn.
 pub fn tuff() -> Tile {
-    let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(711));
-    let points = tile.scatter(&mut dice, 5.2, &[], 0.0);
-    let taken: Vec<(Point, f32)> = points.iter().map(|&point| (point, 1.7)).collect();
-    for (index, &point) in points.iter().enumerate() {
-        let turn = if index % 2 == 0 { 0.0 } else { std::f32::consts::PI } + dice.jitter(0.35);
-        let arm = |angle: f32| [point[0] + 2.1 * (turn + angle).sin(), point[1] - 2.1 * (turn + angle).cos()];
-        let foot = [point[0] - 0.8 * turn.sin(), point[1] + 0.8 * turn.cos()];
-        tile.polyline(&[arm(-0.62), foot, arm(0.62)], LINE);
-    }
-    for point in tile.scatter(&mut dice, 4.4, &taken, 1.5) {
-        tile.dot(point, 0.42);
+    let mut tile = Tile::new(60.0);
+    for (n, [x, y]) in staggered(60.0, 8, 8).enumerate() {
+        let up = if n / 8 % 2 == 0 { 1.0 } else { -1.0 };
+        tile.polyline(&[[x - 1.5, y - 1.9 * up], [x, y + 0.4 * up], [x + 1.5, y - 1.9 * up]], LINE);
+        tile.line([x, y + 0.4 * up], [x, y + 2.1 * up], LINE);
     }
     tile
 }

@@ -230,7 +230,7 @@ fn is_near(side: &[DVec2; 2], letter: &[DVec2]) -> bool {
 
 /// How much a bent text turns from its first letter to its last, degrees; `None` where it is hard to read.
 fn readable(text: &Text) -> Option<f64> {
-    let turns: Vec<f64> = text.letters.iter().map(|letter| letter.turn_deg).collect();
+    let turns: Vec<f64> = text.straight().iter().map(|letter| letter.turn_deg).collect();
     let jump = turns.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
     let low = turns.iter().copied().fold(f64::INFINITY, f64::min);
     let high = turns.iter().copied().fold(f64::NEG_INFINITY, f64::max);
