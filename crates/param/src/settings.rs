@@ -120,7 +120,7 @@ impl ParamSettings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use survey::StratigraphicHorizon;
+    use survey::{Contact, StratigraphicHorizon};
 
     #[test]
     fn an_intrusion_is_measured_from_its_outline() {

@@ -1,7 +1,7 @@
 //! CSV, XYZ and Irap ASCII on surveys whose answer is known.
 
 use super::*;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use std::fmt::Write as _;
 use survey::geometry::{LineAxis, VerticalUnit};
 use survey::horizon::{NodeGrid, Quality, Sheet};
@@ -233,7 +233,7 @@ fn points_with_normals_are_a_body_in_any_unit_and_a_map_stays_a_map() {
     let told = ImportOptions { z_unit: Some(ZUnit::Feet), z_positive: Some(ZPositive::Up), ..ImportOptions::default() };
     let (body, report) = horizon(&text, &geometry, &told);
     let mesh = body.any_shape().expect("a body");
-    let off = mesh.vertices.iter().map(|v| (v.distance(glam::DVec3::new(500.0, 400.0, 400.0)) - 200.0).abs());
+    let off = mesh.vertices.iter().map(|v| (v.distance(DVec3::new(500.0, 400.0, 400.0)) - 200.0).abs());
     assert!(off.fold(0.0, f64::max) < 4.0 && mesh.triangles.len() > 500);
     assert!(report.notes.iter().any(|note| note.contains("closed body")), "{report}");
 

@@ -2,6 +2,7 @@
 
 pub mod body;
 pub mod cut_shape;
+mod polygon;
 pub mod voxel_box;
 
 pub use body::{Body, BodyPlane, Crossing, Ray, Wall, part_behind};
