@@ -91,10 +91,10 @@ impl ContactRules {
     pub fn clip(&self, z: &mut [f32]) {
         let n = self.contacts.len();
         let mut eroded = f32::NEG_INFINITY;
-        for h in 0..n {
-            match self.contacts[h] {
-                Contact::Erosional => eroded = eroded.max(z[h]),
-                Contact::Truncated => z[h] = z[h].max(eroded),
+        for (contact, z) in self.contacts.iter().zip(&mut *z) {
+            match contact {
+                Contact::Erosional => eroded = eroded.max(*z),
+                Contact::Truncated => *z = z.max(eroded),
                 _ => {}
             }
         }

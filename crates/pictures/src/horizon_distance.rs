@@ -111,7 +111,7 @@ impl Adding<'_> {
         let steepness = slope.length();
         let off = offset.abs() / steepness;
         // Also where the field is flat, far from its surface.
-        if !(off <= self.farthest) {
+        if off.is_nan() || off > self.farthest {
             return None;
         }
         let across = slope / steepness;
