@@ -38,6 +38,7 @@ pub(super) struct PageRequest {
     size_cm: Option<[f64; 2]>,
     file: Option<PathBuf>,
     fonts: Vec<PathBuf>,
+    proportions: Option<f64>,
 }
 
 impl PageRequest {
@@ -80,6 +81,7 @@ impl PageRequest {
             size_cm,
             file: typed.figure,
             fonts: typed.font,
+            proportions: typed.proportions.map(proportions).transpose()?,
         };
         let parts = meant.sections.len()
             + usize::from(!meant.fence.is_empty())
@@ -114,7 +116,13 @@ impl PageRequest {
         let has_block = self.has_block
             || self.sections.is_empty() && self.fence.is_empty() && self.map.is_none() && self.correlation.is_none();
         let section = |(kind, at): &(SectionKind, f64)| {
-            Part::Section(SectionPart { kind: *kind, at: *at, show, zoom: Zoom::default() })
+            Part::Section(SectionPart {
+                kind: *kind,
+                at: *at,
+                show,
+                zoom: Zoom::default(),
+                proportions: self.proportions,
+            })
         };
         let mut parts: Vec<Part> = self.sections.iter().map(section).collect();
         if !self.fence.is_empty() {
@@ -175,6 +183,12 @@ fn annotations(typed: &[String]) -> Result<Vec<Annotation>, Usage> {
         meant.extend(known.into_iter().filter(|known| !meant.contains(known)).collect::<Vec<_>>());
     }
     Ok(meant)
+}
+
+/// Checks how many times longer a metre down is than one across.
+fn proportions(factor: f64) -> Result<f64, Usage> {
+    let is_usable = (0.01..=1000.0).contains(&factor);
+    is_usable.then_some(factor).ok_or_else(|| format!("--proportions {factor}: expected a number from 0.01 to 1000"))
 }
 
 /// Parses width and height in centimetres.

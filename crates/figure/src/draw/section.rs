@@ -189,6 +189,8 @@ pub struct SectionPanel<'a> {
     pub axes: [Axis; 2],
     /// Which part is seen.
     pub zoom: Zoom,
+    /// How many times longer a metre down is than one across; absent: the section fills its room.
+    pub proportions: Option<f64>,
     /// Length across and down, metres.
     pub extent_m: DVec2,
     /// Whether the two axes are both horizontal and so share one scale.
@@ -207,8 +209,9 @@ impl SectionPanel<'_> {
         if !body.is_proper() {
             return group;
         }
-        if self.is_plan && self.zoom == Zoom::default() {
-            let fitted = body.fitted(self.extent_m);
+        let proportions = self.proportions.filter(|factor| factor.is_finite() && *factor > 0.0 && !self.is_plan);
+        if proportions.is_some() || self.is_plan && self.zoom == Zoom::default() {
+            let fitted = body.fitted(self.extent_m * DVec2::new(1.0, proportions.unwrap_or(1.0)));
             // At the upper left, under its title.
             body = Rect::sized(body.min, fitted.size());
         }

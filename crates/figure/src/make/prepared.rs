@@ -35,6 +35,8 @@ pub(super) struct PreparedSection {
     axes: [Axis; 2],
     /// Which part of it is seen.
     pub zoom: Zoom,
+    /// Down to across.
+    pub proportions: Option<f64>,
     is_plan: bool,
     marks: Marks,
     on: Place,
@@ -97,6 +99,7 @@ impl Maker<'_> {
             extent_m: extent * DVec2::new(vectors[s], vectors[t]),
             axes: [self.axis(s, extent.x), self.axis(t, extent.y)],
             zoom: part.zoom,
+            proportions: part.proportions,
             is_plan: kind == SectionKind::Slice,
             marks: self.marks_on(kind)?,
             on: Place::Section(kind, at),
@@ -133,6 +136,7 @@ impl Maker<'_> {
             extent_m: DVec2::new(length_m, depth * self.geometry.sample_m()),
             axes: [ground, self.axis(2, depth)],
             zoom: Zoom::default(),
+            proportions: None,
             is_plan: false,
             // Where it turns.
             marks: Marks { down: along[1..along.len() - 1].to_vec(), ..Marks::default() },
@@ -162,6 +166,7 @@ impl Maker<'_> {
             },
             axes: section.axes,
             zoom: section.zoom,
+            proportions: section.proportions,
             extent_m: section.extent_m,
             is_plan: section.is_plan,
             caption: self.figure.scale_bar.then_some(caption),
