@@ -5,6 +5,7 @@
 
 use super::axes::{self, Axis};
 use super::overlay::{self, OverlayLines, SeenOn};
+use super::section_wells::WellOnSection;
 use super::{NamedColour, scale};
 use crate::Rect;
 use crate::cut::CutLine;
@@ -185,6 +186,8 @@ pub struct SectionPanel<'a> {
     pub title: String,
     /// What it shows.
     pub contents: SectionContents<'a>,
+    /// Wells that lie near it.
+    pub wells: Vec<WellOnSection>,
     /// Name, values at the ends and least step of the axes across and down; their places are found here.
     pub axes: [Axis; 2],
     /// Which part is seen.
@@ -219,6 +222,9 @@ impl SectionPanel<'_> {
         self.axes[0].at = [image.min.x, image.max.x];
         self.axes[1].at = [image.min.y, image.max.y];
         group.push(self.contents.drawn(body, image));
+        let page = |st: DVec2| image.min + st / self.contents.extent * image.size();
+        let wells = self.wells.iter().filter_map(|well| well.drawn(body, self.is_plan, page));
+        wells.for_each(|well| group.push(well));
         let whole = Rect::new(room.min, DVec2::new(room.max.x.min(body.max.x + RIGHT_PT), room.max.y));
         group.push(axes::drawn(whole, body, [&self.axes[0], &self.axes[1]]));
         let baseline = room.min.y + TITLE_PT;

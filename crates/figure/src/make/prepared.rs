@@ -2,12 +2,14 @@
 
 use super::Maker;
 use crate::Rect;
+use crate::annotation::Annotation;
 use crate::correlation::{self, Column, ColumnSource};
 use crate::cut::{CutLine, FenceCut, SectionCut, SectionKind, length_m, stations};
 use crate::draw::axes::Axis;
 use crate::draw::overlay::{OverlayLines, SeenOn};
 use crate::draw::scale;
 use crate::draw::section::{Marks, SectionContents, SectionPanel, Zoom};
+use crate::draw::section_wells::WellOnSection;
 use crate::error::FigureError;
 use crate::list::Group;
 use crate::spec::{FencePart, Part, SectionPart};
@@ -37,6 +39,7 @@ pub(super) struct PreparedSection {
     pub zoom: Zoom,
     /// Down to across.
     pub proportions: Option<f64>,
+    wells: Vec<WellOnSection>,
     is_plan: bool,
     marks: Marks,
     on: Place,
@@ -100,6 +103,7 @@ impl Maker<'_> {
             axes: [self.axis(s, extent.x), self.axis(t, extent.y)],
             zoom: part.zoom,
             proportions: part.proportions,
+            wells: self.wells_on(kind, at),
             is_plan: kind == SectionKind::Slice,
             marks: self.marks_on(kind)?,
             on: Place::Section(kind, at),
@@ -107,6 +111,19 @@ impl Maker<'_> {
             lines: self.shown_lines(cut.lines),
             overlay: None,
         })
+    }
+
+    /// The wells near a section, where wells are named.
+    fn wells_on(&self, kind: SectionKind, at: f64) -> Vec<WellOnSection> {
+        let is_hidden = |well: &&survey::Well| {
+            let scenes = self.figure.parts.iter().filter_map(|part| match part {
+                Part::Block(block) => Some(&block.scene),
+                _ => None,
+            });
+            self.figure.hides(&well.name) || scenes.into_iter().any(|scene| scene.hides_well(&well.name))
+        };
+        let wells = self.inputs.wells.iter().filter(|well| self.wants(Annotation::Wells) && !is_hidden(well));
+        wells.filter_map(|well| WellOnSection::of(well, self.geometry, kind, at)).collect()
     }
 
     /// The lines of what is not hidden.
@@ -137,6 +154,7 @@ impl Maker<'_> {
             axes: [ground, self.axis(2, depth)],
             zoom: Zoom::default(),
             proportions: None,
+            wells: Vec::new(),
             is_plan: false,
             // Where it turns.
             marks: Marks { down: along[1..along.len() - 1].to_vec(), ..Marks::default() },
@@ -164,6 +182,7 @@ impl Maker<'_> {
                     .map(|(shown, overlay)| (shown, overlay, section.on.seen_on())),
                 marks: section.marks,
             },
+            wells: section.wells,
             axes: section.axes,
             zoom: section.zoom,
             proportions: section.proportions,
