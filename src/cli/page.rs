@@ -24,7 +24,7 @@ pub(super) struct PageRequest {
     fence: Vec<[f64; 2]>,
     /// A map: its horizon (`None`: the topmost one), and the horizon down to which thickness is measured.
     map: Option<(Option<String>, Option<String>)>,
-    correlation: Option<CorrelationPart>,
+    correlation: Option<Box<CorrelationPart>>,
     has_block: bool,
     comparison: Comparison,
     is_interpretation: bool,
@@ -44,7 +44,7 @@ pub(super) struct PageRequest {
 impl PageRequest {
     /// Parses the options of the page; `None` where only a picture of the block was asked for.
     pub(super) fn meant(typed: FigureArgs, is_map: bool) -> Result<Option<Self>, Usage> {
-        let correlation = correlation(&typed)?;
+        let correlation = correlation(&typed)?.map(Box::new);
         let kinds = [
             (SectionKind::Inline, typed.inline),
             (SectionKind::Slice, typed.slice),
@@ -133,7 +133,7 @@ impl PageRequest {
             let horizon = horizon.clone().or(topmost).context("a map shows a horizon; the project has none")?;
             parts.push(Part::Map(MapPart { horizon, thickness_to: thickness_to.clone() }));
         }
-        parts.extend(self.correlation.clone().map(Part::Correlation));
+        parts.extend(self.correlation.as_deref().cloned().map(Part::Correlation));
         if self.has_block || parts.is_empty() {
             let scene = if self.is_interpretation { figures::interpreted(scene) } else { scene.clone() };
             parts.insert(0, BlockPart { scene, comparison: self.comparison }.into());
