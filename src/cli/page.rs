@@ -24,7 +24,7 @@ pub(super) struct PageRequest {
     fence: Vec<[f64; 2]>,
     /// A map: its horizon (`None`: the topmost one), and the horizon down to which thickness is measured.
     map: Option<(Option<String>, Option<String>)>,
-    correlation: Option<CorrelationPart>,
+    correlation: Option<Box<CorrelationPart>>,
     has_block: bool,
     comparison: Comparison,
     is_interpretation: bool,
@@ -38,12 +38,13 @@ pub(super) struct PageRequest {
     size_cm: Option<[f64; 2]>,
     file: Option<PathBuf>,
     fonts: Vec<PathBuf>,
+    proportions: Option<f64>,
 }
 
 impl PageRequest {
     /// Parses the options of the page; `None` where only a picture of the block was asked for.
     pub(super) fn meant(typed: FigureArgs, is_map: bool) -> Result<Option<Self>, Usage> {
-        let correlation = correlation(&typed)?;
+        let correlation = correlation(&typed)?.map(Box::new);
         let kinds = [
             (SectionKind::Inline, typed.inline),
             (SectionKind::Slice, typed.slice),
@@ -80,6 +81,7 @@ impl PageRequest {
             size_cm,
             file: typed.figure,
             fonts: typed.font,
+            proportions: typed.proportions.map(proportions).transpose()?,
         };
         let parts = meant.sections.len()
             + usize::from(!meant.fence.is_empty())
@@ -114,7 +116,13 @@ impl PageRequest {
         let has_block = self.has_block
             || self.sections.is_empty() && self.fence.is_empty() && self.map.is_none() && self.correlation.is_none();
         let section = |(kind, at): &(SectionKind, f64)| {
-            Part::Section(SectionPart { kind: *kind, at: *at, show, zoom: Zoom::default() })
+            Part::Section(SectionPart {
+                kind: *kind,
+                at: *at,
+                show,
+                zoom: Zoom::default(),
+                proportions: self.proportions,
+            })
         };
         let mut parts: Vec<Part> = self.sections.iter().map(section).collect();
         if !self.fence.is_empty() {
@@ -125,7 +133,7 @@ impl PageRequest {
             let horizon = horizon.clone().or(topmost).context("a map shows a horizon; the project has none")?;
             parts.push(Part::Map(MapPart { horizon, thickness_to: thickness_to.clone() }));
         }
-        parts.extend(self.correlation.clone().map(Part::Correlation));
+        parts.extend(self.correlation.as_deref().cloned().map(Part::Correlation));
         if self.has_block || parts.is_empty() {
             let scene = if self.is_interpretation { figures::interpreted(scene) } else { scene.clone() };
             parts.insert(0, BlockPart { scene, comparison: self.comparison }.into());
@@ -175,6 +183,12 @@ fn annotations(typed: &[String]) -> Result<Vec<Annotation>, Usage> {
         meant.extend(known.into_iter().filter(|known| !meant.contains(known)).collect::<Vec<_>>());
     }
     Ok(meant)
+}
+
+/// Checks how many times longer a metre down is than one across.
+fn proportions(factor: f64) -> Result<f64, Usage> {
+    let is_usable = (0.01..=1000.0).contains(&factor);
+    is_usable.then_some(factor).ok_or_else(|| format!("--proportions {factor}: expected a number from 0.01 to 1000"))
 }
 
 /// Parses width and height in centimetres.

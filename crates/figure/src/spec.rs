@@ -189,6 +189,9 @@ pub struct SectionPart {
     /// Which part of it is seen.
     #[serde(default)]
     pub zoom: Zoom,
+    /// How many times longer a metre down is than one across; absent: the section fills its room.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub proportions: Option<f64>,
 }
 
 /// A section along a line.

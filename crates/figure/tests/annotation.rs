@@ -396,6 +396,20 @@ fn ground_above_the_water_stays_dry_and_hides_what_lies_behind() {
     assert_eq!(clip(&scene), Some(None), "nothing rises above the block's top");
 }
 
+/// A well that stands two lines beside an inline is drawn on it with its top, and on no other.
+#[test]
+fn wells_near_a_section_are_drawn_on_it() {
+    let survey = Survey::new(|geometry| ClosedForm::flat(geometry, &[14.0, 26.0]).with_fault(65.0, 0.0));
+    let well = well("W", 15.0, 10.0);
+    let on = |kind, at| figure::draw::section_wells::WellOnSection::of(&well, &survey.geometry, kind, at);
+    let near = on(figure::SectionKind::Inline, 13.0).unwrap();
+    assert!(near.parts.len() == 1 && near.parts[0].iter().all(|st| (st.x - 10.0).abs() < 0.1), "{near:?}");
+    assert_eq!(near.tops.len(), well.tops.len());
+    assert!(on(figure::SectionKind::Inline, 25.0).is_none());
+    let slice = on(figure::SectionKind::Slice, 12.0).unwrap();
+    assert!(slice.tops.is_empty() && (slice.parts[0][0] - DVec2::new(15.0, 10.0)).length() < 0.2, "{slice:?}");
+}
+
 /// Flat ground at sample 14: the sides of the water are as high as the air, and its upper face is the block's.
 #[test]
 fn water_lies_between_the_ground_and_the_top_of_the_block_and_not_in_cut_outs() {

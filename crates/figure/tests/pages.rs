@@ -79,7 +79,7 @@ fn made_of(
 }
 
 fn section(kind: SectionKind, at: f64) -> Part {
-    Part::Section(SectionPart { kind, at, show: FaceData::Rock, zoom: Default::default() })
+    Part::Section(SectionPart { kind, at, show: FaceData::Rock, zoom: Default::default(), proportions: None })
 }
 
 fn figure(parts: Vec<Part>) -> Figure {
@@ -114,6 +114,34 @@ fn a_flat_horizon_lies_beside_its_time_on_the_axis() {
         let middle = found.iter().sum::<f64>() / found.len() as f64;
         assert!((middle - at(ms)).abs() < 0.35, "{ms} ms lies at {middle}, not at {}", at(ms));
         assert!((found.last().unwrap() - found[0] - 1.2).abs() < 1.0, "a line of 1.2 points");
+    }
+}
+
+/// Twenty-four crosslines of 25 m across, 40 samples of 4 ms down.
+#[test]
+fn a_section_has_the_proportions_that_were_asked_for() {
+    for factor in [0.5, 1.0, 2.0] {
+        let mut part = SectionPart {
+            kind: SectionKind::Inline,
+            at: 12.0,
+            show: FaceData::Rock,
+            zoom: Default::default(),
+            proportions: Some(factor),
+        };
+        let picture = |part: SectionPart| {
+            let page = made(&figure(vec![Part::Section(part)])).unwrap();
+            let pictures = page.leaves().into_iter().filter_map(|item| match item {
+                figure::list::Item::Picture(picture) => Some(picture.down.y / picture.right.x),
+                _ => None,
+            });
+            pictures.into_iter().next().unwrap()
+        };
+        let geometry = geometry();
+        // A picture has a whole pixel for each sample, half of it outside of the section.
+        let metres = [25.0 * geometry.crossline_vector.length(), 41.0 * geometry.sample_m()];
+        assert!((picture(part) - factor * metres[1] / metres[0]).abs() < 1e-3, "{factor}: {}", picture(part));
+        part.proportions = None;
+        assert!((picture(part) - factor * metres[1] / metres[0]).abs() > 0.01);
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! The file is TrueType (ISO/IEC 14496-22), whatever the face is: outlines without instructions, metrics, names, and a
 //! character map of format 12. Outlines are taken as `skrifa` reads them; cubic curves become quadratic ones that stay
-//! within [`TOLERANCE`] of them. Glyphs are numbered anew, 0 is the missing-glyph box. A file for programs that shape
+//! within 0.3 thousandths of an em of them. Glyphs are numbered anew, 0 is the missing-glyph box. A file for programs that shape
 //! text themselves keeps the face's numbers and its rules (`GSUB`, `GPOS`, `GDEF`), with blanks for all other glyphs.
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -16,6 +16,9 @@ pub(in crate::cli) struct FigureArgs {
     /// Horizontal section at this time or depth; repeat it for several
     #[arg(long, value_name = "Z", allow_hyphen_values = true)]
     pub(in crate::cli) slice: Vec<f64>,
+    /// Proportions of sections along inlines and crosslines, vertical to horizontal [default: they fill their room]
+    #[arg(long, value_name = "FACTOR")]
+    pub(in crate::cli) proportions: Option<f64>,
     /// Section along a line with these corners, two or more
     #[arg(long, value_name = "INLINE,CROSSLINE", num_args = 2..)]
     pub(in crate::cli) fence: Vec<String>,

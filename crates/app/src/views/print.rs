@@ -138,7 +138,7 @@ fn parts(
     let show = if view.panel == Panel::Interpret { view.picking.show } else { FaceData::Rock };
     let section = |kind: SectionKind| {
         let at = value_at(geometry, kind.axis(), view.slices[kind.axis()]);
-        Part::Section(SectionPart { kind, at, show, zoom: sections.zoom(kind) })
+        Part::Section(SectionPart { kind, at, show, zoom: sections.zoom(kind), proportions: view.proportions })
     };
     let block = || Part::from(block_part(session, overlay));
     match view.layout {

@@ -15,6 +15,7 @@ pub mod north;
 pub mod overlay;
 pub mod scale;
 pub mod section;
+pub mod section_wells;
 pub(crate) mod seen;
 pub mod surfaces;
 pub mod swatch;

@@ -5,6 +5,7 @@
 
 use super::axes::{self, Axis};
 use super::overlay::{self, OverlayLines, SeenOn};
+use super::section_wells::WellOnSection;
 use super::{NamedColour, scale};
 use crate::Rect;
 use crate::cut::CutLine;
@@ -185,10 +186,14 @@ pub struct SectionPanel<'a> {
     pub title: String,
     /// What it shows.
     pub contents: SectionContents<'a>,
+    /// Wells that lie near it.
+    pub wells: Vec<WellOnSection>,
     /// Name, values at the ends and least step of the axes across and down; their places are found here.
     pub axes: [Axis; 2],
     /// Which part is seen.
     pub zoom: Zoom,
+    /// How many times longer a metre down is than one across; absent: the section fills its room.
+    pub proportions: Option<f64>,
     /// Length across and down, metres.
     pub extent_m: DVec2,
     /// Whether the two axes are both horizontal and so share one scale.
@@ -207,8 +212,9 @@ impl SectionPanel<'_> {
         if !body.is_proper() {
             return group;
         }
-        if self.is_plan && self.zoom == Zoom::default() {
-            let fitted = body.fitted(self.extent_m);
+        let proportions = self.proportions.filter(|factor| factor.is_finite() && *factor > 0.0 && !self.is_plan);
+        if proportions.is_some() || self.is_plan && self.zoom == Zoom::default() {
+            let fitted = body.fitted(self.extent_m * DVec2::new(1.0, proportions.unwrap_or(1.0)));
             // At the upper left, under its title.
             body = Rect::sized(body.min, fitted.size());
         }
@@ -216,6 +222,9 @@ impl SectionPanel<'_> {
         self.axes[0].at = [image.min.x, image.max.x];
         self.axes[1].at = [image.min.y, image.max.y];
         group.push(self.contents.drawn(body, image));
+        let page = |st: DVec2| image.min + st / self.contents.extent * image.size();
+        let wells = self.wells.iter().filter_map(|well| well.drawn(body, self.is_plan, page));
+        wells.for_each(|well| group.push(well));
         let whole = Rect::new(room.min, DVec2::new(room.max.x.min(body.max.x + RIGHT_PT), room.max.y));
         group.push(axes::drawn(whole, body, [&self.axes[0], &self.axes[1]]));
         let baseline = room.min.y + TITLE_PT;

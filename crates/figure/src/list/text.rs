@@ -10,7 +10,10 @@ use ttf::text::{TextCurve, measure_text, outline_text, set};
 /// Share of the font size that capital letters are high: what is centred upright is centred on them.
 const CAPITALS: f64 = 0.69;
 
-/// A line of text in the face that [`ttf::text`] has.
+/// Widths that differ by less are the same, points.
+const ROUNDING: f64 = 1e-3;
+
+/// A line of text in the faces that [`ttf::text`] has.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Text {
     /// What it says.
@@ -196,12 +199,14 @@ impl Text {
     #[must_use]
     pub fn fitted(mut self, room: f64) -> Self {
         let width = self.width();
+        // Rooms are often made for the widest of some texts.
+        let room = room + ROUNDING;
         if width <= room {
             return self;
         }
         let least = crate::style::LEAST_TEXT_PT.min(self.size);
         self.size = (self.size * room / width).max(least);
-        if self.width() > room {
+        if self.width() > room + ROUNDING {
             let whole: Vec<char> = self.text.trim_end().chars().collect();
             let short = |count: usize| whole[..count].iter().collect::<String>().trim_end().to_owned() + "…";
             let fits = |count: &usize| width_of(&short(*count), self.size) <= room;

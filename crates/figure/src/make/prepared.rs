@@ -2,12 +2,14 @@
 
 use super::Maker;
 use crate::Rect;
+use crate::annotation::Annotation;
 use crate::correlation::{self, Column, ColumnSource};
 use crate::cut::{CutLine, FenceCut, SectionCut, SectionKind, length_m, stations};
 use crate::draw::axes::Axis;
 use crate::draw::overlay::{OverlayLines, SeenOn};
 use crate::draw::scale;
 use crate::draw::section::{Marks, SectionContents, SectionPanel, Zoom};
+use crate::draw::section_wells::WellOnSection;
 use crate::error::FigureError;
 use crate::list::Group;
 use crate::spec::{FencePart, Part, SectionPart};
@@ -35,6 +37,9 @@ pub(super) struct PreparedSection {
     axes: [Axis; 2],
     /// Which part of it is seen.
     pub zoom: Zoom,
+    /// Down to across.
+    pub proportions: Option<f64>,
+    wells: Vec<WellOnSection>,
     is_plan: bool,
     marks: Marks,
     on: Place,
@@ -97,6 +102,8 @@ impl Maker<'_> {
             extent_m: extent * DVec2::new(vectors[s], vectors[t]),
             axes: [self.axis(s, extent.x), self.axis(t, extent.y)],
             zoom: part.zoom,
+            proportions: part.proportions,
+            wells: self.wells_on(kind, at),
             is_plan: kind == SectionKind::Slice,
             marks: self.marks_on(kind)?,
             on: Place::Section(kind, at),
@@ -104,6 +111,19 @@ impl Maker<'_> {
             lines: self.shown_lines(cut.lines),
             overlay: None,
         })
+    }
+
+    /// The wells near a section, where wells are named.
+    fn wells_on(&self, kind: SectionKind, at: f64) -> Vec<WellOnSection> {
+        let is_hidden = |well: &&survey::Well| {
+            let scenes = self.figure.parts.iter().filter_map(|part| match part {
+                Part::Block(block) => Some(&block.scene),
+                _ => None,
+            });
+            self.figure.hides(&well.name) || scenes.into_iter().any(|scene| scene.hides_well(&well.name))
+        };
+        let wells = self.inputs.wells.iter().filter(|well| self.wants(Annotation::Wells) && !is_hidden(well));
+        wells.filter_map(|well| WellOnSection::of(well, self.geometry, kind, at)).collect()
     }
 
     /// The lines of what is not hidden.
@@ -133,6 +153,8 @@ impl Maker<'_> {
             extent_m: DVec2::new(length_m, depth * self.geometry.sample_m()),
             axes: [ground, self.axis(2, depth)],
             zoom: Zoom::default(),
+            proportions: None,
+            wells: Vec::new(),
             is_plan: false,
             // Where it turns.
             marks: Marks { down: along[1..along.len() - 1].to_vec(), ..Marks::default() },
@@ -160,8 +182,10 @@ impl Maker<'_> {
                     .map(|(shown, overlay)| (shown, overlay, section.on.seen_on())),
                 marks: section.marks,
             },
+            wells: section.wells,
             axes: section.axes,
             zoom: section.zoom,
+            proportions: section.proportions,
             extent_m: section.extent_m,
             is_plan: section.is_plan,
             caption: self.figure.scale_bar.then_some(caption),

@@ -120,6 +120,21 @@ fn text_stays_text() {
     assert!((x - (25.0 - line.width())).abs() < 0.006);
 }
 
+/// Programs that place the first letter alone set a bent line straight along its chord.
+#[test]
+fn a_bent_line_is_turned_as_a_whole_and_its_letters_about_that() {
+    let mut page = DisplayList::new(DVec2::splat(100.0));
+    let slope = [DVec2::new(10.0, 20.0), DVec2::new(80.0, 90.0)];
+    page.items.push(Text::new(DVec2::ZERO, "Marl").along(&slope, 40.0).into());
+    let svg = svg(&page, "t").unwrap();
+    let document = usvg::roxmltree::Document::parse(&svg).unwrap();
+    let text = document.descendants().find(|node| node.has_tag_name("text")).unwrap();
+    assert!(text.attribute("transform").unwrap().starts_with("rotate(45 "));
+    assert_eq!(text.attribute("rotate"), Some("0 0 0 0"));
+    let ys: Vec<&str> = text.attribute("y").unwrap().split(' ').collect();
+    assert!(ys.iter().all(|y| *y == ys[0]), "{ys:?}");
+}
+
 #[test]
 fn letters_come_with_the_page() {
     let mut page = DisplayList::new(DVec2::splat(50.0));

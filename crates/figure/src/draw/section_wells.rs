@@ -1,0 +1,89 @@
+//! Wells on a section: the parts of their paths that lie near it, with their names and tops. A slice shows where they
+//! pass through it.
+
+use crate::Rect;
+use crate::cut::SectionKind;
+use crate::list::{Across, Group, GroupKind, Ink, Path, PathItem, Stroke, Text, Upright};
+use crate::style::{HORIZON_PT, INK, NUMBER_PT, RIM_OPACITY, RIM_PT, TEXT_PT};
+use glam::{DVec2, DVec3};
+use survey::{SurveyGeometry, Well};
+use ttf::Colour;
+
+/// Parts of a path within so many lines of a section are drawn on it, as in the window.
+const NEAR: f64 = 6.0;
+/// Parts that a straight piece of a path is divided into.
+const PARTS: u32 = 8;
+/// Half the length of the mark of a top, and from there to its name, points.
+const TOP_PT: [f64; 2] = [2.6, 1.6];
+/// Radius of the place where a well passes through a slice, points.
+const SIGN_PT: f64 = 1.8;
+
+/// What of a well lies near a section, (s, t).
+#[derive(Debug, Clone, PartialEq)]
+pub struct WellOnSection {
+    /// The well.
+    pub name: String,
+    /// Parts of its path; of a slice, the place where it passes through.
+    pub parts: Vec<Vec<DVec2>>,
+    /// Its tops.
+    pub tops: Vec<(String, DVec2)>,
+}
+
+impl WellOnSection {
+    /// What lies near a section along the lattice; `None` where nothing does.
+    pub fn of(well: &Well, geometry: &SurveyGeometry, kind: SectionKind, at: f64) -> Option<Self> {
+        let reach = if kind == SectionKind::Slice { 1.0 } else { NEAR };
+        let near = |voxel: DVec3| ((voxel[kind.axis()] - at).abs() <= reach).then(|| kind.flat(voxel));
+        let path = well.path_in_voxels(geometry);
+        let pieces = path.windows(2).flat_map(|pair| {
+            let last = pair[1];
+            (0..PARTS).map(move |n| pair[0].lerp(last, f64::from(n) / f64::from(PARTS)))
+        });
+        let mut parts: Vec<Vec<DVec2>> = vec![Vec::new()];
+        for place in pieces.chain(path.last().copied()).map(near) {
+            match (place, parts.last_mut()) {
+                (Some(st), Some(part)) => part.push(st),
+                (None, Some(part)) if !part.is_empty() => parts.push(Vec::new()),
+                _ => {}
+            }
+        }
+        parts.retain(|part| !part.is_empty());
+        let tops = well.tops.iter().filter(|_| kind != SectionKind::Slice);
+        let tops = tops.filter_map(|top| Some((top.name.clone(), near(well.voxel_at_md(top.md_m, geometry)?)?)));
+        let tops = tops.collect();
+        (!parts.is_empty()).then(|| Self { name: well.name.clone(), parts, tops })
+    }
+
+    /// The well within `body`; `page` takes (s, t) to the page.
+    pub(super) fn drawn(&self, body: Rect, is_plan: bool, page: impl Fn(DVec2) -> DVec2) -> Option<Group> {
+        let head = self.parts.iter().flatten().map(|st| page(*st)).find(|at| body.contains(*at))?;
+        let mut group = Group::new(GroupKind::Well, &self.name).clipped(Path::rect(body));
+        let rim = Ink::glass(Colour::WHITE, RIM_OPACITY);
+        if is_plan {
+            let ring = PathItem::filled(Path::circle(head, SIGN_PT), Colour::WHITE);
+            group.push(ring.outlined(Stroke::new(0.9, INK)));
+        } else {
+            let lines = || self.parts.iter().filter(|part| part.len() > 1);
+            let line = |part: &Vec<DVec2>| Path::line(&part.iter().map(|st| page(*st)).collect::<Vec<_>>());
+            lines().for_each(|part| group.push(PathItem::stroked(line(part), Stroke::new(HORIZON_PT + RIM_PT, rim))));
+            lines().for_each(|part| group.push(PathItem::stroked(line(part), Stroke::new(HORIZON_PT, INK))));
+        }
+        for (name, st) in &self.tops {
+            let at = page(*st);
+            let off = DVec2::new(TOP_PT[0], 0.0);
+            group.push(PathItem::stroked(Path::line(&[at - off, at + off]), Stroke::new(HORIZON_PT, INK)));
+            // To the side with more room.
+            let is_left = at.x > body.centre().x;
+            let side = if is_left { -TOP_PT[0] - TOP_PT[1] } else { TOP_PT[0] + TOP_PT[1] };
+            let across = if is_left { Across::End } else { Across::Start };
+            let text = Text::new(at + DVec2::new(side, 0.0), name).sized(NUMBER_PT).inked(INK);
+            group.push(text.haloed(RIM_PT, rim).anchored(across, Upright::Middle));
+        }
+        let name = Text::new(head, &self.name).sized(TEXT_PT).inked(INK).haloed(RIM_PT, rim);
+        let half = 0.5 * name.width() + RIM_PT;
+        let low = body.min + DVec2::new(half, TEXT_PT + 2.0);
+        let at = DVec2::new(head.x, head.y - 2.0).clamp(low, (body.max - DVec2::new(half, 0.0)).max(low));
+        group.push(Text { at, ..name }.anchored(Across::Middle, Upright::Baseline));
+        Some(group)
+    }
+}
