@@ -9,7 +9,9 @@ use widgets::obstacle::{needs, unless};
 use widgets::percent;
 
 /// Width of everything but the project's name and the comparison, points.
-const OTHERS: f32 = 760.0;
+const OTHERS: f32 = 680.0;
+/// Width of the button that shares the block beyond the others; without room for it, it is in the menu alone.
+const SHARE: f32 = 62.0;
 /// Width of the comparison, points.
 const COMPARISON: f32 = 440.0;
 /// Width of the menu that the comparison folds into, points.
@@ -27,7 +29,9 @@ pub fn show(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Act
         (true, false) => COMPARISON,
         (true, true) => MENU,
     };
-    let name_room = (ui.available_width() - OTHERS - comparison_room).clamp(NAME[0], NAME[1]);
+    let has_share = ui.available_width() >= OTHERS + SHARE + NAME[0] + comparison_room;
+    let share_room = if has_share { SHARE } else { 0.0 };
+    let name_room = (ui.available_width() - OTHERS - share_room - comparison_room).clamp(NAME[0], NAME[1]);
     ui.horizontal(|ui| {
         menu(ui, state, session, actions);
         ui.scope(|ui| {
@@ -69,9 +73,11 @@ pub fn show(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Act
             if export.clicked() {
                 actions.push(Action::Ask(Box::new(Dialogue::Export(form))));
             }
-            let share = unless(ui, nothing, Button::new("Share…"));
-            if share.on_hover_text("A page for browsers, or a model for slides").clicked() {
-                actions.push(Action::Ask(Box::new(Dialogue::Share(ShareForm::new(&session.root)))));
+            if has_share {
+                let share = unless(ui, nothing, Button::new("Share…"));
+                if share.on_hover_text("A page for browsers, or a model for slides").clicked() {
+                    actions.push(Action::Ask(Box::new(Dialogue::Share(ShareForm::new(&session.root)))));
+                }
             }
         });
     });
@@ -98,6 +104,11 @@ fn menu(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>
                 actions.push(action);
                 ui.close();
             }
+        }
+        let nothing = needs(session.is_drawable(), NOTHING);
+        if unless(ui, nothing, Button::new("Share…")).clicked() {
+            actions.push(Action::Ask(Box::new(Dialogue::Share(ShareForm::new(&session.root)))));
+            ui.close();
         }
         ui.separator();
         let appearance = state.remembered.appearance;

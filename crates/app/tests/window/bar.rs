@@ -22,6 +22,12 @@ fn the_parts_of_the_toolbar_keep_apart_at_four_widths() {
             assert!(pair[0].right() <= pair[1].left(), "{} and {} at {width}: {pair:?}", names[0], names[1]);
         }
         assert!(rects.iter().all(|rect| rect.right() <= width), "{width}: {rects:?}");
+        // Where there is no room for it, it is in the menu.
+        let share: Vec<_> = harness.query_all_by_label("Share…").map(|node| node.rect()).collect();
+        assert_eq!(share.len(), usize::from(width > 1000.0), "{width}");
+        for rect in share {
+            assert!(rects[6].right() <= rect.left() && rect.right() <= rects[7].left(), "{width}: {rect:?}");
+        }
         if !is_folded {
             let number = harness.get_all_by_label("to raw").map(|node| node.rect().right()).fold(0.0, f32::max);
             assert!(number <= rects[7].left(), "the slider lies under Export at {width}");

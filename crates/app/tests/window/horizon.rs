@@ -165,3 +165,46 @@ fn a_horizon_is_smoothed_and_that_is_taken_back() {
     click_last(&mut harness, "Not smoothed");
     wait(&mut harness, "it is as picked", |harness| smoothing(harness).is_none());
 }
+
+/// Of many horizons those on which nothing is left to do are folded away, and none of a few.
+#[test]
+fn finished_horizons_are_folded_where_there_are_many() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = interpreting(folder.path());
+    assert!(harness.query_by_label("Top").is_some() && harness.query_by_label_contains("finished horizons").is_none());
+    for (n, z) in [40, 50, 60, 70, 90].into_iter().enumerate() {
+        // The last has a hole, so that there is something to do.
+        let is_hole =
+            |inline: i32, crossline: i32| n == 4 && (10..13).contains(&inline) && (8..11).contains(&crossline);
+        let rows = (1..=24).flat_map(|inline| (1..=20).map(move |crossline| (inline, crossline)));
+        let rows = rows.filter(|(inline, crossline)| !is_hole(*inline, *crossline));
+        let text = rows.fold("inline,crossline,z\n".to_owned(), |text, (inline, crossline)| {
+            text + &format!("{inline},{crossline},{z}\n")
+        });
+        let path = folder.path().join("h.csv");
+        std::fs::write(&path, text).unwrap();
+        let command = AddHorizon {
+            path,
+            name: format!("H{n}"),
+            contact: Contact::Conformable,
+            age: Age::ByDepth,
+            options: ImportOptions::default(),
+        };
+        applied(&mut harness, &Command::AddHorizon(command));
+    }
+    // Opening the project anew led to the layers.
+    click(&mut harness, "Interpret");
+    let folded = |harness: &Driven| harness.query_by_label_contains("finished horizons").is_some();
+    wait(&mut harness, "some are folded", |harness| folded(harness) && harness.query_by_label("H0").is_none());
+    assert!(harness.query_by_label("H4").is_some(), "it has a hole");
+    let fold = |harness: &mut Driven| {
+        harness.get_by_label_contains("finished horizons").click();
+        harness.run_steps(20);
+    };
+    fold(&mut harness);
+    click(&mut harness, "H0");
+    assert_eq!(picking(&harness).horizon.as_deref(), Some("H0"));
+    // The one that picks go to is not folded.
+    fold(&mut harness);
+    assert!(harness.query_by_label("H0").is_some() && harness.query_by_label("H1").is_none());
+}

@@ -4,7 +4,7 @@ use super::go;
 use super::palette::palette;
 use crate::state::{Action, PickingStep, Session};
 use crate::work::{Interpreted, InterpretedHorizon};
-use eframe::egui::{Button, DragValue, RichText, TextEdit, Ui};
+use eframe::egui::{Button, CollapsingHeader, DragValue, RichText, TextEdit, Ui};
 use interp::assembly::Operation;
 use interp::holes::FillSettings;
 use project::command::{
@@ -19,6 +19,8 @@ use widgets::obstacle::{needs, unless};
 
 /// Largest number of holes that are listed.
 const HOLES: usize = 5;
+/// Number of horizons from which those that are finished are folded away.
+const MANY: usize = 6;
 
 /// The list, with the text being typed in it.
 #[derive(Default)]
@@ -44,33 +46,31 @@ impl HorizonList {
         if ui.button("New horizon").on_hover_text("The next pick starts another horizon (N)").clicked() {
             actions.push(Action::Picking(PickingStep::Begin));
         }
-        for (index, entry) in document.horizons.iter().enumerate() {
-            let facts = shown.and_then(|shown| shown.horizons.iter().find(|horizon| horizon.name == entry.name));
-            let is_current = picking.horizon.as_deref() == Some(&entry.name);
-            ui.horizontal(|ui| {
-                swatch(ui, entry, index, actions);
-                // Room for the coverage and the sign that something is wrong.
-                let room = (ui.available_width() - 78.0).max(40.0);
-                let label = Button::selectable(is_current, RichText::new(&entry.name).strong()).truncate();
-                let label = ui.scope(|ui| {
-                    ui.set_max_width(room);
-                    ui.add(label)
-                });
-                if label.inner.on_hover_text(format!("{}: picks go to this horizon", entry.name)).clicked() {
-                    actions.push(Action::Picking(PickingStep::Choose(entry.name.clone())));
-                }
-                if let Some(facts) = facts {
-                    ui.weak(format!("{:.0} %", 100.0 * facts.report.share)).on_hover_text("Of the traces");
-                    if facts.report.overlap.is_some() || !facts.conflicts.is_empty() || facts.outdated {
-                        let colour = ui.visuals().warn_fg_color;
-                        let hint = "It overlaps itself or conflicts with another horizon; choose it to see where";
-                        ui.colored_label(colour, "!").on_hover_text(hint);
-                    }
-                }
-            });
-            if is_current {
+        let facts_of = |entry: &HorizonEntry| {
+            shown.and_then(|shown| shown.horizons.iter().find(|horizon| horizon.name == entry.name))
+        };
+        let is_current = |entry: &HorizonEntry| picking.horizon.as_deref() == Some(&entry.name);
+        let is_folded = |entry: &HorizonEntry| {
+            document.horizons.len() >= MANY && !is_current(entry) && facts_of(entry).is_some_and(is_finished)
+        };
+        let (folded, open): (Vec<_>, Vec<_>) =
+            document.horizons.iter().enumerate().partition(|(_, entry)| is_folded(entry));
+        for (index, entry) in open {
+            let facts = facts_of(entry);
+            row(ui, entry, (index, is_current(entry)), facts, actions);
+            if is_current(entry) {
                 ui.indent("current", |ui| self.current(ui, session, entry, facts, geometry, actions));
             }
+        }
+        if !folded.is_empty() {
+            let title = format!("{} finished horizons", folded.len());
+            let fold = CollapsingHeader::new(title).id_salt("finished").show(ui, |ui| {
+                for (index, entry) in folded {
+                    row(ui, entry, (index, false), facts_of(entry), actions);
+                }
+            });
+            fold.header_response
+                .on_hover_text("On all traces of their blocks, without a hole, an overlap or a conflict");
         }
         if let Some(name) =
             picking.horizon.as_ref().filter(|name| !document.horizons.iter().any(|entry| entry.name == **name))
@@ -292,6 +292,42 @@ fn picks(ui: &mut Ui, entry: &HorizonEntry, geometry: &SurveyGeometry, actions: 
             button(ui, "Unpick", "Remove", !only, Command::RemovePick(RemovePick { id: pick.id }));
         });
     }
+}
+
+/// Whether nothing is left to do on a horizon: no hole, no overlap, no conflict, picks on the present extraction.
+fn is_finished(facts: &InterpretedHorizon) -> bool {
+    facts.holes.is_empty() && facts.report.overlap.is_none() && facts.conflicts.is_empty() && !facts.outdated
+}
+
+/// The row of a horizon: colour, name, coverage, and a sign where something is wrong.
+fn row(
+    ui: &mut Ui,
+    entry: &HorizonEntry,
+    (index, is_current): (usize, bool),
+    facts: Option<&InterpretedHorizon>,
+    actions: &mut Vec<Action>,
+) {
+    ui.horizontal(|ui| {
+        swatch(ui, entry, index, actions);
+        // Room for the coverage and the sign that something is wrong.
+        let room = (ui.available_width() - 78.0).max(40.0);
+        let label = Button::selectable(is_current, RichText::new(&entry.name).strong()).truncate();
+        let label = ui.scope(|ui| {
+            ui.set_max_width(room);
+            ui.add(label)
+        });
+        if label.inner.on_hover_text(format!("{}: picks go to this horizon", entry.name)).clicked() {
+            actions.push(Action::Picking(PickingStep::Choose(entry.name.clone())));
+        }
+        if let Some(facts) = facts {
+            ui.weak(format!("{:.0} %", 100.0 * facts.report.share)).on_hover_text("Of the traces");
+            if facts.report.overlap.is_some() || !facts.conflicts.is_empty() || facts.outdated {
+                let colour = ui.visuals().warn_fg_color;
+                let hint = "It overlaps itself or conflicts with another horizon; choose it to see where";
+                ui.colored_label(colour, "!").on_hover_text(hint);
+            }
+        }
+    });
 }
 
 fn apply(command: Command) -> Action {
