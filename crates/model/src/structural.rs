@@ -266,6 +266,15 @@ impl StructuralModel {
         self.stratigraphy.top_of(usize::from(self.layer_at(p, block))).filter(|top| self.is_body(*top))
     }
 
+    /// Whether the layers on the two sides of a horizon differ at a place of `block` where it comes to the surface of the
+    /// youngest horizon: they do not where something else has cut it off.
+    pub fn crops_out_at(&self, horizon: usize, p: Vec3, block: u16) -> bool {
+        // The place is rock, just below the surface.
+        let below = self.below_at(p, block) | 1;
+        let layer = |below: u64| self.rules.layer(below);
+        layer(below | 1 << horizon) != layer(below & !(1 << horizon)) && self.block_at(p) == block
+    }
+
     /// [`StructuralModel::region_at`] at every depth (voxel z) of the trace at (x, y), in order: `found(n,
     /// region)` for `depths[n]`. The sheets are evaluated once per block instead of once per depth.
     pub fn regions_down(&self, x: f32, y: f32, depths: &[f32], mut found: impl FnMut(usize, Region)) {

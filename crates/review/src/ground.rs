@@ -90,6 +90,8 @@ pub(crate) struct GroundPart {
     pub mesh: Mesh,
     /// Lines of faults on the relief.
     pub lines: Vec<[DVec3; 2]>,
+    /// Lines at which horizons and bodies come to the surface.
+    pub contacts: Vec<[DVec3; 2]>,
 }
 
 impl Heights {
@@ -344,23 +346,63 @@ impl Ground<'_> {
                 left.extend(by_cuts(within, cuts).into_iter().map(|(mask, piece)| (mask, fault, piece)));
             }
             lines.retain(|ends| self.is_fault(*ends));
-            (left, lines)
+            (left, lines, self.contacts([n / many[1], n % many[1]]))
         });
-        let mut parts: BTreeMap<(u32, Option<usize>), (Welder, Vec<_>)> = BTreeMap::new();
-        for (pieces, lines) in made.collect::<Vec<_>>() {
+        let mut parts: BTreeMap<(u32, Option<usize>), (Welder, [Vec<_>; 2])> = BTreeMap::new();
+        for (pieces, lines, contacts) in made.collect::<Vec<_>>() {
             for (mask, fault, piece) in pieces {
                 parts.entry((mask, fault)).or_default().0.add(&piece);
             }
-            for ends in lines {
+            let lines = lines.into_iter().map(|ends| (0, ends));
+            for (kind, ends) in lines.chain(contacts.into_iter().map(|ends| (1, ends))) {
                 let middle = ((ends[0] + ends[1]) * 0.5).as_vec3();
                 let holds = |bodies: &Vec<Body>| bodies.iter().any(|body| body.holds(middle));
                 let mask = cuts.iter().enumerate().map(|(n, cut)| u32::from(holds(cut)) << n).sum();
-                parts.entry((mask, None)).or_default().1.push(ends);
+                parts.entry((mask, None)).or_default().1[kind].push(ends);
             }
         }
-        let part =
-            |((cuts, fault), (welder, lines)): (_, (Welder, _))| GroundPart { cuts, fault, mesh: welder.mesh, lines };
+        let part = |((cuts, fault), (welder, [lines, contacts])): (_, (Welder, [Vec<_>; 2]))| GroundPart {
+            cuts,
+            fault,
+            mesh: welder.mesh,
+            lines,
+            contacts,
+        };
         parts.into_iter().map(part).collect()
+    }
+
+    /// The lines at which older horizons come to the surface in a square of [`PIECE`] cells.
+    fn contacts(&self, [i, j]: [usize; 2]) -> Vec<[DVec3; 2]> {
+        let mut found = Vec::new();
+        let cells = (0..PIECE * PIECE).map(|n| [i * PIECE + n / PIECE, j * PIECE + n % PIECE]);
+        for [x, y] in cells.filter(|[x, y]| *x < self.cells[0] && *y < self.cells[1]) {
+            for corners in self.triangles(x, y) {
+                let part = corners[0].1.part;
+                if part >= NONE || corners.iter().any(|(_, spot)| spot.part != part) {
+                    continue;
+                }
+                let block = (part / 2) as u16;
+                let surface = |at: DVec2| at.extend(self.model.horizon_z(0, block, at.x as f32, at.y as f32).into());
+                let corners = corners.map(|(at, _)| surface(at));
+                for horizon in 1..self.model.stratigraphy().horizons.len() {
+                    let off = corners.map(|p| f64::from(self.model.offset(horizon, block, p.as_vec3())));
+                    let ends: Vec<DVec3> = (0..3)
+                        .filter_map(|n| {
+                            let [a, b] = [off[n], off[(n + 1) % 3]];
+                            let cut = (a >= 0.0) != (b >= 0.0);
+                            cut.then(|| surface(corners[n].lerp(corners[(n + 1) % 3], a / (a - b)).truncate()))
+                        })
+                        .collect();
+                    let [from, to] = ends[..] else { continue };
+                    let middle = (from + to) * 0.5;
+                    let is_inside = middle.z >= self.low.z && middle.z <= self.high.z;
+                    if is_inside && self.model.crops_out_at(horizon, middle.as_vec3(), block) {
+                        found.push([from, to]);
+                    }
+                }
+            }
+        }
+        found
     }
 
     /// What there is in one of the squares of [`PIECE`] cells, of so `many` along each axis.
@@ -518,4 +560,29 @@ pub(crate) fn mesh_of(polygons: &[Vec<DVec3>]) -> Mesh {
     let mut welder = Welder::default();
     polygons.iter().filter(|polygon| fan(polygon.len()).next().is_some()).for_each(|polygon| welder.add(polygon));
     welder.mesh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use model::ModelSettings;
+    use survey::{Progress, VerticalUnit};
+    use synth::closed_form::ClosedForm;
+
+    /// A bed that dips along x meets a level erosion surface in a line along y.
+    #[test]
+    fn a_bed_that_is_cut_off_has_a_line_on_the_ground() {
+        let geometry = SurveyGeometry::regular([31, 21, 41], 10.0, 10.0, VerticalUnit::Metres);
+        let closed = ClosedForm::unconformity(&geometry, 12.0, &[12.0], 20.0, 0.0);
+        let (strata, settings, quiet) = (&closed.stratigraphy, ModelSettings::default(), Progress::silent());
+        let model = StructuralModel::build(&geometry, strata, &closed.horizons, &[], &settings, &quiet).unwrap();
+        let scene = Scene { ground: Some(GroundStyle::default()), ..Scene::default() };
+        let heights = Heights::of((&GroundStyle::default(), &scene), &geometry, &model, 256);
+        let parts = heights.on(&model).parts(&[]);
+        let contacts: Vec<[DVec3; 2]> = parts.iter().flat_map(|part| part.contacts.clone()).collect();
+        let length: f64 = contacts.iter().map(|[a, b]| a.distance(*b)).sum();
+        assert!((length - 20.0).abs() < 0.5, "{length}");
+        let first = contacts[0][0].x;
+        assert!(contacts.iter().flatten().all(|p| (p.x - first).abs() < 0.1 && (p.z - 12.0).abs() < 0.1));
+    }
 }

@@ -299,7 +299,9 @@ impl Maker<'_> {
         let mut made = Vec::new();
         for ((name, wanted), part) in parts.collect::<Vec<_>>() {
             let cover = self.cover(&wanted, scene, ground, 1.0)?;
-            let lines = part.lines.into_iter().map(|ends| (LineKind::Fault, ends)).collect();
+            let contact = LineKind::Horizon { is_picked: true };
+            let faults = part.lines.into_iter().map(|ends| (LineKind::Fault, ends));
+            let lines = faults.chain(part.contacts.into_iter().map(|ends| (contact, ends))).collect();
             let face = Face { cover, name: name.to_owned(), mesh: part.mesh };
             let faces = Some(face).filter(|face| !face.mesh.triangles.is_empty()).into_iter().collect();
             made.push((part.cuts, Block { faces, lines }));

@@ -120,7 +120,9 @@ pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
         for horizon in 1..usize::from(air_layer(interpretation.model)) {
             let offset = |node| f64::from(interpretation.model.offset(horizon, block, map.node(node).as_vec3()));
             let segments = resolved.shapes.traces(key(faults + horizon), || map.zero_lines(offset));
-            let lines_of = seen(resolved, interpretation, &segments, |p| at_contact(interpretation, horizon, block, p));
+            let lines_of = seen(resolved, interpretation, &segments, |p| {
+                interpretation.model.crops_out_at(horizon, p.as_vec3(), block).then_some(p)
+            });
             lines.contacts.extend(without_specks(lines_of, shortest).into_iter().map(|line| (horizon, line)));
         }
         let facing = |[x, y]: [usize; 2]| {
@@ -185,17 +187,6 @@ fn beside_fault(interpretation: ResolvedInterpretation, fault: usize, block: u16
     };
     let q = p + inwards * INTO_BLOCK;
     Some(q.with_z(interpretation.model.horizon_z(0, block, q.x as f32, q.y as f32).into()))
-}
-
-/// A place on the ground of a block where a horizon comes to the surface; `None` where both of its sides are the same
-/// layer, because something else has cut it off.
-fn at_contact(interpretation: ResolvedInterpretation, horizon: usize, block: u16, p: DVec3) -> Option<DVec3> {
-    let (model, p32) = (interpretation.model, p.as_vec3());
-    // The place is rock, just below the ground.
-    let below = model.below_at(p32, block) | 1;
-    let layer = |below: u64| model.rules().layer(below);
-    let divides = layer(below | 1 << horizon) != layer(below & !(1 << horizon));
-    (divides && model.block_at(p32) == block).then_some(p)
 }
 
 /// The parts of segments that lie on ground that is drawn, with nothing in front. `ground` returns the point
