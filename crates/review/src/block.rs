@@ -17,6 +17,9 @@ const EDGE_PIECES: usize = 256;
 const STRAIGHT: f64 = 0.02;
 /// How far above the ground a line still lies on it, voxels.
 const ON_GROUND: f64 = 0.05;
+/// Steps in which a line is asked where it leaves the rock, voxels, and halvings that find the place.
+const RUN_STEP: f64 = 0.5;
+const HALVINGS: usize = 8;
 
 /// A face whose picture is still to be made.
 pub(crate) struct Wanted {
@@ -168,12 +171,40 @@ fn add_lines(block: &mut Block, model: &StructuralModel, face: &RockFace, ground
     let normal = face.plane.normal.as_dvec3();
     for (kind, ends) in lines_on(model, &face.rectangle) {
         for part in face.cells.iter().filter_map(|cell| within(ends, cell, normal)) {
-            let middle = (part[0] + part[1]) * 0.5;
-            if ground.is_none_or(|ground| ground.is_rock(middle + DVec3::Z * ON_GROUND)) {
-                block.lines.push((kind, part));
+            match ground {
+                None => block.lines.push((kind, part)),
+                Some(ground) => {
+                    let runs = runs(part, |p| ground.is_rock(p + DVec3::Z * ON_GROUND));
+                    block.lines.extend(runs.into_iter().map(|run| (kind, run)));
+                }
             }
         }
     }
+}
+
+/// The runs of a straight line on which something holds, found at steps of [`RUN_STEP`] and then by halving.
+fn runs([from, to]: [DVec3; 2], holds: impl Fn(DVec3) -> bool) -> Vec<[DVec3; 2]> {
+    let steps = ((to - from).length() / RUN_STEP).ceil().max(1.0) as usize;
+    let at = |n: usize| from.lerp(to, n as f64 / steps as f64);
+    let held: Vec<bool> = (0..=steps).map(|n| holds(at(n))).collect();
+    let end = |mut inside: DVec3, mut outside: DVec3| {
+        for _ in 0..HALVINGS {
+            let middle = (inside + outside) * 0.5;
+            if holds(middle) { inside = middle } else { outside = middle }
+        }
+        inside
+    };
+    let mut runs = Vec::new();
+    let mut start = held[0].then_some(from);
+    for n in 1..=steps {
+        match (held[n - 1], held[n]) {
+            (false, true) => start = Some(end(at(n), at(n - 1))),
+            (true, false) => runs.extend(start.take().map(|start| [start, end(at(n - 1), at(n))])),
+            _ => {}
+        }
+    }
+    runs.extend(start.map(|start| [start, to]));
+    runs
 }
 
 /// The horizons and faults on a rectangle.
@@ -206,4 +237,21 @@ fn straightened(points: &[DVec2]) -> Vec<DVec2> {
     }
     kept.extend(points.last().filter(|_| points.len() > 1));
     kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_has_the_runs_that_lie_in_rock() {
+        let whole = [DVec3::ZERO, DVec3::X * 10.0];
+        let found = runs(whole, |p| (2.3..4.1).contains(&p.x) || p.x > 7.7);
+        let ends: Vec<f64> = found.iter().flatten().map(|p| p.x).collect();
+        let expected = [2.3, 4.1, 7.7, 10.0];
+        assert_eq!(ends.len(), 4, "{ends:?}");
+        assert!(ends.iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.01), "{ends:?}");
+        assert_eq!(runs(whole, |_| true), [whole]);
+        assert!(runs(whole, |_| false).is_empty());
+    }
 }
