@@ -266,6 +266,11 @@ impl StructuralModel {
         self.stratigraphy.top_of(usize::from(self.layer_at(p, block))).filter(|top| self.is_body(*top))
     }
 
+    /// Whether a voxel position of `block` lies in a body that cuts everything, erosion surfaces and faults too.
+    pub fn is_pierced_at(&self, p: Vec3, block: u16) -> bool {
+        self.body_at(p, block).is_some_and(|horizon| self.rules.contacts()[horizon] == Contact::Intrusive)
+    }
+
     /// Whether the layers on the two sides of a horizon differ at a place of `block` where it comes to the surface of the
     /// youngest horizon: they do not where something else has cut it off.
     pub fn crops_out_at(&self, horizon: usize, p: Vec3, block: u16) -> bool {

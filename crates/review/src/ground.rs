@@ -94,6 +94,13 @@ pub(crate) struct GroundPart {
     pub contacts: Vec<[DVec3; 2]>,
 }
 
+/// A part of the ground while it is put together: triangles, lines of faults and of contacts.
+#[derive(Default)]
+struct Gathered {
+    welder: Welder,
+    lines: [Vec<[DVec3; 2]>; 2],
+}
+
 impl Heights {
     /// The heights of a scene, with at most so many cells along an axis.
     pub fn of(
@@ -348,25 +355,22 @@ impl Ground<'_> {
             lines.retain(|ends| self.is_fault(*ends));
             (left, lines, self.contacts([n / many[1], n % many[1]]))
         });
-        let mut parts: BTreeMap<(u32, Option<usize>), (Welder, [Vec<_>; 2])> = BTreeMap::new();
+        let mut parts: BTreeMap<(u32, Option<usize>), Gathered> = BTreeMap::new();
         for (pieces, lines, contacts) in made.collect::<Vec<_>>() {
             for (mask, fault, piece) in pieces {
-                parts.entry((mask, fault)).or_default().0.add(&piece);
+                parts.entry((mask, fault)).or_default().welder.add(&piece);
             }
             let lines = lines.into_iter().map(|ends| (0, ends));
             for (kind, ends) in lines.chain(contacts.into_iter().map(|ends| (1, ends))) {
                 let middle = ((ends[0] + ends[1]) * 0.5).as_vec3();
                 let holds = |bodies: &Vec<Body>| bodies.iter().any(|body| body.holds(middle));
                 let mask = cuts.iter().enumerate().map(|(n, cut)| u32::from(holds(cut)) << n).sum();
-                parts.entry((mask, None)).or_default().1[kind].push(ends);
+                parts.entry((mask, None)).or_default().lines[kind].push(ends);
             }
         }
-        let part = |((cuts, fault), (welder, [lines, contacts])): (_, (Welder, [Vec<_>; 2]))| GroundPart {
-            cuts,
-            fault,
-            mesh: welder.mesh,
-            lines,
-            contacts,
+        let part = |((cuts, fault), gathered): (_, Gathered)| {
+            let [lines, contacts] = gathered.lines;
+            GroundPart { cuts, fault, mesh: gathered.welder.mesh, lines, contacts }
         };
         parts.into_iter().map(part).collect()
     }
@@ -431,7 +435,10 @@ impl Ground<'_> {
     fn is_fault(&self, [a, b]: [DVec3; 2]) -> bool {
         let middle = (a + b) * 0.5;
         let is_real = |fault: usize| self.model.faults().is_real(fault, middle.as_vec3());
-        a.distance_squared(b) > 1e-12 && a.z.max(b.z) <= self.high.z && self.fault_at(middle).is_some_and(is_real)
+        let inside = (middle + DVec3::Z * f64::from(ABOVE)).as_vec3();
+        let is_pierced = self.model.is_pierced_at(inside, self.model.block_at(inside));
+        let is_line = a.distance_squared(b) > 1e-12 && a.z.max(b.z) <= self.high.z && !is_pierced;
+        is_line && self.fault_at(middle).is_some_and(is_real)
     }
 
     /// The pieces of a convex polygon on a plane with this normal that are rock, and the lines where the ground cuts it.

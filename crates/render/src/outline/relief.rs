@@ -174,8 +174,7 @@ fn first_of(group: &mut [usize], mut index: usize) -> usize {
 /// not end that ground.
 fn beside_fault(interpretation: ResolvedInterpretation, fault: usize, block: u16, p: DVec3) -> Option<DVec3> {
     let faults = interpretation.model.faults();
-    // A body has no faults inside.
-    if !faults.is_real(fault, p.as_vec3()) || interpretation.model.body_at(p.as_vec3(), block).is_some() {
+    if !faults.is_real(fault, p.as_vec3()) || interpretation.model.is_pierced_at(p.as_vec3(), block) {
         return None;
     }
     let normal = faults.surfaces()[fault].frame_from_voxel.row(2).normalize();
