@@ -5,7 +5,7 @@
 //! distance that the codes can hold; that to a surface of any shape is told by its field alike. Where there are candidates already, a horizon replaces them within two voxels and
 //! wherever it is nearer. Voxel space.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use model::{LevelSurface, StructuralModel};
 use rayon::prelude::*;
 use survey::candidates::{BEYOND, CandidateBox};
@@ -44,7 +44,7 @@ pub fn add_horizons(
     progress.begin("distances to horizons", nx as u64);
     let row = (ny * nz).max(1);
     let planes = into.distance.par_chunks_mut(row).zip(into.leaf.par_chunks_mut(row));
-    let adding = Adding { model, which, first_id, farthest };
+    let adding = Adding { model, which, first_id, farthest, depth: nz };
     planes.enumerate().try_for_each(|(x, (distance, leaf))| {
         for y in 0..ny {
             let trace = y * nz..(y + 1) * nz;
@@ -59,50 +59,49 @@ struct Adding<'a> {
     which: &'a [usize],
     first_id: u32,
     farthest: f32,
+    /// Voxels along a trace.
+    depth: usize,
 }
 
 impl Adding<'_> {
-    /// One trace: the sheets of each block, in the part of the trace that lies in the block.
+    /// One trace: the surfaces of each block, in the part of the trace that lies in the block.
     fn fill(&self, [x, y]: [usize; 2], distance: &mut [u8], leaf: &mut [u32]) {
-        let (fx, fy) = (x as f32, y as f32);
         let own = (OWN * STEPS / self.farthest).round() as u8;
         for block in 0..self.model.block_count() as u16 {
             for &h in self.which {
-                if let Some(level) = self.model.level(h, block) {
-                    for n in 0..distance.len() {
-                        let p = Vec3::new(fx, fy, n as f32);
-                        let Some(off) = self.off(level, p, block) else { continue };
-                        let code = (off * (STEPS / self.farthest)).round() as u8;
-                        let wins = code < distance[n] || leaf[n] < self.first_id && code <= own;
-                        if wins && self.model.block_at(p) == block {
-                            distance[n] = code;
-                            leaf[n] = self.first_id + h as u32;
+                let id = self.first_id + h as u32;
+                let mut add = |n: usize, off: f32| {
+                    let code = (off * (STEPS / self.farthest)).round() as u8;
+                    let wins = code < distance[n] || leaf[n] < self.first_id && code <= own;
+                    if wins && self.model.block_at(Vec3::new(x as f32, y as f32, n as f32)) == block {
+                        (distance[n], leaf[n]) = (code, id);
+                    }
+                };
+                match self.model.level(h, block) {
+                    Some(level) => {
+                        for n in 0..self.depth {
+                            let off = self.off(level, Vec3::new(x as f32, y as f32, n as f32), block);
+                            off.into_iter().for_each(|off| add(n, off));
                         }
                     }
-                    continue;
-                }
-                let slope = self.model.sheet(h, block).sample(fx, fy).gradient.length();
-                let z = self.model.horizon_z(h, block, fx, fy);
-                let share = 1.0 / (1.0 + slope * slope).sqrt();
-                let reach = self.farthest / share;
-                if self.model.body_at(Vec3::new(fx, fy, z), block).is_some() {
-                    continue;
-                }
-                let first = (z - reach).ceil().max(0.0) as usize;
-                let last = (z + reach).floor().min(distance.len() as f32 - 1.0);
-                if last < 0.0 {
-                    continue;
-                }
-                for n in first..=last as usize {
-                    let code = ((n as f32 - z).abs() * share * (STEPS / self.farthest)).round() as u8;
-                    let wins = code < distance[n] || leaf[n] < self.first_id && code <= own;
-                    if wins && self.model.block_at(Vec3::new(fx, fy, n as f32)) == block {
-                        distance[n] = code;
-                        leaf[n] = self.first_id + h as u32;
-                    }
+                    None => self.offs_of_sheet(h, block, Vec2::new(x as f32, y as f32), add),
                 }
             }
         }
+    }
+
+    /// The distances from the sheet of a horizon along a trace, up to the farthest, where no body has replaced it.
+    fn offs_of_sheet(&self, h: usize, block: u16, at: Vec2, mut found: impl FnMut(usize, f32)) {
+        let slope = self.model.sheet(h, block).sample(at.x, at.y).gradient.length();
+        let z = self.model.horizon_z(h, block, at.x, at.y);
+        let share = 1.0 / (1.0 + slope * slope).sqrt();
+        let reach = self.farthest / share;
+        let last = (z + reach).floor().min(self.depth as f32 - 1.0);
+        if last < 0.0 || self.model.body_at(at.extend(z), block).is_some() {
+            return;
+        }
+        let first = (z - reach).ceil().max(0.0) as usize;
+        (first..=last as usize).for_each(|n| found(n, (n as f32 - z).abs() * share));
     }
 
     /// The distance of a place from a surface of any shape where that bounds a layer, voxels; `None` beyond the farthest.

@@ -39,11 +39,16 @@ impl CutLattice {
     pub fn nodes_around(size: [usize; 3], metric: DMat3, nodes: f64, coarseness: f64) -> NodeBox {
         let low = Vec3::splat(-MARGIN);
         let high = Vec3::from_array(size.map(|n| n as f32 - 1.0)) + MARGIN;
+        Self::nodes_between(low, high, metric, nodes, coarseness, 1.0)
+    }
+
+    /// The same between two corners, voxels, at a spacing of at least `finest` voxels times `coarseness`.
+    pub fn nodes_between(low: Vec3, high: Vec3, metric: DMat3, nodes: f64, coarseness: f64, finest: f64) -> NodeBox {
         let lengths = [0, 1, 2].map(|axis| metric.col(axis).length());
         let extent = (high - low).as_dvec3();
         let volume_m = (0..3).map(|axis| extent[axis] * lengths[axis]).product::<f64>();
         let spacing_m = (volume_m / nodes).cbrt() * coarseness;
-        let step = Vec3::from_array(lengths.map(|length| (spacing_m / length).max(coarseness) as f32));
+        let step = Vec3::from_array(lengths.map(|length| (spacing_m / length).max(coarseness * finest) as f32));
         NodeBox::covering(low, high, step)
     }
 

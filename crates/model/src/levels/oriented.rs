@@ -28,6 +28,8 @@ use survey::{LevelField, TriangleMesh};
 /// Nodes of the finest lattice, and coarser ones before it, each of twice the spacing of the next.
 const NODES: f64 = 60_000.0;
 const COARSER: u32 = 2;
+/// Smallest spacing of the nodes, voxels: a body may be smaller than a few of them.
+const FINEST: f64 = 0.1;
 /// How much a point and its normal count beside a second difference.
 const POINT_WEIGHT: f64 = 25.0;
 const NORMAL_WEIGHT: f64 = 8.0;
@@ -194,11 +196,7 @@ impl Fit<'_> {
         let last = Vec3::from_array(self.size.map(|n| n as f32 - 1.0)) + MARGIN;
         let low = (low - around).clamp(Vec3::splat(-MARGIN), last - 1.0);
         let high = (high + around).min(last).max(low + 1.0);
-        let lengths = [0, 1, 2].map(|axis| self.metric.col(axis).length());
-        let extent = (high - low).as_dvec3();
-        let volume_m = (0..3).map(|axis| extent[axis] * lengths[axis]).product::<f64>();
-        let spacing_m = (volume_m / NODES).cbrt() * coarseness;
-        NodeBox::covering(low, high, Vec3::from_array(lengths.map(|length| (spacing_m / length) as f32)))
+        CutLattice::nodes_between(low, high, self.metric, NODES, coarseness, FINEST)
     }
 }
 
