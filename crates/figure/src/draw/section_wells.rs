@@ -9,14 +9,40 @@ use glam::{DVec2, DVec3};
 use survey::{SurveyGeometry, Well};
 use ttf::Colour;
 
-/// Parts of a path within so many lines of a section are drawn on it, as in the window.
+/// Parts of a path within so many lines of a section are drawn on it; a slice has a sign where it is passed through.
 const NEAR: f64 = 6.0;
+const THROUGH: f64 = 1.0;
 /// Parts that a straight piece of a path is divided into.
 const PARTS: u32 = 8;
 /// Half the length of the mark of a top, and from there to its name, points.
 const TOP_PT: [f64; 2] = [2.6, 1.6];
 /// Radius of the place where a well passes through a slice, points.
 const SIGN_PT: f64 = 1.8;
+
+/// Where a voxel position is drawn on a section, (s, t), if it lies near it.
+pub fn near(voxel: DVec3, kind: SectionKind, at: f64) -> Option<DVec2> {
+    let reach = if kind == SectionKind::Slice { THROUGH } else { NEAR };
+    ((voxel[kind.axis()] - at).abs() <= reach).then(|| kind.flat(voxel))
+}
+
+/// Consecutive points without gaps.
+///
+/// ```
+/// use figure::draw::section_wells::runs;
+/// assert_eq!(runs([Some(1), Some(2), None, None, Some(3)].into_iter()), [vec![1, 2], vec![3]]);
+/// assert!(runs([None::<i32>].into_iter()).is_empty());
+/// ```
+pub fn runs<P>(points: impl Iterator<Item = Option<P>>) -> Vec<Vec<P>> {
+    let mut runs = vec![Vec::new()];
+    for point in points {
+        match (point, runs.last_mut()) {
+            (Some(point), Some(run)) => run.push(point),
+            _ => runs.push(Vec::new()),
+        }
+    }
+    runs.retain(|run| !run.is_empty());
+    runs
+}
 
 /// What of a well lies near a section, (s, t).
 #[derive(Debug, Clone, PartialEq)]
@@ -32,22 +58,13 @@ pub struct WellOnSection {
 impl WellOnSection {
     /// What lies near a section along the lattice; `None` where nothing does.
     pub fn of(well: &Well, geometry: &SurveyGeometry, kind: SectionKind, at: f64) -> Option<Self> {
-        let reach = if kind == SectionKind::Slice { 1.0 } else { NEAR };
-        let near = |voxel: DVec3| ((voxel[kind.axis()] - at).abs() <= reach).then(|| kind.flat(voxel));
+        let near = |voxel: DVec3| near(voxel, kind, at);
         let path = well.path_in_voxels(geometry);
         let pieces = path.windows(2).flat_map(|pair| {
             let last = pair[1];
             (0..PARTS).map(move |n| pair[0].lerp(last, f64::from(n) / f64::from(PARTS)))
         });
-        let mut parts: Vec<Vec<DVec2>> = vec![Vec::new()];
-        for place in pieces.chain(path.last().copied()).map(near) {
-            match (place, parts.last_mut()) {
-                (Some(st), Some(part)) => part.push(st),
-                (None, Some(part)) if !part.is_empty() => parts.push(Vec::new()),
-                _ => {}
-            }
-        }
-        parts.retain(|part| !part.is_empty());
+        let parts = runs(pieces.chain(path.last().copied()).map(near));
         let tops = well.tops.iter().filter(|_| kind != SectionKind::Slice);
         let tops = tops.filter_map(|top| Some((top.name.clone(), near(well.voxel_at_md(top.md_m, geometry)?)?)));
         let tops = tops.collect();

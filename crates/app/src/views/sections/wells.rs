@@ -2,11 +2,10 @@
 
 use crate::state::{SectionKind, Session};
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, vec2};
+use figure::draw::section_wells::{self, runs};
 use glam::{DVec2, DVec3};
 use pictures::load::{LoadedLog, LoadedWell};
 
-/// Parts of a path within so many lines of a section are drawn on it.
-const NEAR: f64 = 6.0;
 /// Width of a log beside its path, points.
 const LOG: f32 = 34.0;
 /// Half the length of the mark of a top, points.
@@ -30,8 +29,7 @@ pub(super) fn draw(
     page: impl Fn(DVec2) -> Pos2,
 ) {
     let at = session.view.slices[kind.axis()];
-    let reach = if kind == SectionKind::Slice { 1.0 } else { NEAR };
-    let near = |voxel: DVec3| ((voxel[kind.axis()] - at).abs() <= reach).then(|| page(kind.flat(voxel)));
+    let near = |voxel: DVec3| section_wells::near(voxel, kind, at).map(&page);
     for well in wells.iter().filter(|well| !session.view.scene.hides_well(&well.name)) {
         let parts = runs(well.path.iter().map(|voxel| near(*voxel)));
         let Some(head) = parts.iter().flatten().copied().next() else { continue };
@@ -77,31 +75,4 @@ fn words(painter: &Painter, at: Pos2, align: Align2, words: &str, ink: Color32) 
     let rect = align.anchor_size(at, galley.size());
     painter.rect_filled(rect.expand(1.0), 2.0, RIM);
     painter.galley(rect.min, galley, ink);
-}
-
-/// Consecutive points without gaps.
-fn runs(points: impl Iterator<Item = Option<Pos2>>) -> Vec<Vec<Pos2>> {
-    let mut runs = vec![Vec::new()];
-    for point in points {
-        match (point, runs.last_mut()) {
-            (Some(point), Some(run)) => run.push(point),
-            _ => runs.push(Vec::new()),
-        }
-    }
-    runs.retain(|run| !run.is_empty());
-    runs
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use eframe::egui::pos2;
-
-    #[test]
-    fn a_path_that_leaves_the_section_is_drawn_in_parts() {
-        let at = |x: f32| Some(pos2(x, 0.0));
-        let found = runs([at(1.0), at(2.0), None, None, at(3.0)].into_iter());
-        assert_eq!(found, [vec![pos2(1.0, 0.0), pos2(2.0, 0.0)], vec![pos2(3.0, 0.0)]]);
-        assert!(runs([None].into_iter()).is_empty());
-    }
 }
