@@ -7,12 +7,22 @@
 //! blocks, decides.
 
 use crate::error::ProjectError;
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 use survey::{Horizon, NodeGrid, SurveyGeometry};
 
 /// Share of the common traces that may seem to cross.
 const TOLERATED_SHARE: f64 = 0.02;
 /// Depth by which the horizons must cross at a trace for the trace to count, samples.
 const TOLERANCE_SAMPLES: f32 = 1.0;
+/// Points through which a plane is laid.
+const NEAREST: usize = 6;
+/// Most points that are compared with planes.
+const MOST_POINTS: usize = 4096;
+/// Least cosine of a plane's dip at which it counts: flat beds are overturned less often than steep ones.
+const FLAT_ENOUGH: f64 = 0.7;
+/// Determinant of the points' spread over the square of its trace below which they lie in a row.
+const IN_A_ROW: f64 = 1e-3;
 /// Largest number of traces that are compared along each axis.
 const TRACES_ENOUGH: usize = 256;
 
@@ -37,11 +47,63 @@ pub(crate) fn is_above(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> b
     if common > 0 { difference < 0.0 } else { mean(a) < mean(b) }
 }
 
+/// Whether scattered points of `a` lie above those of `b`, told where beds are flat enough to be the right way up more often
+/// than not: the median distance of points from planes through the nearest points of the other horizon. None where too few
+/// lie so, or there are so many that their topmost places tell.
+fn is_above_planes(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> Option<bool> {
+    let metric = geometry.metric_from_voxel();
+    let places = |horizon: &Horizon| -> Option<Vec<DVec3>> {
+        let surface = horizon.surface.as_ref()?;
+        let is_few = surface.triangles.is_empty() && (NEAREST..MOST_POINTS).contains(&surface.vertices.len());
+        let place = |world: &DVec3| metric * geometry.voxel_from_world(*world);
+        is_few.then(|| surface.vertices.iter().map(place).collect())
+    };
+    let (a, b) = (places(a)?, places(b)?);
+    let over = |places: &[DVec3], others: &[DVec3]| -> Vec<f64> {
+        places.par_iter().filter_map(|p| below_plane(*p, others)).collect()
+    };
+    let mut below = over(&a, &b);
+    below.extend(over(&b, &a).into_iter().map(|distance| -distance));
+    below.sort_by(f64::total_cmp);
+    (below.len() >= NEAREST).then(|| below[below.len() / 2] < 0.0)
+}
+
+/// How far a place lies below the plane through the nearest points, along its normal; none where that plane is steep, or the
+/// points lie in a row.
+fn below_plane(place: DVec3, points: &[DVec3]) -> Option<f64> {
+    let mut nearest: Vec<DVec3> = points.to_vec();
+    nearest.select_nth_unstable_by(NEAREST - 1, |p, q| {
+        p.distance_squared(place).total_cmp(&q.distance_squared(place)).then(p.z.total_cmp(&q.z))
+    });
+    let nearest = &nearest[..NEAREST];
+    let centre = nearest.iter().sum::<DVec3>() / NEAREST as f64;
+    let [mut xx, mut xy, mut yy] = [0.0; 3];
+    let mut z = DVec2::ZERO;
+    for p in nearest.iter().map(|p| p - centre) {
+        xx += p.x * p.x;
+        xy += p.x * p.y;
+        yy += p.y * p.y;
+        z += p.truncate() * p.z;
+    }
+    let determinant = xx * yy - xy * xy;
+    if determinant < IN_A_ROW * (xx + yy) * (xx + yy) {
+        return None;
+    }
+    let slope = DVec2::new(z.x * yy - z.y * xy, z.y * xx - z.x * xy) / determinant;
+    let upright = (1.0 + slope.length_squared()).sqrt().recip();
+    let from = place - centre;
+    (upright >= FLAT_ENOUGH).then(|| (from.z - slope.dot(from.truncate())) * upright)
+}
+
 /// Cells along each side of the map in which topmost places are compared.
 const CELLS: usize = 8;
 
-/// Whether the topmost places of `a` lie above those of `b` at most places of the map.
+/// Whether `a` lies above `b` where beds are the right way up: by planes through scattered points, else by the topmost
+/// places of both on the map.
 pub(crate) fn is_topmost(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> bool {
+    if let Some(is_above) = is_above_planes(a, b, geometry) {
+        return is_above;
+    }
     let (tops_a, tops_b) = (tops(a, geometry), tops(b, geometry));
     let common = || tops_a.iter().zip(&tops_b).filter(|(a, b)| a.is_finite() && b.is_finite());
     let difference: f64 = common().map(|(a, b)| a - b).sum();
@@ -52,14 +114,16 @@ fn lowest(tops: &[f64]) -> f64 {
     tops.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// The topmost place in each cell of the map, voxel z.
+/// The topmost place in each cell of the map, voxel z: of the points that a horizon was given by, where it has any, for
+/// the map between them may join limbs of a fold.
 fn tops(horizon: &Horizon, geometry: &SurveyGeometry) -> Vec<f64> {
-    let corners = horizon.any_shape().into_iter().flat_map(|surface| surface.vertices.iter().copied());
-    let nodes = horizon.sheets.iter().flat_map(|sheet| {
+    let corners = horizon.surface.iter().flat_map(|surface| surface.vertices.iter().copied());
+    let sheets = if horizon.surface.is_some() { &[] } else { horizon.sheets.as_slice() };
+    let nodes = sheets.iter().flat_map(|sheet| {
         let nv = sheet.grid.count[1];
         let known = sheet.depth.iter().enumerate().filter(|(_, depth)| depth.is_finite());
         known.map(move |(n, depth)| {
-            sheet.grid.world_at(glam::DVec2::new((n / nv) as f64, (n % nv) as f64)).extend(f64::from(*depth))
+            sheet.grid.world_at(DVec2::new((n / nv) as f64, (n % nv) as f64)).extend(f64::from(*depth))
         })
     });
     let [nx, ny, _] = geometry.size();
@@ -98,7 +162,7 @@ pub(crate) fn check(younger: &Horizon, older: &Horizon, geometry: &SurveyGeometr
     if crossing as f64 <= TOLERATED_SHARE * common as f64 {
         return Ok(());
     }
-    let lines = geometry.lines_from_voxel(glam::DVec2::new(place[0] as f64, place[1] as f64));
+    let lines = geometry.lines_from_voxel(DVec2::new(place[0] as f64, place[1] as f64));
     Err(ProjectError::Crossing {
         younger: younger.name.clone(),
         older: older.name.clone(),
@@ -123,7 +187,7 @@ fn common_traces<'a>(
 }
 
 fn depths(horizon: &Horizon, grid: &NodeGrid, trace: [usize; 2]) -> Option<Depths> {
-    let world = grid.world_at(glam::DVec2::new(trace[0] as f64, trace[1] as f64));
+    let world = grid.world_at(DVec2::new(trace[0] as f64, trace[1] as f64));
     let values = horizon.sheets.iter().map(|sheet| sheet.depth_at_node(sheet.grid.node_at(world)));
     let (shallow, deep) = values
         .filter(|depth| depth.is_finite())
@@ -178,5 +242,27 @@ mod tests {
         let old: [fn(f32, f32) -> f32; 2] =
             [|x, _| if x < 14.0 { 130.0 } else { f32::NAN }, |x, _| if x >= 10.0 { 70.0 } else { f32::NAN }];
         check(&horizon("young", &young), &horizon("old", &old), &geometry()).unwrap();
+    }
+
+    /// Points scattered over two beds of a recumbent fold, by a low-discrepancy sequence in y and z.
+    #[test]
+    fn few_scattered_points_of_overturned_beds_are_ordered_by_age() {
+        let geometry = SurveyGeometry::regular([61, 51, 56], 10.0, 10.0, VerticalUnit::Metres);
+        let fold = synth::shapes::RecumbentFold::fitting(&geometry);
+        let bed = |age: f64, count: usize, shift: f64| {
+            let points = (0..4 * count).map(|n| {
+                let (y, z) = ((shift + n as f64 * 0.754_877).fract() * 500.0, (n as f64 * 0.569_84).fract() * 550.0);
+                DVec3::new(fold.x_of(age, z), y, z)
+            });
+            let vertices = points.filter(|p| (0.0..=600.0).contains(&p.x)).take(count).collect();
+            Horizon::of_surface("bed", survey::TriangleMesh { vertices, triangles: Vec::new() })
+        };
+        for shift in [0.0, 0.3, 0.6] {
+            for (young, old) in [(-200.0, -130.0), (-130.0, 60.0), (-200.0, 60.0), (-40.0, 10.0)] {
+                let (above, below) = (bed(young, 30, shift), bed(old, 24, 1.7 * shift));
+                assert!(is_above(&above, &below, &geometry), "{young} {old} {shift}");
+                assert!(!is_above(&below, &above, &geometry), "{young} {old} {shift}");
+            }
+        }
     }
 }
