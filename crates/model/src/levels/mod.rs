@@ -10,6 +10,7 @@ mod least_squares;
 mod oriented;
 mod series;
 mod shape;
+mod silhouette;
 mod tree;
 
 pub use cut::{CutLattice, Terms, resampled};

@@ -9,7 +9,8 @@ use super::NOMINAL_SIDE_PX;
 use super::hidden::{IN_FRONT, covered_by, seen_parts};
 use crate::ground::{air_layer, is_air};
 use crate::resolved::{ResolvedInterpretation, ResolvedScene};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, I64Vec2, Vec3};
+use model::LevelSurface;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -21,6 +22,8 @@ const INTO_BLOCK: f64 = 0.3;
 /// from its chord over one cell.
 const ACROSS: f64 = 0.12;
 
+/// How far outside a surface rays test its silhouette, voxels: one just inside meets the surface long before.
+const BESIDE_SURFACE: f64 = 0.25;
 /// Shortest crest that is drawn, in line widths.
 const SHORTEST_CREST: f64 = 24.0;
 /// Ends of lines closer than about this are joined, pixels; each cell computes them once.
@@ -130,13 +133,43 @@ pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
             let (dx, dy) = (map.node([x + 1, y]) - p, map.node([x, y + 1]) - p);
             dx.cross(dy).dot(resolved.view.towards_camera(p))
         };
-        let segments = map.zero_lines(facing);
+        let from_map = interpretation.model.level(0, block).is_none();
+        let segments = if from_map { map.zero_lines(facing) } else { Vec::new() };
         lines.crests.extend(seen(resolved, interpretation, &segments, |p| {
             (interpretation.model.block_at(p.as_vec3()) == block).then_some(p)
         }));
+        for level in
+            (0..usize::from(air_layer(interpretation.model))).filter_map(|n| interpretation.model.level(n, block))
+        {
+            lines.crests.extend(silhouette(resolved, interpretation, level, block));
+        }
     }
     lines.crests = without_specks(lines.crests, shortest);
     lines
+}
+
+/// Where a surface of any shape that stands out of the ground, or is the ground, hides what is behind it.
+fn silhouette(
+    resolved: &ResolvedScene,
+    interpretation: ResolvedInterpretation,
+    level: &LevelSurface,
+    block: u16,
+) -> Vec<Vec<DVec2>> {
+    let model = interpretation.model;
+    let [low, high] = resolved.solid.roaming_box;
+    let towards = |p: Vec3| resolved.view.towards_camera(p.as_dvec3()).as_vec3();
+    let is_seen = |p: DVec3| {
+        let inwards = level.inwards(p.as_vec3()).as_dvec3() * BESIDE_SURFACE;
+        let (outside, inside) = ((p - inwards).as_vec3(), (p + inwards).as_vec3());
+        p.clamp(low.as_dvec3(), high.as_dvec3()) == p
+            && !cut_away(resolved, p)
+            && model.block_at(outside) == block
+            && is_air(model, outside)
+            && !is_air(model, inside)
+            && covered_by(resolved, p - inwards) < IN_FRONT
+    };
+    let segments = level.silhouette(low, high, towards).into_par_iter().map(|ends| ends.map(|end| end.as_dvec3()));
+    segments.flat_map_iter(|segment| seen_parts(&resolved.view, &segment, is_seen)).collect()
 }
 
 /// Removes lines that are, together with all lines that meet them, shorter than `shortest` pixels. If the
@@ -144,13 +177,17 @@ pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
 fn without_specks(lines: Vec<Vec<DVec2>>, shortest: f64) -> Vec<Vec<DVec2>> {
     let length = |line: &Vec<DVec2>| line.windows(2).map(|ends| (ends[1] - ends[0]).length()).sum::<f64>();
     let mut group: Vec<usize> = (0..lines.len()).collect();
-    let mut ends: HashMap<[i64; 2], usize> = HashMap::new();
+    let mut ends: HashMap<I64Vec2, usize> = HashMap::new();
     for (index, line) in lines.iter().enumerate() {
         for end in [line.first(), line.last()].into_iter().flatten() {
-            let place = (*end / MEETING_PX).round().as_i64vec2().to_array();
-            let other = *ends.entry(place).or_insert(index);
-            let (one, other) = (first_of(&mut group, index), first_of(&mut group, other));
-            group[one.max(other)] = one.min(other);
+            let place = (*end / MEETING_PX).round().as_i64vec2();
+            for near in (0..9).map(|n| place + I64Vec2::new(n / 3 - 1, n % 3 - 1)) {
+                if let Some(&other) = ends.get(&near) {
+                    let (one, other) = (first_of(&mut group, index), first_of(&mut group, other));
+                    group[one.max(other)] = one.min(other);
+                }
+            }
+            ends.insert(place, index);
         }
     }
     let mut lengths = vec![0.0; lines.len()];

@@ -129,3 +129,34 @@ fn a_body_is_outlined_where_it_comes_to_the_surface() {
         assert_eq!(far, 0, "{contact:?}: of 64 places so many have no line");
     }
 }
+
+/// Where a body stands out of the ground, the line along which it turns away is drawn: rays through it touch the body.
+#[test]
+fn a_body_that_stands_out_of_the_ground_has_a_silhouette() {
+    let geometry = geometry();
+    let body = Diapir::fitting(&geometry);
+    let block = salt(Contact::Conformable, Contact::Intrusive);
+    let library = TextureLibrary::builtin().unwrap();
+    for elevation_deg in [30.0, 45.0] {
+        let camera = Camera { elevation_deg, azimuth_deg: Some(25.0), ..Camera::default() };
+        let scene = Scene { size_px: [400, 400], ground: Some(Ground::default()), camera, ..Scene::default() };
+        let view = scene.view(&geometry);
+        let traced = vectors(&scene, &block.inputs(&[]), &library, 0.05, &Progress::silent()).unwrap().unwrap();
+        let crests = traced.lines.iter().filter(|line| line.kind == VectorLineKind::Horizon(None));
+        let parts: Vec<&Vec<DVec2>> = crests.flat_map(|line| &line.parts).collect();
+        let length: f64 = parts.iter().flat_map(|part| part.windows(2)).map(|ends| ends[0].distance(ends[1])).sum();
+        assert!(length > 60.0, "from {elevation_deg} degrees: {length} px");
+        for at in parts.iter().flat_map(|part| part.iter()) {
+            let ray = view.ray(*at);
+            // How far the ray stays outside, or how deep it runs inside, m.
+            let outside = |n: u32| {
+                let voxel = ray.origin + ray.direction * (f64::from(n) * 0.05);
+                let metres = voxel * DVec3::new(25.0, 25.0, 20.0);
+                let is_above = metres.z < body.bulb_z;
+                is_above.then(|| metres.truncate().distance(body.axis) - body.radius(metres.z))
+            };
+            let nearest = (0..4000).filter_map(outside).fold(f64::INFINITY, f64::min);
+            assert!(nearest.abs() < 12.5, "from {elevation_deg} degrees, {at}: {nearest} m");
+        }
+    }
+}
