@@ -213,7 +213,7 @@ fn prepared(request: &AnimateRequest, project: &Project, progress: &Progress) ->
         let scale = f64::from(USUAL_SIDE.min(largest)) / f64::from(largest);
         start.size_px = start.size_px.map(|side| ((f64::from(side) * scale).round() as u32).max(1));
     }
-    request.view.change(&mut start, project.document().frame()?);
+    request.view.change(&mut start, project.document().frame()?)?;
     let [width, height] = start.size_px;
     if width.max(height) > LARGEST_SIDE {
         anyhow::bail!(

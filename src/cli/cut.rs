@@ -7,6 +7,7 @@ use pictures::load;
 use project::Project;
 use render::{Corner, CutShape, Scene, Side, VoxelBox};
 use survey::SurveyGeometry;
+use survey::block::Leaves;
 
 /// A box in line numbers and vertical values: two inlines, two crosslines, two values.
 pub(super) type LineBox = [f64; 6];
@@ -130,9 +131,12 @@ pub(super) fn find_wells(cuts: &mut [Cut], project: &Project) -> anyhow::Result<
 }
 
 /// Replaces the cut-outs of a scene, if any were typed.
-pub(super) fn change(cuts: &[Cut], scene: &mut Scene, geometry: &SurveyGeometry) {
+///
+/// # Errors
+/// A cut that lies beside the block, or takes all of it.
+pub(super) fn change(cuts: &[Cut], scene: &mut Scene, geometry: &SurveyGeometry) -> anyhow::Result<()> {
     if cuts.is_empty() {
-        return;
+        return Ok(());
     }
     let block = scene.box_in(geometry);
     let view = scene.view(geometry);
@@ -169,6 +173,32 @@ pub(super) fn change(cuts: &[Cut], scene: &mut Scene, geometry: &SurveyGeometry)
             }
         }
     }
+    // What is wrong with a shape by itself is said when the scene is drawn.
+    for shape in scene.cut_shapes.iter().filter(|shape| shape.validate(&block).is_ok()) {
+        let what = match shape.leaves(&block) {
+            Leaves::Part => continue,
+            Leaves::Everything => "lies beside the block, so it would cut nothing",
+            Leaves::Nothing => "holds the whole block, so nothing of it would be left",
+        };
+        let option = match shape {
+            CutShape::Plane { .. } => "--cut-plane",
+            CutShape::Outline { .. } => "--cut-round",
+            CutShape::Fence { .. } => "--cut-fence",
+        };
+        let [low, high] = [block.low(), block.high()].map(|p| (geometry.lines_from_voxel(p.truncate()), p.z));
+        let vertical = [low, high].map(|(_, z)| geometry.vertical.value_at(z));
+        anyhow::bail!(
+            "what {option} states {what}: the block is inlines {} to {}, crosslines {} to {}, {} to {} {}",
+            low.0.x,
+            high.0.x,
+            low.0.y,
+            high.0.y,
+            vertical[0],
+            vertical[1],
+            geometry.vertical.unit.symbol()
+        );
+    }
+    Ok(())
 }
 
 /// The voxel box between two inlines, two crosslines and two vertical values, in any order. A coordinate within a

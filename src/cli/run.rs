@@ -128,7 +128,7 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
                 Some(file) => scene_file(&file)?,
                 None => scene::choose(project.document(), None)?,
             };
-            view.with_wells(&project)?.change(&mut scene, project.document().frame()?);
+            view.with_wells(&project)?.change(&mut scene, project.document().frame()?)?;
             change(project, &Command::AddScene(AddScene { name, scene }), &progress)?
         }
         Request::SetRaw { project, volume, map, range } => {

@@ -123,7 +123,10 @@ fn switch<T>(option: &str, text: Option<&str>, on: T, off: T) -> Result<Option<T
 
 impl ViewChanges {
     /// Applies the changes to `scene`. Cuts, if any are given, replace the scene's own.
-    pub(super) fn change(&self, scene: &mut Scene, geometry: &SurveyGeometry) {
+    ///
+    /// # Errors
+    /// A cut that lies beside the block, or takes all of it.
+    pub(super) fn change(&self, scene: &mut Scene, geometry: &SurveyGeometry) -> anyhow::Result<()> {
         scene.size_px = self.size_px.unwrap_or(scene.size_px);
         scene.blend = self.blend.unwrap_or(scene.blend);
         scene.lookup = self.lookup.unwrap_or(scene.lookup);
@@ -160,7 +163,7 @@ impl ViewChanges {
         scene.preset = self.preset.unwrap_or(scene.preset);
         scene.samples = self.samples.unwrap_or(scene.samples);
         scene.background = self.background.unwrap_or(scene.background);
-        cut::change(&self.cuts, scene, geometry);
+        cut::change(&self.cuts, scene, geometry)
     }
 
     /// The same with wells at the corners of fences found in a project.
@@ -200,7 +203,7 @@ mod tests {
     fn boxes_are_given_in_line_numbers_also_where_they_count_down() {
         let typed = ViewArgs { roaming_box: Some("130,110,1,11,8,40".into()), ..ViewArgs::default() };
         let mut scene = Scene::default();
-        ViewChanges::try_from(typed).unwrap().change(&mut scene, &geometry());
+        ViewChanges::try_from(typed).unwrap().change(&mut scene, &geometry()).unwrap();
         let block = scene.roaming_box.unwrap();
         assert_eq!((block.min, block.max), ([10.0, 0.0, 2.0], [30.0, 10.0, 10.0]));
     }
@@ -210,7 +213,7 @@ mod tests {
         let cut = |azimuth| {
             let typed = ViewArgs { cut: vec!["nearest,0.5,0.5".into()], azimuth: Some(azimuth), ..ViewArgs::default() };
             let mut scene = Scene::default();
-            ViewChanges::try_from(typed).unwrap().change(&mut scene, &geometry());
+            ViewChanges::try_from(typed).unwrap().change(&mut scene, &geometry()).unwrap();
             scene.cut_outs[0]
         };
         assert_ne!(cut(30.0), cut(210.0));
@@ -223,7 +226,7 @@ mod tests {
             let cut_fence = vec!["140,16".into(), "120,10".into(), "100,16".into()];
             let typed = ViewArgs { cut_fence, azimuth: Some(azimuth), ..ViewArgs::default() };
             let mut scene = Scene::default();
-            ViewChanges::try_from(typed).unwrap().change(&mut scene, &geometry());
+            ViewChanges::try_from(typed).unwrap().change(&mut scene, &geometry()).unwrap();
             let [render::CutShape::Fence { side, fence, .. }] = scene.cut_shapes.as_slice() else { panic!("a fence") };
             assert_eq!(fence[1], [20.0, 9.0]);
             assert!(scene.validate(&geometry()).is_ok());

@@ -65,4 +65,7 @@ fn a_scene_keeps_its_cuts_and_a_fence_leads_through_wells() {
     run_in(at, "render p.petro a.png --cut-fence well:A-1 well:C").failed(&["no well `C`", "A-1, B 2"]);
     run_in(at, "render p.petro a.png --cut-fence 101,501 130,530 130,510 105,525").failed(&["crosses itself"]);
     run_in(at, "render p.petro a.png --cut-round 140,510,100 --cut-depth 200,200").failed(&["depths"]);
+    // A cut beside the block is a mistake in a number, and is said to be one.
+    run_in(at, "render p.petro a.png --cut-round 64,64,100").failed(&["--cut-round", "beside the block", "101 to 148"]);
+    run_in(at, "render p.petro a.png --cut-plane 125,520,5000,200,40").failed(&["--cut-plane", "nothing of it"]);
 }

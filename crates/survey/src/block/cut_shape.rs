@@ -113,6 +113,17 @@ struct Outline {
     depth: Option<[f64; 2]>,
 }
 
+/// What a cut leaves of a block.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Leaves {
+    /// It lies beside the block.
+    Everything,
+    /// It runs through the block.
+    Part,
+    /// The block lies in it as a whole.
+    Nothing,
+}
+
 impl CutShape {
     /// A round shaft around a voxel x and y, between two z or over the whole height.
     pub fn round(centre: DVec2, radius_m: f64, depth: Option<[f64; 2]>, geometry: &SurveyGeometry) -> Self {
@@ -187,6 +198,18 @@ impl CutShape {
             return refused("its line crosses itself, or would when its ends go on straight; move its points".into());
         }
         Ok(())
+    }
+
+    /// What the shape leaves of a block. A shape that [`CutShape::validate`] refuses cuts nothing.
+    pub fn leaves(&self, block: &VoxelBox) -> Leaves {
+        let bodies = self.bodies(block, [1.0; 2], 0).unwrap_or_default();
+        let runs_through =
+            |body: &Body| (0..body.planes.len()).any(|n| !body.face(n, [block.low(), block.high()]).is_empty());
+        match bodies {
+            bodies if bodies.iter().any(runs_through) => Leaves::Part,
+            bodies if bodies.iter().any(|body| body.holds(block.centre().as_vec3())) => Leaves::Nothing,
+            _ => Leaves::Everything,
+        }
     }
 
     /// The convex bodies of the shape; `None` if its line crosses itself. `voxel_m`: metres between voxels along x and
@@ -365,6 +388,33 @@ mod tests {
     fn places() -> impl Iterator<Item = DVec3> {
         let part = |n: usize, k: f64| (n as f64 * k).fract();
         (0..4000).map(move |n| DVec3::new(part(n, 0.618_034), part(n, 0.414_214), part(n, 0.732_051)) * BLOCK.extent())
+    }
+
+    #[test]
+    fn a_shape_beside_the_block_leaves_everything_and_one_around_it_nothing() {
+        let plane = |z: f64, up: f64| CutShape::Plane { through: [20.0, 15.0, z], normal: [0.0, 0.0, up] };
+        let square = |low: f64, high: f64| CutShape::Outline {
+            outline: vec![[low, low], [high, low], [high, high], [low, high]],
+            smooth: false,
+            depth: None,
+        };
+        let left = |shape: &CutShape| (shape.leaves(&BLOCK), places().filter(|p| !cut(shape, *p)).count());
+        for (shape, expected) in [
+            (plane(7.0, -1.0), Leaves::Part),
+            (plane(-3.0, -1.0), Leaves::Everything),
+            (plane(23.0, -1.0), Leaves::Nothing),
+            (square(10.0, 20.0), Leaves::Part),
+            (square(-20.0, -10.0), Leaves::Everything),
+            (square(-10.0, 60.0), Leaves::Nothing),
+        ] {
+            let (leaves, places_left) = left(&shape);
+            let by_places = match places_left {
+                0 => Leaves::Nothing,
+                4000 => Leaves::Everything,
+                _ => Leaves::Part,
+            };
+            assert_eq!((leaves, by_places), (expected, expected), "{shape:?}");
+        }
     }
 
     #[test]

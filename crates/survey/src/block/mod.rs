@@ -6,5 +6,5 @@ mod polygon;
 pub mod voxel_box;
 
 pub use body::{Body, BodyPlane, Crossing, Ray, Wall, part_behind};
-pub use cut_shape::{CutShape, CutShapeError, MAX_BODIES, MAX_PLANES, Side};
+pub use cut_shape::{CutShape, CutShapeError, Leaves, MAX_BODIES, MAX_PLANES, Side};
 pub use voxel_box::{Corner, VoxelBox};
