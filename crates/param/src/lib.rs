@@ -37,7 +37,7 @@
 //! | pinch-out | k keeps its limit up to the edge; beyond it the layer does not exist, and its grid holds the values of neighbours or 0 |
 //! | open layer (one horizon) | k is parallel to its horizon; i, j are those of the closest point on it |
 //! | no horizon at all | k is the vertical fraction of the volume |
-//! | layer under an unconformity | the sheets are those before erosion; the model cuts them |
+//! | layer under an unconformity | the sheets are those before erosion; the model cuts them, and [`KDefinition::for_contacts`] keeps beds parallel to the base |
 //! | intrusion | [`KDefinition::for_contacts`] measures k from its outline |
 //! | crease (the closest point jumps) | k is continuous, its gradient is not; traces cross or follow the crease, and nodes are flagged |
 //!

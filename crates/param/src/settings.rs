@@ -2,7 +2,7 @@
 
 use crate::ParamError;
 use serde::{Deserialize, Serialize};
-use survey::Stratigraphy;
+use survey::{Contact, Stratigraphy};
 
 /// What k means inside a layer. With every definition k is 0 at the bottom sheet and increases upwards.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,10 +37,14 @@ pub enum KDefinition {
 impl KDefinition {
     /// The definitions that follow from the contact rules, index 0 = deepest layer. An intrusion cuts through
     /// the horizon below it, so its layer has no bottom and is measured from its outline
-    /// ([`KDefinition::ParallelToTop`]). Every other layer has the default.
+    /// ([`KDefinition::ParallelToTop`]). Beds below an erosion surface were laid down on the base of their layer and cut
+    /// off later; beds above a surface of onlap end against it. Every other layer has the default.
     pub fn for_contacts(stratigraphy: &Stratigraphy) -> Vec<Self> {
-        let layer = |layer: usize| match stratigraphy.top_of(layer) {
-            Some(top) if stratigraphy.horizons[top].contact.is_intrusive() => Self::ParallelToTop,
+        let contact = |horizon: Option<usize>| horizon.map(|horizon| stratigraphy.horizons[horizon].contact);
+        let layer = |layer: usize| match (contact(stratigraphy.top_of(layer)), contact(stratigraphy.bottom_of(layer))) {
+            (Some(top), _) if top.is_intrusive() => Self::ParallelToTop,
+            (Some(Contact::Erosional), Some(Contact::Conformable | Contact::Erosional)) => Self::ParallelToBottom,
+            (Some(Contact::Conformable), Some(Contact::Onlap)) => Self::ParallelToTop,
             _ => Self::default(),
         };
         (0..stratigraphy.layer_count()).map(layer).collect()
@@ -120,7 +124,7 @@ impl ParamSettings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use survey::{Contact, StratigraphicHorizon};
+    use survey::StratigraphicHorizon;
 
     #[test]
     fn an_intrusion_is_measured_from_its_outline() {
@@ -133,5 +137,23 @@ mod tests {
         let definitions = KDefinition::for_contacts(&Stratigraphy { horizons, layer_names: Vec::new() });
         use KDefinition::{Flow, ParallelToTop};
         assert_eq!(definitions, [Flow, ParallelToTop, Flow, Flow]);
+    }
+
+    #[test]
+    fn beds_are_cut_off_below_an_unconformity_and_end_on_a_surface_of_onlap() {
+        use Contact::{Conformable, Erosional, Intrusive, Onlap};
+        use KDefinition::{Flow, ParallelToBottom, ParallelToTop};
+        let of = |contacts: &[Contact]| {
+            let horizon = |contact: &Contact| StratigraphicHorizon { name: String::new(), contact: *contact };
+            let horizons = contacts.iter().map(horizon).collect();
+            KDefinition::for_contacts(&Stratigraphy { horizons, layer_names: Vec::new() })
+        };
+        // Youngest first; the layers are deepest first. The lowest layer has no base that its beds could follow.
+        assert_eq!(of(&[Conformable, Erosional, Conformable]), [Flow, ParallelToBottom, Flow, Flow]);
+        assert_eq!(of(&[Conformable, Onlap, Conformable]), [Flow, Flow, ParallelToTop, Flow]);
+        assert_eq!(of(&[Erosional]), [Flow, Flow]);
+        // Cut off above and ending below: neither horizon is followed.
+        assert_eq!(of(&[Erosional, Onlap]), [Flow, Flow, Flow]);
+        assert_eq!(of(&[Erosional, Intrusive, Conformable]), [Flow, ParallelToTop, Flow, Flow]);
     }
 }

@@ -58,7 +58,8 @@ pub(in crate::cli) struct LayerSetArgs {
     /// Opacity inside a cut-out, 0 to 1
     #[arg(long, value_name = "0..1")]
     pub(in crate::cli) opacity: Option<f32>,
-    /// How the pattern runs through the layer: flow (the smoothest way between its horizons, the default),
+    /// How the pattern runs through the layer: flow (the smoothest way between its horizons, the default but below an
+    /// erosion surface, where it is parallel-to-bottom, and above an onlap surface, where it is parallel-to-top),
     /// harmonic (the same by the letter of ∇²k = 0 in the top and bottom layer, too), distance (the ratio of
     /// distances to both, as published; follows every wiggle), proportional (the vertical fraction),
     /// parallel-to-bottom or parallel-to-top
