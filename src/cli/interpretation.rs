@@ -49,7 +49,8 @@ pub(super) fn bytes(option: &str, typed: Option<&str>) -> Result<Option<u64>, Us
 }
 
 pub(super) fn attribute(typed: AttributeArgs) -> Result<Request, Usage> {
-    let kinds = [AttributeKind::Semblance, AttributeKind::Envelope, AttributeKind::Dip].map(|kind| (kind.name(), kind));
+    let kinds = [AttributeKind::Semblance, AttributeKind::Envelope, AttributeKind::Dip, AttributeKind::Flattened]
+        .map(|kind| (kind.name(), kind));
     let mut dip = DipSettings::default();
     dip.max_dip = typed.max_dip.unwrap_or(dip.max_dip);
     let command = ComputeAttribute {

@@ -36,8 +36,18 @@ fn one_pick_by_time_is_a_horizon_in_all_blocks_with_its_quality() {
     run_in(at, "extract p.petro").done();
     run_in(at, "pick p.petro --at 150,540,400 --horizon Early --by-time")
         .failed(&["no geologic time", "petroglyph time"]);
+    let flat = "attribute p.petro --kind flattened --name flat";
+    run_in(at, flat).failed(&["no geologic time", "petroglyph time"]);
     let told = run_in(at, "time p.petro --json").done().json();
     assert!(told["known"].as_f64().unwrap() > 0.9 && told["faults"] == 3, "{told}");
+    // Any volume on the lattice can be laid flat.
+    run_in(at, &format!("{flat}-time --volume time")).done();
+    run_in(at, flat).done();
+    for name in ["flat", "flat-time"] {
+        run_in(at, &format!("export p.petro {name}.sgy --volume {name}")).done();
+        assert!(fs::metadata(at.join(format!("{name}.sgy"))).unwrap().len() > 100_000);
+        run_in(at, "undo p.petro").done();
+    }
     assert!(run_in(at, "volume list p.petro").done().stdout.contains("time"));
     // The truth of Bravo, and one place on it in the first block.
     let truth = made["horizons"].as_array().unwrap().iter().find(|h| h["name"] == "Bravo").unwrap();

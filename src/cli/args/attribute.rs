@@ -7,9 +7,10 @@ use std::path::PathBuf;
 pub(in crate::cli) struct AttributeArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
-    /// semblance (similarity of neighbouring traces, low at faults), envelope (strength of reflections) or
-    /// dip (their steepness)
-    #[arg(long, value_name = "semblance|envelope|dip")]
+    /// semblance (similarity of neighbouring traces, low at faults), envelope (strength of reflections),
+    /// dip (their steepness) or flattened (a Wheeler diagram: beds laid flat by geologic time, `petroglyph
+    /// time` first; empty where beds are missing)
+    #[arg(long, value_name = "semblance|envelope|dip|flattened")]
     pub(in crate::cli) kind: String,
     /// Name of the new volume; a dip adds NAME-inline and NAME-crossline
     #[arg(long)]

@@ -1,5 +1,6 @@
 //! Attribute volumes that are computed from a volume.
 
+use super::time::time_volume;
 use super::{Effect, Noun, ProjectError};
 use crate::content;
 use crate::content::volume_facts::{self, Facts};
@@ -23,6 +24,8 @@ pub enum AttributeKind {
     Envelope,
     /// Dip: the steepness of the reflections, as three volumes.
     Dip,
+    /// The volume with its beds laid flat by the newest geologic time: a Wheeler diagram.
+    Flattened,
 }
 
 impl AttributeKind {
@@ -32,6 +35,7 @@ impl AttributeKind {
             Self::Semblance => "semblance",
             Self::Envelope => "envelope",
             Self::Dip => "dip",
+            Self::Flattened => "flattened",
         }
     }
 }
@@ -108,6 +112,16 @@ impl ComputeAttribute {
                 let [inline, crossline] = [StoredVolume::open(out[1].0)?, StoredVolume::open(out[2].0)?];
                 write(out[0], dip_angle_blocks(&inline, &crossline, &out[0].1.geometry), memory_bytes, progress)?;
             }
+            AttributeKind::Flattened => {
+                if from.geometry.is_some() {
+                    return Err(ProjectError::OtherLattice { volume: from.name });
+                }
+                let frame = draft.document.frame()?;
+                let times = time_volume(draft.root(), &draft.document)?;
+                let tau = content::read_volume(draft.root(), &times, frame, progress)?;
+                let volume = content::read_volume(draft.root(), &from, frame, progress)?;
+                store::write_volume(out[0].0, &::time::flattened(&tau, &volume), out[0].1, progress)?;
+            }
         }
         let mut volumes = Vec::new();
         for (name, file, path, info) in places {
@@ -136,7 +150,7 @@ impl ComputeAttribute {
                 ("-inline", Some("samples per inline")),
                 ("-crossline", Some("samples per crossline")),
             ],
-            AttributeKind::Semblance | AttributeKind::Envelope => vec![("", None)],
+            AttributeKind::Semblance | AttributeKind::Envelope | AttributeKind::Flattened => vec![("", None)],
         }
     }
 }
