@@ -1,6 +1,7 @@
 //! A volume with its beds laid flat (a Wheeler diagram): down a trace runs geologic time instead of depth.
 
 use rayon::prelude::*;
+use std::cmp::Ordering;
 use survey::Volume;
 
 /// Levels a sample above which beds are missing: they were eroded, or never laid down.
@@ -63,8 +64,7 @@ fn even_levels(tau: &Volume<f32>, count: usize) -> Vec<f32> {
 fn along_levels(tau: &[f32], values: &[f32], levels: &[f32], out: &mut [f32]) {
     for z in 1..tau.len() {
         let [above, below] = [tau[z - 1], tau[z]];
-        // NaN compares as false.
-        if !(below > above) {
+        if above.partial_cmp(&below) != Some(Ordering::Less) {
             continue;
         }
         let between = |above: f32, below: f32| {
