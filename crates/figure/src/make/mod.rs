@@ -272,6 +272,7 @@ impl<'a> Maker<'a> {
             has_surfaces: is_opaque(&part.scene),
             dpi: self.figure.dpi,
             model: self.inputs.source.data.model.filter(|_| !self.figure.interpretation),
+            wells: self.inputs.source.data.wells,
             annotation: (!self.figure.annotate.is_empty()).then_some(BlockAnnotation {
                 wanted: &self.figure.annotate,
                 geometry: self.geometry,
