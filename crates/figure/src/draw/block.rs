@@ -189,9 +189,8 @@ impl BlockPanel<'_> {
             };
             let view = scene.view(self.geometry);
             let on_page = |px: DVec2| pane.min + px * POINTS_PER_INCH / self.dpi;
-            if let Some((model, water)) = self
-                .model
-                .and_then(|model| Some((model, water::drawn(&scene, self.geometry, model, &on_page)?)))
+            if let Some((model, water)) =
+                self.model.and_then(|model| Some((model, water::drawn(&scene, self.geometry, model, &on_page)?)))
             {
                 shown.push(water);
                 let wells = water::wells_before(&scene, self.geometry, model, self.wells, &on_page);

@@ -8,7 +8,9 @@
 
 use super::block::pixels_per_metre;
 use super::seen::Sight;
-use crate::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH, Path, PathItem, Picture, Rule, Segment, Stroke};
+use crate::list::{
+    DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH, Path, PathItem, Picture, Rule, Segment, Stroke,
+};
 use crate::{FigureError, Rect};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
