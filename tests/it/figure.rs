@@ -144,7 +144,7 @@ fn very_many_layers_and_very_small_faces_make_valid_files() {
     let beds = beds.collect::<Vec<_>>().join(" ");
     run_in(at, &format!("layer set p.petro 'Alpha - Bravo' {beds}")).done();
     for (file, begins, ends) in [("a.svg", "<?xml", "</svg>\n"), ("a.pdf", "%PDF", "%%EOF")] {
-        for look in ["--ground off", "--elevation 0.02 --ground off", "--size 1x1", "--box 100,101,500,501,400,401"] {
+        for look in ["--ground off", "--elevation 0.02 --ground off", "--size 1x1", "--box 101,102,501,502,400,404"] {
             let size = if look.contains("--size") { "" } else { "--size 80x60 --samples 1" };
             run_in(at, &format!("render p.petro {file} {look} {size} --device cpu")).done();
             let bytes = fs::read(at.join(file)).unwrap();
