@@ -116,7 +116,8 @@ fn odd_names_and_tiny_pages_make_sensible_figures() {
         assert!(!told.stderr.contains("boxes"), "{}", told.stderr);
         let told = run_in(at, &format!("render p.petro {file} --title 石灰岩 --caption حجر --legend {SMALL}")).done();
         assert!(told.stderr.contains("boxes") && told.stderr.contains("Latin"), "{}", told.stderr);
-        run_in(at, &format!("render p.petro {file} --legend --size-cm 1x1 --dpi 60")).failed(&["no room"]);
+        let told = run_in(at, &format!("render p.petro {file} --annotate all --title T --size-cm 1x1 --dpi 60")).done();
+        assert!(told.stderr.contains("lacks: the legend"), "{}", told.stderr);
     }
     let fonts = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/ttf/tests/fonts");
     let given = format!("--font {fonts}/arabic.ttf --font {fonts}/han.otf");
@@ -129,6 +130,44 @@ fn odd_names_and_tiny_pages_make_sensible_figures() {
     assert!(fs::read_to_string(at.join("a.svg")).unwrap().contains("&lt;&amp;&gt;"));
     // A block alone needs no room for words.
     run_in(at, "render p.petro a.pdf --size-cm 1x1 --dpi 60 --device cpu").done();
+}
+
+/// A thousand beds in a layer, faces that are seen edge on, one pixel, and more horizons than the model takes.
+#[test]
+fn very_many_layers_and_very_small_faces_make_valid_files() {
+    let folder = project();
+    let at = folder.path();
+    let beds = (0..1000).map(|bed| {
+        let pattern = ["shale", "limestone", "marl"][bed % 3];
+        format!("--interval {},{},{pattern}", bed as f64 / 1000.0, (bed + 1) as f64 / 1000.0)
+    });
+    let beds = beds.collect::<Vec<_>>().join(" ");
+    run_in(at, &format!("layer set p.petro 'Alpha - Bravo' {beds}")).done();
+    for (file, begins, ends) in [("a.svg", "<?xml", "</svg>\n"), ("a.pdf", "%PDF", "%%EOF")] {
+        for look in ["--ground off", "--elevation 0.02 --ground off", "--size 1x1", "--box 101,102,501,502,400,404"] {
+            let size = if look.contains("--size") { "" } else { "--size 80x60 --samples 1" };
+            run_in(at, &format!("render p.petro {file} {look} {size} --device cpu")).done();
+            let bytes = fs::read(at.join(file)).unwrap();
+            let is_whole =
+                bytes.starts_with(begins.as_bytes()) && bytes.trim_ascii_end().ends_with(ends.trim_end().as_bytes());
+            assert!(is_whole, "{file} {look}");
+        }
+    }
+    fs::write(at.join("h.csv"), "x,y,z\n0,0,1\n").unwrap();
+    run_in(at, "create many.petro --bounds 0,100,0,100,0,1000 --size 5x5x101").done();
+    for horizon in 0..65 {
+        let z = 10 + 10 * horizon;
+        let points: String = (0..25).map(|n| format!("{},{},{z}\n", 25 * (n % 5), 25 * (n / 5))).collect();
+        fs::write(at.join("h.csv"), format!("x,y,z\n{points}")).unwrap();
+        let told = run_in(at, &format!("horizon add many.petro h.csv --name H{horizon}"));
+        if horizon == 64 {
+            told.failed(&["65 horizons", "at most 64"]);
+        } else {
+            told.done();
+        }
+    }
+    let told = run_in(at, "render many.petro a.pdf --size-cm 8x6 --dpi 60 --annotate all --device cpu").done();
+    assert!(told.stderr.contains("lacks: the legend"), "{}", told.stderr);
 }
 
 #[cfg(feature = "window")]

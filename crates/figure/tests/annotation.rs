@@ -301,8 +301,8 @@ fn a_legend_lists_what_is_seen_and_nothing_else() {
     let whole = cut(&survey);
     // The head of a well on a top face is seen, though the rest of it lies in rock.
     let wells = ["in the cut-out", "in rock"];
-    assert_eq!(legend(&whole)[..6], ["Bed 3", "Bed 2", "Bed 1", "Bed 0", "H2 (erosional)", "Fault"]);
-    assert_eq!(legend(&whole)[6..], wells);
+    assert_eq!(legend(&whole)[..7], ["Bed 3", "Bed 2", "Bed 1", "Bed 0", "Contact", "H2 (erosional)", "Fault"]);
+    assert_eq!(legend(&whole)[7..], wells);
     let mut below = whole.clone();
     below.camera.elevation_deg = -40.0;
     assert!(!legend(&below).contains(&"in rock".to_owned()));
@@ -310,7 +310,7 @@ fn a_legend_lists_what_is_seen_and_nothing_else() {
     let last = survey.geometry.size().map(|count| count as f64 - 1.0);
     let shallow = VoxelBox { min: [0.0; 3], max: [last[0], last[1], 20.0] };
     let upper = Scene { roaming_box: Some(shallow), cut_outs: Vec::new(), ..whole.clone() };
-    assert_eq!(legend(&upper), ["Bed 3", "Bed 2", "Fault", wells[0], wells[1]]);
+    assert_eq!(legend(&upper), ["Bed 3", "Bed 2", "Contact", "Fault", wells[0], wells[1]]);
     // From straight above a flat top is one layer, and a ground the layer below the air.
     let mut above = Scene { cut_outs: Vec::new(), ..whole.clone() };
     above.camera.elevation_deg = 90.0;
@@ -408,6 +408,58 @@ fn wells_near_a_section_are_drawn_on_it() {
     assert!(on(figure::SectionKind::Inline, 25.0).is_none());
     let slice = on(figure::SectionKind::Slice, 12.0).unwrap();
     assert!(slice.tops.is_empty() && (slice.parts[0][0] - DVec2::new(15.0, 10.0)).length() < 0.2, "{slice:?}");
+    // A fence that turns beside it: five lines to the corner, then ten to where the well stands.
+    let fence = |corners: [[f64; 2]; 3]| {
+        let corners = corners.map(DVec2::from_array);
+        figure::draw::section_wells::WellOnSection::on_fence(&well, &survey.geometry, &corners)
+    };
+    let on_fence = fence([[8.0, 0.0], [13.0, 0.0], [13.0, 30.0]]).unwrap();
+    assert!(on_fence.parts[0].iter().all(|st| (st.x - 15.0).abs() < 0.1), "{on_fence:?}");
+    assert_eq!(on_fence.tops.len(), well.tops.len());
+    assert!(fence([[30.0, 0.0], [30.0, 20.0], [50.0, 20.0]]).is_none());
+}
+
+/// A well in a cut-out stands before the water behind it; one in rock stands under water.
+#[test]
+fn water_is_not_painted_over_wells_that_stand_before_it() {
+    let mut survey = Survey::new(|geometry| ClosedForm::flat(geometry, &[14.0, 26.0]).with_fault(65.0, 0.0));
+    survey.wells = vec![well("in the cut-out", 20.0, 14.0), well("in rock", 50.0, 30.0)];
+    let mut scene = cut(&survey);
+    scene.ground = Some(Ground::default());
+    let water = Water { opacity: 0.4, ..Water::default() };
+    scene.size_px = [400, 300];
+    let paths: Vec<Vec<DVec3>> = survey.wells.iter().map(|well| well.path_in_voxels(&survey.geometry)).collect();
+    let drawn = survey.wells.iter().zip(&paths).map(|(well, path)| DrawnWell { name: &well.name, path, tops: &[] });
+    let wells: Vec<DrawnWell> = drawn.collect();
+    let volumes = [NamedVolume::whole("seismic", &survey.volume)];
+    let inputs = Inputs { model: Some(&survey.model), wells: &wells, ..Inputs::raw(&survey.geometry, &volumes) };
+    let red = image::Rgba([200, 0, 0, 255]);
+    let dry = RgbaImage::from_pixel(400, 300, red);
+    let over = |scene: &Scene| figure::draw::water::over(dry.clone(), scene, &inputs).unwrap();
+    assert_eq!(over(&scene), dry, "a scene without water");
+    scene.water = Some(water);
+    let picture = over(&scene);
+    let view = scene.view(&survey.geometry);
+    let at = |x: f64, y: f64, z: f64| {
+        let px = view.project(DVec3::new(x, y, z)).round();
+        *picture.get_pixel(px.x as u32, px.y as u32)
+    };
+    let wet = |pixel: image::Rgba<u8>| pixel.0[2] > 40;
+    // Beside the well, across the eye's direction, lies the wall behind it.
+    assert!((2..12).any(|z| wet(at(24.0, 10.0, f64::from(z)))));
+    assert!((1..12).all(|z| !wet(at(20.0, 14.0, f64::from(z)))));
+    assert!(wet(at(50.0, 30.0, 0.5)));
+    scene.wells.radius = 0.0;
+    assert!((1..12).any(|z| {
+        let px = view.project(DVec3::new(20.0, 14.0, f64::from(z))).round();
+        wet(*over(&scene).get_pixel(px.x as u32, px.y as u32))
+    }));
+    // On a page the same, as a group of its own.
+    scene.wells.radius = 0.006;
+    let (page, _) = survey.page(&scene, &[]);
+    let mut found = Vec::new();
+    groups(&page.items, "wells before water", &mut found);
+    assert_eq!(found.len(), 1);
 }
 
 /// Flat ground at sample 14: the sides of the water are as high as the air, and its upper face is the block's.

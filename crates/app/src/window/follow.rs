@@ -1,6 +1,6 @@
 //! The window's requests to the workers, and what it does with their results.
 
-use super::Window;
+use super::{Window, lettering};
 use crate::hold::{Hold, Taken};
 use crate::state::{Action, Dialogue, Look, Notice, Panel, Picking, Place, Session};
 use crate::work::{Event, Purpose, Seen, Wanted};
@@ -33,6 +33,7 @@ impl Window {
             match event {
                 Event::Opened(snapshot) => {
                     self.forget();
+                    ctx.set_fonts(lettering::fonts(&snapshot));
                     let taken = Hold::take(&snapshot.root);
                     self.act(Action::Opened(snapshot));
                     match taken {

@@ -2,6 +2,7 @@
 
 mod follow;
 mod frames;
+mod lettering;
 mod page;
 mod present;
 mod share;

@@ -16,7 +16,7 @@ use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use model::StructuralModel;
 use render::vector::VectorBlock;
-use render::{Outlines, RenderError, Scene, View};
+use render::{DrawnWell, Outlines, RenderError, Scene, View};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use survey::SurveyGeometry;
@@ -129,6 +129,8 @@ pub struct BlockPanel<'a> {
     pub dpi: f64,
     /// The model, for the water above its ground.
     pub model: Option<&'a StructuralModel>,
+    /// The wells that the painter draws, which may stand before water.
+    pub wells: &'a [DrawnWell<'a>],
     /// What is written on it.
     pub annotation: Option<BlockAnnotation<'a>>,
     /// What its paths are called.
@@ -169,7 +171,7 @@ impl BlockPanel<'_> {
             let seen = self.on_pixels(self.comparison.seen(index, pane));
             let mut shown = Group::new(GroupKind::Data, blend_name(blend)).clipped(Path::rect(seen));
             let tolerance_px = STRAIGHT_PT * self.dpi / POINTS_PER_INCH;
-            match painter.trace(&scene, tolerance_px)? {
+            let picture = match painter.trace(&scene, tolerance_px)? {
                 Some(traced) => {
                     let page = |px: DVec2| pane.min + px * POINTS_PER_INCH / self.dpi;
                     let picture = match vector_block::needs_picture(&traced) {
@@ -177,13 +179,24 @@ impl BlockPanel<'_> {
                         false => None,
                     };
                     shown.items.extend(vector_block::items(&traced, picture.as_ref(), pane, &self.names, &page));
+                    picture
                 }
-                None => shown.push(Picture::in_rect(painter.paint(&scene)?, pane)),
-            }
+                None => {
+                    let picture = Arc::new(painter.paint(&scene)?);
+                    shown.push(Picture::in_rect(Arc::clone(&picture), pane));
+                    Some(picture)
+                }
+            };
             let view = scene.view(self.geometry);
             let on_page = |px: DVec2| pane.min + px * POINTS_PER_INCH / self.dpi;
-            let water = self.model.and_then(|model| water::drawn(&scene, self.geometry, model, &on_page));
-            water.into_iter().for_each(|water| shown.push(water));
+            if let Some((model, water)) =
+                self.model.and_then(|model| Some((model, water::drawn(&scene, self.geometry, model, &on_page)?)))
+            {
+                shown.push(water);
+                let wells = water::wells_before(&scene, self.geometry, model, self.wells, &on_page);
+                let again = picture.zip(wells).map(|(picture, wells)| water::again(&picture, pane, wells));
+                again.into_iter().for_each(|again| shown.push(again));
+            }
             if let Some(interpretation) = self.interpretation {
                 self.lay_over(&mut shown, &scene, &view, interpretation, pane);
             }
@@ -299,6 +312,7 @@ mod tests {
             has_surfaces: true,
             dpi: 144.0,
             model: None,
+            wells: &[],
             annotation: None,
             names: BlockNames::default(),
         };

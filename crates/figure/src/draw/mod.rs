@@ -20,7 +20,7 @@ pub(crate) mod seen;
 pub mod surfaces;
 pub mod swatch;
 pub mod vector_block;
-pub(crate) mod water;
+pub mod water;
 pub mod words;
 
 use ttf::Colour;

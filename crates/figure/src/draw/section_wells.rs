@@ -2,7 +2,7 @@
 //! pass through it.
 
 use crate::Rect;
-use crate::cut::SectionKind;
+use crate::cut::{SectionKind, station_of};
 use crate::list::{Across, Group, GroupKind, Ink, Path, PathItem, Stroke, Text, Upright};
 use crate::style::{HORIZON_PT, INK, NUMBER_PT, RIM_OPACITY, RIM_PT, TEXT_PT};
 use glam::{DVec2, DVec3};
@@ -58,14 +58,31 @@ pub struct WellOnSection {
 impl WellOnSection {
     /// What lies near a section along the lattice; `None` where nothing does.
     pub fn of(well: &Well, geometry: &SurveyGeometry, kind: SectionKind, at: f64) -> Option<Self> {
-        let near = |voxel: DVec3| near(voxel, kind, at);
+        Self::where_near(well, geometry, kind != SectionKind::Slice, |voxel| near(voxel, kind, at))
+    }
+
+    /// What lies near a fence with these corners, voxel x and y; `None` where nothing does.
+    pub fn on_fence(well: &Well, geometry: &SurveyGeometry, corners: &[DVec2]) -> Option<Self> {
+        Self::where_near(well, geometry, true, |voxel| {
+            let (station, off) = station_of(corners, voxel.truncate())?;
+            (off <= NEAR).then(|| DVec2::new(station, voxel.z))
+        })
+    }
+
+    /// The well where `near` says that it is, (s, t).
+    fn where_near(
+        well: &Well,
+        geometry: &SurveyGeometry,
+        has_tops: bool,
+        near: impl Fn(DVec3) -> Option<DVec2>,
+    ) -> Option<Self> {
         let path = well.path_in_voxels(geometry);
         let pieces = path.windows(2).flat_map(|pair| {
             let last = pair[1];
             (0..PARTS).map(move |n| pair[0].lerp(last, f64::from(n) / f64::from(PARTS)))
         });
-        let parts = runs(pieces.chain(path.last().copied()).map(near));
-        let tops = well.tops.iter().filter(|_| kind != SectionKind::Slice);
+        let parts = runs(pieces.chain(path.last().copied()).map(&near));
+        let tops = well.tops.iter().filter(|_| has_tops);
         let tops = tops.filter_map(|top| Some((top.name.clone(), near(well.voxel_at_md(top.md_m, geometry)?)?)));
         let tops = tops.collect();
         (!parts.is_empty()).then(|| Self { name: well.name.clone(), parts, tops })

@@ -103,6 +103,26 @@ impl<'a> Sight<'a> {
         f64::from(rock - water.entry.t).clamp(-FAR, FAR)
     }
 
+    /// Whether a place in the block stands before all water, where `block` is the block without what rises above it.
+    pub(crate) fn is_before_water(&self, block: &Solid, p: DVec3) -> bool {
+        let px = self.view.project(p);
+        if !(self.is_within(p) && self.holds(px)) {
+            return false;
+        }
+        let ray = Ray::from(self.view.ray(px));
+        let own = (p - ray.origin.as_dvec3()).dot(ray.direction.as_dvec3());
+        let mut from = f32::MIN;
+        // Every stretch but the last ends at a cut-out.
+        for _ in 0..=2 * block.cut_outs.len() + 1 {
+            let Some(span) = block.next_span(&ray, from) else { return true };
+            if self.is_air(ray.at(span.entry.t + BEHIND)) {
+                return own < f64::from(span.entry.t);
+            }
+            from = span.end;
+        }
+        true
+    }
+
     /// Where a ray meets rock, and just behind.
     fn rock(&self, ray: &Ray) -> Option<(f32, Vec3)> {
         let mut from = f32::MIN;

@@ -3,18 +3,25 @@
 //! Water and rock together fill the block but for its cut-outs, so what is seen of the water's surface is the part of
 //! the seen faces that lies in the air layer: the upper face over the sea, and strips of the sides above the ground.
 //! Where the ground rises above the water's level, what lies behind it is left out, found by rays.
-//! Everything behind is seen through it once, as through the body's nearest surface.
+//! Everything behind is seen through it once, as through the body's nearest surface. Wells that stand before it, in
+//! cut-outs, are drawn again over it: the picture without water, within their outlines.
 
+use super::block::pixels_per_metre;
 use super::seen::Sight;
-use crate::list::{Group, GroupKind, Ink, Item, Path, PathItem, Rule, Segment, Stroke};
+use crate::list::{
+    DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH, Path, PathItem, Picture, Rule, Segment, Stroke,
+};
+use crate::{FigureError, Rect};
 use glam::{DVec2, DVec3};
+use image::RgbaImage;
 use model::StructuralModel;
 use model::section::band;
 use rayon::prelude::*;
 use render::vector::{SeenSection, sections_of};
 use render::visible::Solid;
-use render::{Scene, Water};
+use render::{DrawnWell, Inputs, Scene, Water};
 use std::collections::HashSet;
+use std::sync::Arc;
 use survey::SurveyGeometry;
 use ttf::Colour;
 
@@ -28,6 +35,103 @@ const PROBES: f64 = 500.0;
 const BEFORE: f64 = 0.05;
 /// Width of its edges, points.
 const EDGE_PT: f64 = 0.5;
+/// Longest part of a well that is before water or not as one, pixels.
+const WELL_PX: f64 = 3.0;
+/// Most parts that a straight piece of a well is divided into.
+const MOST_PARTS: f64 = 2000.0;
+/// How much narrower a well is drawn over water than it is, so that nothing beside it shows, pixels.
+const WITHIN_PX: f64 = 0.5;
+
+/// How much wider than the tube the ring of a top is, and half its height in radii of the tube (`render::wells`).
+const TOP: [f64; 2] = [1.6, 0.6];
+
+/// A picture of a scene with its water over it, as a window shows it; without water the picture as it is.
+///
+/// # Errors
+/// A picture larger than a page may be.
+pub fn over(picture: RgbaImage, scene: &Scene, inputs: &Inputs) -> Result<RgbaImage, FigureError> {
+    let (Some(model), true) = (inputs.model, scene.water.is_some() && scene.ground.is_some()) else {
+        return Ok(picture);
+    };
+    let page = |px: DVec2| px;
+    let Some(water) = drawn(scene, inputs.geometry, model, &page) else { return Ok(picture) };
+    let size = DVec2::new(f64::from(picture.width()), f64::from(picture.height()));
+    let (picture, pane) = (Arc::new(picture), Rect::sized(DVec2::ZERO, size));
+    let mut list = DisplayList { paper: None, ..DisplayList::new(size) };
+    list.items.push(Picture::in_rect(Arc::clone(&picture), pane).into());
+    list.items.push(water.into());
+    let wells = wells_before(scene, inputs.geometry, model, inputs.wells, &page);
+    list.items.extend(wells.map(|outline| again(&picture, pane, outline).into()));
+    crate::raster(&list, POINTS_PER_INCH)
+}
+
+/// What of a picture lies within an outline, once more.
+pub(super) fn again(picture: &Arc<RgbaImage>, pane: Rect, outline: Path) -> Group {
+    let picture = Picture::in_rect(Arc::clone(picture), pane);
+    Group::new(GroupKind::Part, "wells before water").clipped(outline).with([picture.into()])
+}
+
+/// The outlines of the parts of wells that stand before water; `None` where none does.
+pub(super) fn wells_before(
+    scene: &Scene,
+    geometry: &SurveyGeometry,
+    model: &StructuralModel,
+    wells: &[DrawnWell],
+    page: &dyn Fn(DVec2) -> DVec2,
+) -> Option<Path> {
+    let is_shown = |well: &&DrawnWell| scene.wells.radius > 0.0 && !scene.hides_well(well.name);
+    let shown: Vec<&DrawnWell> = wells.iter().filter(is_shown).collect();
+    if shown.is_empty() {
+        return None;
+    }
+    let view = scene.view(geometry);
+    let sight = Sight::new(scene, geometry, model);
+    let (_, solid) = below_level(scene, geometry, &scene.water?);
+    let [low, high] = [scene.box_in(geometry).low(), scene.box_in(geometry).high()];
+    let sides = view.display_from_voxel() * (high - low);
+    let radius_m = f64::from(scene.wells.radius) * sides.abs().max_element();
+    let parts_of = |pair: &[DVec3]| {
+        let [from, to] = [pair[0], pair[1]];
+        let length_px = view.project(from).distance(view.project(to));
+        let count = (length_px / WELL_PX).ceil().clamp(1.0, MOST_PARTS) as usize;
+        let at = move |n: usize| from.lerp(to, n as f64 / count as f64);
+        (0..count).map(move |n| ([at(n), at(n + 1)], 1.0))
+    };
+    let tubes = shown.iter().flat_map(|well| well.path.windows(2).flat_map(parts_of));
+    // Rings at tops, across the piece of the path on which they lie.
+    let rings = shown.iter().flat_map(|well| {
+        well.tops.iter().filter_map(|top| {
+            let off = |pair: &&[DVec3]| top.distance(pair[0]) + top.distance(pair[1]) - pair[0].distance(pair[1]);
+            let pair = well.path.windows(2).min_by(|a, b| off(a).total_cmp(&off(b)))?;
+            let along = view.display_from_voxel() * (pair[1] - pair[0]);
+            let half = (pair[1] - pair[0]) * (radius_m * TOP[1] / along.length().max(f64::MIN_POSITIVE));
+            Some(([*top - half, *top + half], TOP[0]))
+        })
+    });
+    let mut outline = Path::default();
+    for ([from, to], wide) in tubes.chain(rings) {
+        let middle = 0.5 * (from + to);
+        if !sight.is_before_water(&solid, middle) {
+            continue;
+        }
+        let [a, b] = [from, to].map(|end| view.project(end));
+        let half = (wide * radius_m * pixels_per_metre(&view, middle) - WITHIN_PX).max(0.5);
+        // Parts overlap a little, so that no gaps are between them.
+        let along = (b - a).normalize_or(DVec2::Y) * 0.1;
+        let beside = along.perp().normalize() * half;
+        outline.add_line(&[a - along - beside, b + along - beside, b + along + beside, a - along + beside].map(page));
+        outline.segments.push(Segment::Close);
+    }
+    (!outline.segments.is_empty()).then_some(outline)
+}
+
+/// Whether the water ends below the top of the block, and what of the block lies below its level.
+fn below_level(scene: &Scene, geometry: &SurveyGeometry, water: &Water) -> (bool, Solid) {
+    let mut below = scene.box_in(geometry);
+    let is_lower = water.level.is_some_and(|level| level > below.min[2]);
+    below.min[2] = water.level.map_or(below.min[2], |level| level.max(below.min[2]));
+    (is_lower, Scene { roaming_box: Some(below), ..scene.clone() }.solid(geometry))
+}
 
 /// The water of a scene on the page; `None` without water or ground. `page` takes pixels of the scene to the page.
 pub(crate) fn drawn(
@@ -40,10 +144,7 @@ pub(crate) fn drawn(
     let view = scene.view(geometry);
     let place = |voxel: DVec3| page(view.project(voxel));
     let mut group = Group::new(GroupKind::Layer, "Water");
-    let mut below = scene.box_in(geometry);
-    let is_lower = water.level.is_some_and(|level| level > below.min[2]);
-    below.min[2] = water.level.map_or(below.min[2], |level| level.max(below.min[2]));
-    let solid = Scene { roaming_box: Some(below), ..scene.clone() }.solid(geometry);
+    let (is_lower, solid) = below_level(scene, geometry, &water);
     if is_lower {
         group.clip = Some(before_ground(scene, geometry, model, &solid, page));
     }

@@ -172,7 +172,11 @@ impl Maker<'_> {
         };
         let outlines = scene.outlines;
         if outlines.horizons.width_px > 0.0 {
-            for horizon in seen.horizons.iter().filter_map(|index| self.inputs.strata.get(*index)) {
+            let strata = || seen.horizons.iter().filter_map(|index| self.inputs.strata.get(*index));
+            if strata().any(|horizon| horizon.contact == Contact::Conformable) {
+                add("Contact".into(), GroupKind::Horizon, 0.7 * HORIZON_PT, outlines.horizons.colour);
+            }
+            for horizon in strata() {
                 let contact = match horizon.contact {
                     Contact::Conformable => continue,
                     // That it is cut off can be seen.

@@ -32,6 +32,8 @@ const MARGIN_PT: f64 = 8.0;
 const GAP_PT: f64 = 9.0;
 /// Least width and height of what is left for the parts, points.
 const LEAST_PT: f64 = 20.0;
+/// The same of a block on which or below which something is written.
+const LEAST_BLOCK_PT: f64 = 40.0;
 /// Share of the page that a legend may take.
 const LEGEND_SHARE: f64 = 0.36;
 /// Two parts stand beside one another where the room is broader than so many heights, else one over the other.
@@ -257,7 +259,8 @@ impl<'a> Maker<'a> {
             (false, false) => 0.0,
         };
         let body = room.inside([0.0, 0.0, 0.0, strip]);
-        if body.size().min_element() < 1.0 {
+        let is_plain = strip == 0.0 && self.figure.annotate.is_empty();
+        if body.size().min_element() < if is_plain { f64::MIN_POSITIVE } else { LEAST_BLOCK_PT } {
             return Err(self.no_room());
         }
         let names =
@@ -272,6 +275,7 @@ impl<'a> Maker<'a> {
             has_surfaces: is_opaque(&part.scene),
             dpi: self.figure.dpi,
             model: self.inputs.source.data.model.filter(|_| !self.figure.interpretation),
+            wells: self.inputs.source.data.wells,
             annotation: (!self.figure.annotate.is_empty()).then_some(BlockAnnotation {
                 wanted: &self.figure.annotate,
                 geometry: self.geometry,

@@ -103,7 +103,7 @@ impl Maker<'_> {
             axes: [self.axis(s, extent.x), self.axis(t, extent.y)],
             zoom: part.zoom,
             proportions: part.proportions,
-            wells: self.wells_on(kind, at),
+            wells: self.wells_where(|well| WellOnSection::of(well, self.geometry, kind, at)),
             is_plan: kind == SectionKind::Slice,
             marks: self.marks_on(kind)?,
             on: Place::Section(kind, at),
@@ -113,8 +113,8 @@ impl Maker<'_> {
         })
     }
 
-    /// The wells near a section, where wells are named.
-    fn wells_on(&self, kind: SectionKind, at: f64) -> Vec<WellOnSection> {
+    /// The wells near a section or a fence, where wells are named.
+    fn wells_where(&self, near: impl Fn(&survey::Well) -> Option<WellOnSection>) -> Vec<WellOnSection> {
         let is_hidden = |well: &&survey::Well| {
             let scenes = self.figure.parts.iter().filter_map(|part| match part {
                 Part::Block(block) => Some(&block.scene),
@@ -123,7 +123,7 @@ impl Maker<'_> {
             self.figure.hides(&well.name) || scenes.into_iter().any(|scene| scene.hides_well(&well.name))
         };
         let wells = self.inputs.wells.iter().filter(|well| self.wants(Annotation::Wells) && !is_hidden(well));
-        wells.filter_map(|well| WellOnSection::of(well, self.geometry, kind, at)).collect()
+        wells.filter_map(near).collect()
     }
 
     /// The lines of what is not hidden.
@@ -154,7 +154,7 @@ impl Maker<'_> {
             axes: [ground, self.axis(2, depth)],
             zoom: Zoom::default(),
             proportions: None,
-            wells: Vec::new(),
+            wells: self.wells_where(|well| WellOnSection::on_fence(well, self.geometry, &corners)),
             is_plan: false,
             // Where it turns.
             marks: Marks { down: along[1..along.len() - 1].to_vec(), ..Marks::default() },

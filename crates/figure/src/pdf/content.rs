@@ -179,9 +179,11 @@ impl VectorWriter for PageContent<'_> {
         let [r, g, b] = channels(line.ink);
         self.content.save_state();
         self.opacity(line.ink.opacity);
-        let is_bent = !line.letters.is_empty();
-        if is_bent {
-            // Letters one by one are still one word to readers.
+        let is_skew = !line.letters.is_empty() || line.turn_deg.rem_euclid(90.0) != 0.0;
+        // Readers turn words from right to left around by their places alone, also those of such a span.
+        let is_span = is_skew && !line.text.chars().any(is_right_to_left);
+        if is_span {
+            // Letters one by one, or on a slope, are still one word to readers.
             let mut span = self.content.begin_marked_content_with_properties(Name(b"Span"));
             span.properties().actual_text(TextStr(&line.text));
         }
@@ -202,7 +204,7 @@ impl VectorWriter for PageContent<'_> {
             }
         }
         self.content.end_text();
-        if is_bent {
+        if is_span {
             self.content.end_marked_content();
         }
         self.content.restore_state();
@@ -222,6 +224,11 @@ impl VectorWriter for PageContent<'_> {
         self.content.save_state().transform(matrix).x_object(Name(named.as_bytes())).restore_state();
         Ok(())
     }
+}
+
+/// Whether a character is of a script that runs from right to left (Unicode blocks of such scripts).
+fn is_right_to_left(character: char) -> bool {
+    matches!(character, '\u{590}'..='\u{8ff}' | '\u{fb1d}'..='\u{fdff}' | '\u{fe70}'..='\u{fefc}' | '\u{10800}'..='\u{10fff}' | '\u{1e800}'..='\u{1efff}')
 }
 
 /// A coordinate to a hundredth of a point, as in SVG.

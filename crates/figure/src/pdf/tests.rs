@@ -131,6 +131,17 @@ fn text_is_text_in_the_glyphs_that_it_needs() {
 }
 
 #[test]
+fn words_on_a_slope_are_read_as_words() {
+    let spans = |text: &str, turn_deg: f64| {
+        let mut page = DisplayList::new(DVec2::splat(100.0));
+        page.items.push(Text { turn_deg, ..Text::new(DVec2::splat(50.0), text) }.into());
+        Objects::of(&pdf(&page, "t").unwrap()).drawn().matches("/ActualText").count()
+    };
+    assert_eq!([0.0, 90.0, -90.0, 20.0].map(|turn_deg| spans("Crossline", turn_deg)), [0, 0, 0, 1]);
+    assert_eq!(spans("\u{627}\u{628}", 20.0), 0);
+}
+
+#[test]
 fn letters_along_a_curve_are_set_one_by_one_and_read_as_a_word() {
     let mut page = DisplayList::new(DVec2::splat(100.0));
     let curve = [DVec2::new(0.0, 60.0), DVec2::new(50.0, 40.0), DVec2::new(100.0, 60.0)];

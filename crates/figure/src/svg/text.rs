@@ -8,9 +8,13 @@ use std::fmt::Write;
 use ttf::subset::used;
 use ttf::text::set;
 
-/// The embedded face by name, and what stands in for it where it is not installed.
+/// The embedded face by name, and what stands in for it where it is not installed: faces of like width and weight first,
+/// since programs that read no fonts in files often set text at its own length too.
 const FACE: &str = "Ubuntu Light";
-const OTHERS: &str = "Ubuntu, 'DejaVu Sans', sans-serif";
+const OTHERS: &str = "Ubuntu, 'Noto Sans Display', 'Noto Sans', 'Open Sans', 'DejaVu Sans', sans-serif";
+/// The weight that is asked for. The face is light by its own name; asked for light, fontconfig takes any other light
+/// face before those that stand in.
+const WEIGHT: &str = "400";
 
 /// Adds the faces with what the page needs of them; returns the list of their names.
 pub(super) fn faces(into: &mut String, list: &DisplayList) -> String {
@@ -19,7 +23,7 @@ pub(super) fn faces(into: &mut String, list: &DisplayList) -> String {
     for used in used(lines.iter().map(String::as_str)) {
         let Some(subset) = used.file_to_set_text() else { continue };
         let (name, weight) = match used.number {
-            0 => (FACE.to_owned(), "300"),
+            0 => (FACE.to_owned(), WEIGHT),
             // Of faces of one family each keeps its own letters.
             number if names.iter().any(|known| known.trim_matches('\'') == used.face.family()) => {
                 (format!("{} {number}", used.face.family()), "100 900")
@@ -67,7 +71,7 @@ pub(super) fn text(into: &mut String, line: &Text, families: &str) {
     let pivot = if line.letters.is_empty() { line.at } else { start };
     let _ = write!(
         into,
-        "<text {place} font-family=\"{families}\" font-weight=\"300\" font-size=\"{}\" xml:space=\"preserve\"",
+        "<text {place} font-family=\"{families}\" font-weight=\"{WEIGHT}\" font-size=\"{}\" xml:space=\"preserve\"",
         number(line.size)
     );
     if line.letters.is_empty() {

@@ -16,28 +16,48 @@ const MOST_BYTES: u64 = 1 << 28;
 pub fn faces(project: &Project, files: &[PathBuf]) -> Result<Faces, ProjectError> {
     let mut faces = Vec::new();
     for name in &project.document().fonts {
-        let is_within = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
-        if !is_within {
-            let fact = "a font of the project lies in the project's folder: copy it there, and write its place in \
-                        `fonts` from that folder";
-            return Err(ProjectError::Font { path: PathBuf::from(name), fact: fact.to_owned() });
-        }
-        faces.push(face(&project.root().join(name))?);
+        faces.push(face(&within(project.root(), name)?)?.1);
     }
     for file in files {
-        faces.push(face(file)?);
+        faces.push(face(file)?.1);
     }
     Ok(Faces::new(faces))
 }
 
+/// A font file, and which face of a collection is meant.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FontFile {
+    /// Its bytes, of which a face was read.
+    pub bytes: Vec<u8>,
+    /// The face, from 0.
+    pub index: u32,
+}
+
+/// The font files that a project in the folder `root` names: those that can be used.
+pub fn font_files(root: &Path, names: &[String]) -> Vec<FontFile> {
+    let files = names.iter().map(|name| Ok(face(&within(root, name)?)?.0));
+    files.filter_map(|file: Result<FontFile, ProjectError>| file.ok()).collect()
+}
+
+/// The path of a font that a project names.
+fn within(root: &Path, name: &str) -> Result<PathBuf, ProjectError> {
+    if Path::new(name).components().all(|part| matches!(part, Component::Normal(_))) {
+        return Ok(root.join(name));
+    }
+    let fact = "a font of the project lies in the project's folder: copy it there, and write its place in \
+                `fonts` from that folder";
+    Err(ProjectError::Font { path: PathBuf::from(name), fact: fact.to_owned() })
+}
+
 /// The face of a file. `NAME.ttc#3` is the fourth face of a collection.
-fn face(path: &Path) -> Result<Face, ProjectError> {
+fn face(path: &Path) -> Result<(FontFile, Face), ProjectError> {
     let whole = path.to_string_lossy();
     let numbered = whole.rsplit_once('#').and_then(|(file, index)| Some((PathBuf::from(file), index.parse().ok()?)));
     let (file, index) = numbered.filter(|_| !path.exists()).unwrap_or_else(|| (path.to_owned(), 0));
     let unusable = |fact: String| ProjectError::Font { path: path.to_owned(), fact };
     let bytes = file::read(&file, MOST_BYTES).map_err(|error| unusable(format!("it could not be read: {error}")))?;
-    Face::parse(bytes, index).map_err(|error| unusable(error.to_string()))
+    let face = Face::parse(bytes.clone(), index).map_err(|error| unusable(error.to_string()))?;
+    Ok((FontFile { bytes, index }, face))
 }
 
 #[cfg(test)]
@@ -64,6 +84,8 @@ mod tests {
         std::fs::create_dir(root.join("fonts")).unwrap();
         std::fs::copy(PathBuf::from(FONTS).join("han.otf"), root.join("fonts/han.otf")).unwrap();
         assert_eq!(faces(&project, &[arabic]).unwrap().count(), 3);
+        let names = ["fonts/han.otf", "fonts/none.otf", "../han.otf"].map(str::to_owned);
+        assert_eq!(font_files(&root, &names).len(), 1);
         std::fs::write(root.join("project.toml"), format!("fonts = [\"../han.otf\"]\n{written}")).unwrap();
         let outside = faces(&Project::open(&root).unwrap(), &[]).unwrap_err().to_string();
         assert!(outside.contains("copy it there"), "{outside}");

@@ -8,11 +8,12 @@ mod batch;
 mod confusion;
 mod fonts;
 mod interpreter;
+mod little_room;
 mod output;
 
 pub use batch::{WrittenFigure, make_all};
 pub use confusion::{NamedConfusion, confusions};
-pub use fonts::faces;
+pub use fonts::{FontFile, faces, font_files};
 pub use interpreter::{InterpreterView, borrowed};
 pub use output::{FigureFormat, title, write};
 
@@ -131,7 +132,7 @@ fn lettered(
     let share = settings.picture_dpi.map_or(1.0, |dpi| (dpi / figure.dpi).min(1.0));
     let mut painter =
         FigurePainter { painter: None, device, loaded: &loaded, library, preset, share, stages, progress };
-    let page = figure::make(figure, &inputs, &mut painter)?;
+    let page = little_room::made(figure, progress, |figure| figure::make(figure, &inputs, &mut painter))?;
     warn_of_boxes(&page, progress);
     let device = painter.painter.map(|painter| painter.device().to_owned());
     let stages = painter.stages;
