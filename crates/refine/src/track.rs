@@ -15,6 +15,8 @@ use survey::{Quality, Volume};
 const ALIKE: f32 = 0.85;
 /// Correlation with the place that was picked, below which the reflection is no longer that one.
 const LIKE_SEED: f32 = 0.5;
+/// Samples from one trace to the next beyond which two nodes are no dip, but lie on different reflections.
+const STEEPEST: f32 = 6.0;
 /// Samples within which the place that was picked finds its extremum.
 const SNAP: f32 = 4.0;
 
@@ -89,8 +91,14 @@ struct Growth<'a> {
 
 impl Growth<'_> {
     fn grow(&self, sheet: &mut VoxelSheet, seed: usize, z: f32) -> usize {
-        let mut front = BinaryHeap::from([Step { alike: 1.0, to: seed, z }]);
         let (mut made, mut torn) = (Vec::new(), Vec::new());
+        // A line that was drawn stays, but what is beside it is tracked from the place all the same.
+        if sheet.z[seed].is_nan() {
+            (sheet.z[seed], sheet.quality[seed]) = (z, Quality::Picked);
+            made.push(seed);
+        }
+        let beside = neighbours(seed, self.plane).filter(|next| sheet.z[*next].is_nan());
+        let mut front: BinaryHeap<Step> = beside.filter_map(|next| self.step(sheet, (seed, z), next)).collect();
         while let Some(Step { to, z, .. }) = front.pop() {
             if sheet.z[to].is_finite() {
                 // Another way led to another cycle of the wave; no one knows which is right.
@@ -99,15 +107,11 @@ impl Growth<'_> {
                 }
                 continue;
             }
-            sheet.z[to] = z;
+            (sheet.z[to], sheet.quality[to]) = (z, Quality::Tracked);
             made.push(to);
             for next in neighbours(to, self.plane).filter(|next| sheet.z[*next].is_nan()) {
-                front.extend(self.step(sheet, to, next));
+                front.extend(self.step(sheet, (to, z), next));
             }
-        }
-        made.iter().for_each(|&n| sheet.quality[n] = Quality::Tracked);
-        if made.first() == Some(&seed) {
-            sheet.quality[seed] = Quality::Picked;
         }
         torn.sort_unstable();
         torn.dedup();
@@ -120,10 +124,9 @@ impl Growth<'_> {
     }
 
     /// The reflection on a neighbouring trace, expected where the dip of the last step leads.
-    fn step(&self, sheet: &VoxelSheet, from: usize, to: usize) -> Option<Step> {
-        let z = sheet.z[from];
+    fn step(&self, sheet: &VoxelSheet, (from, z): (usize, f32), to: usize) -> Option<Step> {
         let before = (2 * from).checked_sub(to).filter(|&n| neighbours(from, self.plane).any(|beside| beside == n));
-        let dip = before.map(|n| z - sheet.z[n]).filter(|dip| dip.is_finite()).unwrap_or(0.0);
+        let dip = before.map(|n| z - sheet.z[n]).filter(|dip| dip.abs() <= STEEPEST).unwrap_or(0.0);
         let found = self.samples.step((from, z), to, z + dip, ALIKE)?;
         let place = Vec3::new((to / self.plane[1]) as f32, (to % self.plane[1]) as f32, found.z);
         let is_inside = (self.depths[0]..=self.depths[1]).contains(&found.z) && self.blocks.holds(self.block, place);

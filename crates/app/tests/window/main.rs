@@ -2,6 +2,7 @@
 
 mod bar;
 mod command;
+mod drawing;
 mod driven;
 mod dropped;
 mod hands;

@@ -4,6 +4,7 @@
 //! fills its view whatever its shape. Ctrl and the wheel zoom about the pointer, a drag moves, the wheel alone goes to
 //! the next section.
 
+mod freehand;
 mod lines;
 mod wells;
 
@@ -16,7 +17,7 @@ use super::texture;
 use crate::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, SectionKind, Session, StickPoint, Tool};
 use crate::work::{Rocks, SliceRequest, Slices};
 use eframe::egui::{
-    Align2, Color32, Context, DragValue, FontId, Painter, Pos2, Rect, Response, Role, Sense, Stroke, TextureHandle, Ui,
+    Align2, Color32, Context, DragValue, FontId, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, TextureHandle, Ui,
     Vec2, WidgetInfo, vec2,
 };
 use figure::cut::SectionCut;
@@ -24,6 +25,7 @@ use figure::cut::{CutLine, value_at};
 use figure::draw::NamedColour;
 use figure::draw::axes::{self, Axis};
 use figure::draw::section::{SectionContents, Zoom};
+use freehand::Freehand;
 use glam::DVec2;
 use image::RgbaImage;
 use render::FaceData;
@@ -62,6 +64,7 @@ struct Pane {
     /// The point of a stick that is being dragged.
     held: Option<StickPoint>,
     lasso: LassoLine,
+    freehand: Freehand,
 }
 
 impl Default for Pane {
@@ -78,6 +81,7 @@ impl Default for Pane {
             wheel: 0.0,
             held: None,
             lasso: LassoLine::default(),
+            freehand: Freehand::default(),
         }
     }
 }
@@ -131,7 +135,7 @@ impl Sections {
         let has_lasso = lasso::is_held(ui, session);
         if !has_lasso {
             pane.drag_point(ui, session, kind, &response, body, actions);
-            pane.touch(ui, &response, body);
+            pane.touch(ui, &response, body, Freehand::is_in_hand(session));
         }
         let image = pane.paint(ui, session, kind, whole, overlay)?;
         let painter = ui.painter_at(body);
@@ -149,6 +153,14 @@ impl Sections {
             let corners = line.into_iter().map(to_section).collect();
             let on = LassoOn::Section(kind, at);
             actions.push(Action::Picking(PickingStep::Erase(Lasso { on, corners })));
+        }
+        if Freehand::is_in_hand(session)
+            && !has_lasso
+            && let Some(line) = pane.freehand.draw(ui, &painter, &response)
+        {
+            let inside = line.into_iter().map(|at| to_section(at).clamp(DVec2::ZERO, extent));
+            let voxels = inside.map(|st| kind.voxel(at, st)).collect();
+            actions.push(Action::Picking(PickingStep::Line(voxels)));
         }
         let st = response.hover_pos().filter(|pointer| body.contains(*pointer)).map(to_section)?;
         if !(st.x >= 0.0 && st.y >= 0.0 && st.x <= extent.x && st.y <= extent.y) {
@@ -250,8 +262,10 @@ impl Pane {
         Rect::from_min_size(body.center() - self.middle * size, size)
     }
 
-    fn touch(&mut self, ui: &Ui, response: &Response, body: Rect) {
-        if response.dragged() && self.held.is_none() {
+    /// Moves and zooms, unless a drag draws a line.
+    fn touch(&mut self, ui: &Ui, response: &Response, body: Rect, has_line: bool) {
+        let draws = has_line && response.dragged_by(PointerButton::Primary);
+        if response.dragged() && self.held.is_none() && !draws {
             self.middle -= response.drag_delta() / (body.size() * self.fit * self.zoom);
         }
         if let Some(pointer) = response.hover_pos() {
