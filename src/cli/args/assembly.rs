@@ -88,7 +88,7 @@ pub(in crate::cli) struct DrawArgs {
     /// Horizon; created if it does not exist
     pub(in crate::cli) name: String,
     /// Corners of the line: line numbers and the vertical value
-    #[arg(long, value_name = "INLINE,CROSSLINE,Z", num_args = 1.., required = true, allow_hyphen_values = true)]
+    #[arg(long, value_name = "INLINE,CROSSLINE,Z", num_args = 1.., required = true)]
     pub(in crate::cli) line: Vec<String>,
     /// Lay its nodes on the nearest peak or trough, whichever the samples along the line are
     #[arg(long)]
