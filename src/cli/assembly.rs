@@ -1,7 +1,8 @@
 //! Turns arguments for picks and faults into commands, and evaluates extractions.
 
 use super::args::{
-    ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs, SmoothArgs, TimeArgs,
+    ClimbArgs, DescendArgs, DrawArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs, SmoothArgs,
+    TimeArgs, TrackArgs,
 };
 use super::report::Report;
 use super::request::{Request, Usage};
@@ -16,14 +17,16 @@ use interp::holes::FillSettings;
 use model::FaultNetwork;
 use project::Project;
 use project::command::{
-    AcceptFault, Climb, Command, ComputeTime, FillHorizon, Move, MovePick, PickByTime, PickFault, PickNode,
+    AcceptFault, Climb, Command, ComputeTime, DrawHorizon, FillHorizon, Move, MovePick, PickByTime, PickFault, PickNode,
     ReplayPicks, SmoothHorizon, TimeLevel, Unfit,
 };
+use project::document::Drawn;
 use project::interpretation::candidates::Candidates;
-use refine::SmoothSettings;
+use refine::{SmoothSettings, TrackSettings};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use survey::Progress;
+use ttf::Colour;
 
 /// Parses three numbers separated by commas.
 pub(super) fn place(option: &str, text: &str) -> Result<[f64; 3], Usage> {
@@ -44,13 +47,12 @@ pub(super) fn pick(typed: PickArgs) -> Result<Request, Usage> {
         return Ok(Request::Change { project: typed.project, command: Command::PickByTime(command) });
     }
     let climb = if typed.highest_valid { Climb::HighestValid } else { Climb::Levels(typed.up.unwrap_or(0)) };
-    let colour = typed.colour.map(|text| text.parse().map_err(|_| format!("--colour {text}: expected #rrggbb")));
     let command = PickNode {
         at: place("--at", &typed.at)?,
         horizon: typed.horizon,
         climb,
         operation: if typed.remove { Operation::Remove } else { Operation::Add },
-        colour: colour.transpose()?,
+        colour: colour(typed.colour)?,
     };
     Ok(Request::Change { project: typed.project, command: Command::Pick(command) })
 }
@@ -69,6 +71,24 @@ pub(super) fn fill(typed: FillArgs) -> Request {
     let settings = FillSettings { max_traces: typed.max_traces, along_reflection: typed.along_reflection };
     let command = Command::FillHorizon(FillHorizon { name: typed.name, settings });
     Request::Change { project: typed.project, command }
+}
+
+fn colour(typed: Option<String>) -> Result<Option<Colour>, Usage> {
+    typed.map(|text| text.parse().map_err(|_| format!("--colour {text}: expected #rrggbb"))).transpose()
+}
+
+pub(super) fn draw(typed: DrawArgs) -> Result<Request, Usage> {
+    let points = typed.line.iter().map(|text| place("--line", text)).collect::<Result<_, _>>()?;
+    let part = Drawn::Line { points, snap: typed.snap };
+    let command = DrawHorizon { horizon: typed.name, colour: colour(typed.colour)?, part };
+    Ok(Request::Change { project: typed.project, command: Command::DrawHorizon(command) })
+}
+
+pub(super) fn track(typed: TrackArgs) -> Result<Request, Usage> {
+    let window = TrackSettings { traces: typed.traces, samples: typed.samples };
+    let part = Drawn::Tracked { at: place("--at", &typed.at)?, window };
+    let command = DrawHorizon { horizon: typed.name, colour: colour(typed.colour)?, part };
+    Ok(Request::Change { project: typed.project, command: Command::DrawHorizon(command) })
 }
 
 pub(super) fn smooth(typed: SmoothArgs) -> Request {

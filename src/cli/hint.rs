@@ -34,6 +34,11 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         ProjectError::NotAssembled { .. } => {
             "choose another --horizon: only horizons that were made from picks take picks"
         }
+        ProjectError::NotClimbable { .. } => "take it out with `petroglyph horizon unpick`, and draw or track it again",
+        ProjectError::ShortLine => "write a line as --line IL,XL,Z IL,XL,Z …",
+        ProjectError::NothingTracked { .. } => {
+            "start on a strong peak or trough, or draw lines with `petroglyph horizon draw`"
+        }
         ProjectError::NothingLeft { .. } => "`petroglyph horizon remove` removes a horizon",
         ProjectError::AlreadyPicked { .. } => "pick elsewhere, or climb higher with --up",
         ProjectError::NotPicked { .. } => "`petroglyph horizon show` lists the picks and their places",

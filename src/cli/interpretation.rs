@@ -137,6 +137,8 @@ pub(super) fn horizon(action: HorizonAction) -> Result<Request, Usage> {
         HorizonAction::Rename { project, from, to } => {
             Request::Change { project, command: Command::RenameHorizon(RenameHorizon { from, to }) }
         }
+        HorizonAction::Draw(typed) => assembly::draw(typed)?,
+        HorizonAction::Track(typed) => assembly::track(typed)?,
         HorizonAction::Fill(typed) => assembly::fill(typed),
         HorizonAction::Smooth(typed) => assembly::smooth(typed),
         HorizonAction::Replay(typed) => assembly::replay(typed),

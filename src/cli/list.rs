@@ -99,7 +99,12 @@ fn show_horizon(project: &Project, name: &str) -> anyhow::Result<Report> {
         report.field("surface", json!({ "corners": corners, "triangles": triangles, "range": [low, high] }));
     }
     if let Some(log) = &entry.assembly {
-        report.say(format!("  colour {}, {} picks:", log.colour, log.picks.len()));
+        let counted = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
+        let drawn = match log.drawn.len() {
+            0 => String::new(),
+            count => format!(", {} drawn or tracked", counted(count, "part")),
+        };
+        report.say(format!("  colour {}, {}{drawn}:", log.colour, counted(log.picks.len(), "pick")));
         for pick in &log.picks {
             let [inline, crossline, z] = pick.at;
             let verb = if pick.operation == interp::assembly::Operation::Add { "adds" } else { "removes" };
@@ -107,6 +112,10 @@ fn show_horizon(project: &Project, name: &str) -> anyhow::Result<Report> {
                 "    {}: at {inline},{crossline},{z}, leaf {}, {} up, {verb} {} triangles",
                 pick.id, pick.leaf, pick.up, pick.node.triangles
             ));
+        }
+        for drawn in &log.drawn {
+            let [inline, crossline, z] = drawn.part.place();
+            report.say(format!("    {}: {} from {inline},{crossline},{z}", drawn.id, drawn.part.noun()));
         }
     }
     report.field("horizon", entry).field("sheets", sheets).field("unit", unit);

@@ -12,6 +12,7 @@ mod correlation;
 mod create;
 mod cuts;
 mod demo;
+mod drawing;
 mod extraction;
 mod fault_extent;
 mod figure;

@@ -387,6 +387,21 @@ pub enum ProjectError {
         /// Its name.
         horizon: String,
     },
+    /// What was drawn has no tree.
+    #[error("{pick} was drawn or tracked, not picked: it has no tree to climb")]
+    NotClimbable {
+        /// Its number.
+        pick: u32,
+    },
+    /// A line without enough points.
+    #[error("a line of a horizon has at least two points")]
+    ShortLine,
+    /// No reflection goes on from a place.
+    #[error("no reflection goes on from inline {}, crossline {}, {}", at[0], at[1], at[2])]
+    NothingTracked {
+        /// Inline, crossline and vertical value.
+        at: [f64; 3],
+    },
     /// Nothing would be left of a horizon.
     #[error("nothing would be left of horizon \"{horizon}\"")]
     NothingLeft {

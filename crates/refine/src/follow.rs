@@ -1,25 +1,18 @@
 //! Holes filled along the reflection: from the rim inwards, always on where neighbouring traces are most alike, as long
 //! as they are. The surface of least curvature is the guide: it says what dip to expect, and how far is too far.
 
+use crate::reflection::{MOST_SEAM, MOST_STEP, Samples, Step, WINDOW, neighbours};
 use glam::Vec3;
 use interp::holes::{FillSettings, Filled, Hole, fill_holes, find_holes};
 use interp::reassembly::VoxelSheet;
 use model::FaultNetwork;
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use survey::{Cancelled, Progress, Quality, Volume};
 
-/// Samples above and below the reflection that are compared between traces: some half a period each, so that the event
-/// itself decides and not its neighbours.
-const WINDOW: i32 = 7;
-/// Samples by which the reflection may leave the guide's dip from one trace to the next.
-const MOST_STEP: i32 = 2;
 /// Samples by which it may leave the guide: beyond, it is another reflection.
 const REACH: f32 = 12.0;
 /// Correlation from which two traces show the same reflection. Lower follows noise, higher stops where amplitudes change.
 const ALIKE: f32 = 0.75;
-/// Samples by which neighbours that were reached from different sides may disagree; those that do are a cycle apart.
-const MOST_SEAM: f32 = 1.5;
 
 /// Fills the holes of all sheets along the reflection where neighbouring traces show one (nodes of
 /// [`Quality::Tracked`]), and with the surface of least curvature elsewhere, as [`fill_holes`]. `read` gives the samples
@@ -49,7 +42,8 @@ pub fn fill_along<E: From<Cancelled>>(
             holes += 1;
             let sheet = &mut sheets[index];
             let Some((first, extent)) = box_around(&hole, guide, size) else { continue };
-            let front = Front { samples: read(first, extent)?, first, guide, blocks, size };
+            let samples = Samples { samples: read(first, extent)?, first, crosslines: size[1] };
+            let front = Front { samples, guide, blocks, size };
             along += front.advance(sheet, &hole);
         }
     }
@@ -79,51 +73,9 @@ fn box_around(hole: &Hole, guide: &VoxelSheet, [nx, ny, nz]: [usize; 3]) -> Opti
         .then(|| ([low[0], low[1], top], [high[0] + 1 - low[0], high[1] + 1 - low[1], bottom + 1 - top]))
 }
 
-/// The traces beside a trace.
-fn neighbours(n: usize, [nx, ny]: [usize; 2]) -> impl Iterator<Item = usize> {
-    let (x, y) = (n / ny, n % ny);
-    let beside = [
-        (x > 0).then(|| n - ny),
-        (x + 1 < nx).then_some(n + ny),
-        (y > 0).then(|| n - 1),
-        (y + 1 < ny).then_some(n + 1),
-    ];
-    beside.into_iter().flatten()
-}
-
-/// A trace that the reflection may go on to.
-struct Step {
-    alike: f32,
-    to: usize,
-    z: f32,
-}
-
-impl PartialEq for Step {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Step {}
-
-impl PartialOrd for Step {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Step {
-    /// The most alike is the greatest; of two alike the one with the lesser number.
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.alike.total_cmp(&other.alike).then_with(|| other.to.cmp(&self.to)).then_with(|| self.z.total_cmp(&other.z))
-    }
-}
-
 /// What following through one hole needs.
 struct Front<'a> {
-    samples: Volume<f32>,
-    /// The voxel of the first sample.
-    first: [usize; 3],
+    samples: Samples,
     guide: &'a VoxelSheet,
     blocks: &'a FaultNetwork,
     size: [usize; 3],
@@ -164,51 +116,11 @@ impl Front<'_> {
         if !expected.is_finite() {
             return None;
         }
-        let here = self.window(from, z)?;
-        let alike =
-            |shift: i32| self.window(to, expected + shift as f32).map_or(-1.0, |there| correlation(&here, &there));
-        let scores: Vec<f32> = (-MOST_STEP - 1..=MOST_STEP + 1).map(alike).collect();
-        let best = (1..scores.len() - 1).max_by(|&a, &b| scores[a].total_cmp(&scores[b]))?;
-        let [before, at, after] = [scores[best - 1], scores[best], scores[best + 1]];
-        if at < ALIKE || before > at || after > at {
-            return None;
-        }
-        let bend = before - 2.0 * at + after;
-        let between = if bend < -1e-6 { (0.5 * (before - after) / bend).clamp(-0.5, 0.5) } else { 0.0 };
-        let z = expected + (best as i32 - MOST_STEP - 1) as f32 + between;
+        let Step { alike, z, .. } = self.samples.step((from, z), to, expected, ALIKE)?;
         let place = Vec3::new((to / self.size[1]) as f32, (to % self.size[1]) as f32, z);
         let is_near = (z - self.guide.z[to]).abs() <= REACH;
-        (is_near && self.blocks.holds(self.guide.block, place)).then_some(Step { alike: at, to, z })
+        (is_near && self.blocks.holds(self.guide.block, place)).then_some(Step { alike, to, z })
     }
-
-    /// The samples around a depth on a trace; none where they are not all there.
-    fn window(&self, n: usize, z: f32) -> Option<[f32; 2 * WINDOW as usize + 1]> {
-        let [x, y] = [(n / self.size[1]).checked_sub(self.first[0])?, (n % self.size[1]).checked_sub(self.first[1])?];
-        let [nx, ny, _] = self.samples.size();
-        if x >= nx || y >= ny {
-            return None;
-        }
-        let trace = self.samples.trace(x, y);
-        let top = z - self.first[2] as f32 - WINDOW as f32;
-        let whole = top.floor();
-        if whole < 0.0 || whole as usize + 2 * WINDOW as usize + 1 >= trace.len() {
-            return None;
-        }
-        let (whole, share) = (whole as usize, top - whole);
-        let window = std::array::from_fn(|k| trace[whole + k] * (1.0 - share) + trace[whole + k + 1] * share);
-        window.iter().all(|value: &f32| value.is_finite()).then_some(window)
-    }
-}
-
-/// The correlation of two windows, from −1 to 1; −1 where one of them is silent.
-fn correlation<const N: usize>(a: &[f32; N], b: &[f32; N]) -> f32 {
-    let (mut both, mut first, mut second) = (0.0_f64, 0.0_f64, 0.0_f64);
-    for (a, b) in a.iter().zip(b) {
-        let (a, b) = (f64::from(*a), f64::from(*b));
-        (both, first, second) = (both + a * b, first + a * a, second + b * b);
-    }
-    let power = (first * second).sqrt();
-    if power > 0.0 { (both / power) as f32 } else { -1.0 }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use super::dialogue::{Dialogue, ExportForm, ShareForm, SurfaceForm};
 use super::notice::{Notice, Place};
 use super::picking::{PickingStep, PickingTask};
 use super::session::Snapshot;
-use super::view::{Compare, Layout, Panel, StandardView};
+use super::view::{Compare, Layout, Panel, SectionVolumes, StandardView};
 use formats::SurfaceKind;
 use project::command::Command;
 use render::Scene;
@@ -71,6 +71,8 @@ pub enum Action {
     Present(Option<usize>),
     /// Draw sections at this vertical exaggeration; `None`: as large as their views.
     Proportions(Option<f64>),
+    /// Show these volumes on sections.
+    Volumes(SectionVolumes),
     /// Move the camera to a standard position.
     Stand(StandardView),
     /// Choose which views fill the middle.

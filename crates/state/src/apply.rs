@@ -126,6 +126,7 @@ impl State {
                 Err(error) => self.notices.push(Notice::failure(Place::Scenes, &error)),
             },
             Action::Stand(place) => camera::stand(&mut view.scene, place),
+            Action::Volumes(volumes) => view.volumes = volumes,
             Action::Proportions(factor) => view.proportions = factor,
             Action::Arrange(layout) => view.layout = layout,
             Action::Compare(compare) => view.compare = compare,

@@ -31,6 +31,9 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         ProjectError::NotAssembled { .. } => {
             "choose another horizon, or start one (New horizon): only horizons that were made from picks take picks"
         }
+        ProjectError::NotClimbable { .. } => "take it out, and draw or track it again",
+        ProjectError::ShortLine => "click at least two points along the reflection",
+        ProjectError::NothingTracked { .. } => "click a strong peak or trough, or draw lines instead (Pointer: Draw)",
         ProjectError::NothingLeft { .. } => "to remove the horizon, use Remove beside its name",
         ProjectError::AlreadyPicked { .. } => "pick elsewhere, or climb higher first",
         ProjectError::NotPicked { .. } => "the picks and their places are listed under the horizon's name",

@@ -32,7 +32,7 @@ pub use notice::{Notice, Place};
 pub use picking::{How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, StickPoint, Tool};
 pub use remembered::{Appearance, Remembered};
 pub use session::{Session, Snapshot};
-pub use view::{Compare, Hidden, Layout, Panel, SectionKind, StandardView, ViewState};
+pub use view::{Blended, Compare, Hidden, Layout, Panel, SectionKind, SectionVolumes, StandardView, ViewState};
 
 /// Everything that the window shows.
 ///

@@ -11,10 +11,11 @@ use glam::{DVec2, DVec3};
 use interp::ExtractSettings;
 use interp::assembly::Operation;
 use interp::faults::Proposal;
-use project::command::{Climb, Command, PickNode};
-use project::document::{Document, HorizonEntry};
+use project::command::{Climb, Command, DrawHorizon, PickNode};
+use project::document::{Document, Drawn, HorizonEntry};
 use project::error::Noun;
 use project::interpretation::assembly::next_colour;
+use refine::TrackSettings;
 use render::{FaceData, Scene};
 use serde::{Deserialize, Serialize};
 use survey::SurveyGeometry;
@@ -37,6 +38,10 @@ pub enum Tool {
     Sticks,
     /// Makes a horizon of the level of geologic time through a place, or corrects one that was made so.
     Time,
+    /// Draws a line of a horizon, point by point or freehand.
+    Draw,
+    /// Tracks the reflection from a place.
+    Track,
 }
 
 /// How the block is shown.
@@ -92,6 +97,15 @@ pub struct Picking {
     pub sticks: Vec<Vec<[f64; 3]>>,
     /// Name of that fault.
     pub fault: String,
+    /// The line of the horizon being drawn.
+    pub line: Vec<[f64; 3]>,
+    /// The line that was added last, until the project contains it.
+    #[serde(skip)]
+    pub added: Vec<[f64; 3]>,
+    /// Whether lines are laid on the nearest peak or trough.
+    pub snap: bool,
+    /// How far reflections are tracked.
+    pub window: TrackSettings,
     /// The numbers of the proposals that were dismissed.
     pub dismissed: Vec<u32>,
     /// Whether minor proposals are shown too.
@@ -178,6 +192,12 @@ pub enum PickingStep {
     Erase(Lasso),
     /// Add a point to the stick, voxel.
     Stick(DVec3),
+    /// Add points to the line of the horizon, voxels.
+    Line(Vec<DVec3>),
+    /// Lay lines on the nearest peak or trough, or leave them as they are drawn.
+    Snap(bool),
+    /// Track so far.
+    Window(TrackSettings),
     /// Move a point of a stick, voxel.
     MovePoint(StickPoint, DVec3),
     /// End the stick.
@@ -275,6 +295,23 @@ impl Picking {
         let command = self.command()?;
         self.accepted = self.pick.take();
         Some(Task::Apply(Box::new(Command::Pick(command))))
+    }
+
+    /// The command that adds a part to the present horizon, or to a new one.
+    pub(super) fn draw(&mut self, part: Drawn, document: &Document) -> Task {
+        let free = || free_name(document, Noun::Horizon, "Horizon");
+        let horizon = self.horizon.get_or_insert_with(free).clone();
+        Task::Apply(Box::new(Command::DrawHorizon(DrawHorizon { horizon, colour: self.colour, part })))
+    }
+
+    /// The command that adds the line being drawn; a single point is dropped.
+    pub(super) fn end_line(&mut self, document: &Document) -> Option<Task> {
+        let points = std::mem::take(&mut self.line);
+        if points.len() < 2 {
+            return None;
+        }
+        self.added.clone_from(&points);
+        Some(self.draw(Drawn::Line { points, snap: self.snap }, document))
     }
 
     pub(super) fn end_stick(&mut self) {

@@ -4,7 +4,7 @@ use super::picking::{How, Picking, PickingStep, PickingTask, StickPoint, Tool, f
 use super::{Place, State, Task};
 use interp::assembly::Operation;
 use project::command::{Climb, Command, MoveStickPoint, PickByTime, PickFault, PickNode, TimeLevel};
-use project::document::Document;
+use project::document::{Document, Drawn};
 use project::error::Noun;
 
 impl State {
@@ -21,6 +21,10 @@ impl State {
         match step {
             PickingStep::At(voxel, _) if picking.tool == Tool::Time => {
                 return picking.by_time(place_of(&geometry, voxel), document);
+            }
+            PickingStep::At(voxel, _) if picking.tool == Tool::Track => {
+                let part = Drawn::Tracked { at: place_of(&geometry, voxel), window: picking.window };
+                return vec![picking.draw(part, document)];
             }
             PickingStep::At(voxel, how) => return picking.click(place_of(&geometry, voxel), how),
             PickingStep::Found(pick) => {
@@ -44,13 +48,17 @@ impl State {
                     picking.end_stick();
                     return Vec::new();
                 }
+                if picking.tool == Tool::Draw {
+                    return picking.end_line(document).into_iter().collect();
+                }
                 return picking.accept().into_iter().collect();
             }
             PickingStep::GiveUp => {
-                if picking.stick.is_empty() && picking.pick.is_none() {
+                if picking.stick.is_empty() && picking.pick.is_none() && picking.line.is_empty() {
                     picking.tool = Tool::Pick;
                 }
                 picking.stick.clear();
+                picking.line.clear();
                 picking.pick = None;
             }
             PickingStep::Begin => return picking.turn_to(None, document),
@@ -59,10 +67,12 @@ impl State {
             PickingStep::Tint(colour) => picking.colour = Some(colour),
             PickingStep::Use(tool) => {
                 picking.end_stick();
+                let line = picking.end_line(document);
                 picking.tool = tool;
                 if tool == Tool::Sticks && picking.fault.is_empty() {
                     picking.fault = free_name(document, Noun::Fault, "Fault");
                 }
+                return line.into_iter().collect();
             }
             PickingStep::Look(look) => picking.look = look,
             PickingStep::Show(show) => picking.show = show,
@@ -74,6 +84,11 @@ impl State {
                 }
             }
             PickingStep::Stick(voxel) => picking.stick.push(place_of(&geometry, voxel)),
+            PickingStep::Line(voxels) => {
+                picking.line.extend(voxels.into_iter().map(|voxel| place_of(&geometry, voxel)));
+            }
+            PickingStep::Snap(snap) => picking.snap = snap,
+            PickingStep::Window(window) => picking.window = window,
             PickingStep::MovePoint(StickPoint { fault: Some(fault), stick, point }, to) => {
                 let command = MoveStickPoint { fault, stick, point, to: place_of(&geometry, to) };
                 return vec![Task::Apply(Box::new(Command::MoveStickPoint(command)))];
@@ -85,6 +100,7 @@ impl State {
                 }
             }
             PickingStep::EndStick => picking.end_stick(),
+            PickingStep::Backspace if picking.tool == Tool::Draw => drop(picking.line.pop()),
             PickingStep::Backspace => {
                 if picking.stick.is_empty() {
                     picking.stick = picking.sticks.pop().unwrap_or_default();
@@ -107,6 +123,10 @@ impl State {
             && picking.pick.is_none()
         {
             picking.pick = Some(pick);
+        }
+        let added = std::mem::take(&mut picking.added);
+        if picking.line.is_empty() {
+            picking.line = added;
         }
     }
 }
@@ -148,7 +168,7 @@ impl Picking {
     /// Sends the next picks to another horizon: the one given, or else a new one.
     fn turn_to(&mut self, chosen: Option<String>, document: &Document) -> Vec<Task> {
         // The selection belongs to the horizon that it was made for.
-        let tasks: Vec<Task> = self.accept().into_iter().collect();
+        let tasks: Vec<Task> = self.accept().into_iter().chain(self.end_line(document)).collect();
         let taken = self.horizon.clone().filter(|_| !tasks.is_empty());
         self.horizon = Some(chosen.unwrap_or_else(|| {
             let name = free_name(document, Noun::Horizon, "Horizon");
@@ -159,7 +179,7 @@ impl Picking {
             format!("Horizon {}", number + 1)
         }));
         self.colour = None;
-        if self.tool != Tool::Time {
+        if !matches!(self.tool, Tool::Time | Tool::Draw | Tool::Track) {
             self.tool = Tool::Pick;
         }
         tasks

@@ -4,7 +4,8 @@ use super::picking::*;
 use super::tests::open;
 use super::{Action, Notice, Place, State, Task};
 use glam::DVec3;
-use project::command::{Climb, Command};
+use project::command::{Climb, Command, DrawHorizon};
+use project::document::Drawn;
 
 fn picking(state: &State) -> &Picking {
     &state.session.as_ref().unwrap().view.picking
@@ -88,4 +89,29 @@ fn backspace_reaches_into_the_stick_before() {
     step(PickingStep::EndStick);
     step(PickingStep::Backspace);
     assert_eq!((picking(&state).stick.len(), picking(&state).sticks.len()), (1, 0));
+}
+
+#[test]
+fn a_line_is_drawn_taken_back_and_added_and_comes_back_where_that_fails() {
+    let mut state = open();
+    state.apply(Action::Picking(PickingStep::Use(Tool::Draw)));
+    let at = |y: f64| DVec3::new(3.0, y, 6.0);
+    state.apply(Action::Picking(PickingStep::Line(vec![at(1.0), at(2.0), at(4.0)])));
+    state.apply(Action::Picking(PickingStep::Backspace));
+    state.apply(Action::Picking(PickingStep::Snap(true)));
+    let tasks = state.apply(Action::Picking(PickingStep::Accept));
+    let Some(Task::Apply(command)) = tasks.first() else { panic!("{tasks:?}") };
+    let Command::DrawHorizon(DrawHorizon { horizon, part, .. }) = command.as_ref() else { panic!("{command:?}") };
+    let Drawn::Line { points, snap: true } = part else { panic!("{part:?}") };
+    assert_eq!((horizon.as_str(), points.len()), ("Horizon 1", 2));
+    assert!(picking(&state).line.is_empty());
+    state.apply(Action::Tell(Notice { failed: true, ..Notice::note(Place::Interpret, "the disk is full") }));
+    assert_eq!(picking(&state).line.len(), 2);
+    let tasks = state.apply(Action::Picking(PickingStep::Use(Tool::Track)));
+    assert!(matches!(&tasks[..], [Task::Apply(_)]), "a line is not lost with its tool: {tasks:?}");
+    let tasks = state.apply(Action::Picking(PickingStep::At(at(2.0), How::Replace)));
+    let Some(Task::Apply(command)) = tasks.first() else { panic!("{tasks:?}") };
+    let Command::DrawHorizon(DrawHorizon { part: Drawn::Tracked { .. }, .. }) = command.as_ref() else {
+        panic!("{command:?}")
+    };
 }

@@ -46,6 +46,7 @@ impl Session {
         let was_bare = self.document.horizons.is_empty();
         self.view.picking.fit(&self.document, &snapshot.document);
         self.view.picking.accepted = None;
+        self.view.picking.added.clear();
         self.document = snapshot.document;
         self.revision += 1;
         self.history = snapshot.history;

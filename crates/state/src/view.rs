@@ -10,6 +10,7 @@ use render::{Scene, Unpicked, VoxelBox};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use survey::SurveyGeometry;
+use ttf::ColourMap;
 
 /// Which views fill the middle of the window.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -132,6 +133,44 @@ impl Hidden {
     }
 }
 
+/// What sections show of the volumes: the raw data, and a second volume over them.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SectionVolumes {
+    /// Whether the raw data are hidden.
+    pub without_raw: bool,
+    /// The volume over them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub over: Option<Blended>,
+}
+
+/// A volume that is laid over the raw data of sections.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Blended {
+    /// Its name.
+    pub volume: String,
+    /// Its colours.
+    pub map: ColourMap,
+    /// How much of the raw data it covers, 0 to 1.
+    pub opacity: f32,
+}
+
+impl Blended {
+    /// A volume in colours that differ from the usual ones of raw data, half of them.
+    pub fn new(volume: &str) -> Self {
+        Self { volume: volume.to_owned(), map: ColourMap::Strata, opacity: 0.5 }
+    }
+}
+
+impl SectionVolumes {
+    fn fit(&mut self, document: &Document) {
+        let is_there = |over: &Blended| {
+            document.volumes.iter().any(|entry| entry.name == over.volume && entry.geometry.is_none())
+        };
+        self.over = self.over.take().filter(is_there);
+    }
+}
+
 /// How the open project is displayed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ViewState {
@@ -162,6 +201,9 @@ pub struct ViewState {
     /// What is hidden.
     #[serde(default)]
     pub hidden: Hidden,
+    /// The volumes that sections show.
+    #[serde(default)]
+    pub volumes: SectionVolumes,
     /// The interpretation under way.
     #[serde(default)]
     pub picking: Picking,
@@ -188,6 +230,7 @@ impl ViewState {
             horizon: None,
             handles: true,
             hidden: Hidden::default(),
+            volumes: SectionVolumes::default(),
             picking: Picking::default(),
         }
     }
@@ -214,6 +257,7 @@ impl ViewState {
             *corner = [0, 1].map(|axis| corner[axis].clamp(0.0, last[axis]));
         }
         self.hidden.fit(document);
+        self.volumes.fit(document);
         self.layer = self.layer.take().filter(|name| document.layers().contains(name));
         self.horizon = self.horizon.take().filter(|name| document.horizons.iter().any(|entry| entry.name == *name));
     }

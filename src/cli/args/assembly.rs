@@ -82,6 +82,43 @@ pub(in crate::cli) struct FillArgs {
 }
 
 #[derive(Debug, Args)]
+pub(in crate::cli) struct DrawArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Horizon; created if it does not exist
+    pub(in crate::cli) name: String,
+    /// Corners of the line: line numbers and the vertical value
+    #[arg(long, value_name = "INLINE,CROSSLINE,Z", num_args = 1.., required = true)]
+    pub(in crate::cli) line: Vec<String>,
+    /// Lay its nodes on the nearest peak or trough, whichever the samples along the line are
+    #[arg(long)]
+    pub(in crate::cli) snap: bool,
+    /// Colour of the horizon, #rrggbb [default: its present colour, or the next of a list]
+    #[arg(long, value_name = "COLOUR")]
+    pub(in crate::cli) colour: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct TrackArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Horizon; created if it does not exist
+    pub(in crate::cli) name: String,
+    /// Place on the reflection: line numbers and the vertical value
+    #[arg(long, value_name = "INLINE,CROSSLINE,Z", allow_hyphen_values = true)]
+    pub(in crate::cli) at: String,
+    /// Traces to each side of the place, 1 to 1000
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(in crate::cli) traces: u32,
+    /// Samples above and below the place, 1 to 1000
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(in crate::cli) samples: u32,
+    /// Colour of the horizon, #rrggbb [default: its present colour, or the next of a list]
+    #[arg(long, value_name = "COLOUR")]
+    pub(in crate::cli) colour: Option<String>,
+}
+
+#[derive(Debug, Args)]
 pub(in crate::cli) struct SmoothArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,

@@ -1,7 +1,9 @@
 //! Arguments for volumes, horizons and faults.
 
 use super::SegyArgs;
-use super::assembly::{FaultPickArgs, FaultProposeArgs, FillArgs, ReplayArgs, SmoothArgs};
+use super::assembly::{
+    DrawArgs, FaultPickArgs, FaultProposeArgs, FillArgs, ReplayArgs, SmoothArgs, TrackArgs,
+};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -73,6 +75,13 @@ pub(in crate::cli) enum HorizonAction {
         /// New name
         to: String,
     },
+    /// Draw a line of a horizon by hand, where there is no candidate; it needs no extraction
+    #[command(after_help = "Example:\
+                      \n  petroglyph horizon draw north.petro \"Top Chalk\" --line 1250,1300,902 1250,1340,915 --snap")]
+    Draw(DrawArgs),
+    /// Track a reflection from one place within a window, never across a fault; it needs no extraction
+    #[command(after_help = "Example:\n  petroglyph horizon track north.petro \"Top Chalk\" --at 1250,1300,902 --traces 80")]
+    Track(TrackArgs),
     /// Fill the holes of a horizon, never across a fault
     #[command(after_help = "Example:\n  petroglyph horizon fill north.petro \"Top Chalk\" --max-traces 200")]
     Fill(FillArgs),
@@ -82,7 +91,7 @@ pub(in crate::cli) enum HorizonAction {
     /// Make the picks of horizons again, after another extraction
     #[command(after_help = "Example:\n  petroglyph horizon replay north.petro")]
     Replay(ReplayArgs),
-    /// Remove a pick, as if it had never been made
+    /// Remove a pick, or what was drawn or tracked, as if it had never been made
     #[command(after_help = "Example:\n  petroglyph horizon unpick north.petro 3")]
     Unpick {
         /// Project folder

@@ -15,7 +15,8 @@ mod well;
 
 pub(super) use animate::AnimateArgs;
 pub(super) use assembly::{
-    ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs, SmoothArgs, TimeArgs,
+    ClimbArgs, DescendArgs, DrawArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs, SmoothArgs,
+    TimeArgs, TrackArgs,
 };
 pub(super) use attribute::AttributeArgs;
 pub(super) use extraction::ExtractArgs;

@@ -2,20 +2,21 @@
 
 use super::notices;
 use super::picking::swatch;
-use crate::state::{Action, Choice, Dialogue, Place, Session, State, SurfaceForm};
-use eframe::egui::{Align, Button, DragValue, Id, Layout, Response, ScrollArea, Ui, UiBuilder, WidgetInfo};
+use crate::state::{Action, Blended, Choice, Dialogue, Place, SectionVolumes, Session, State, SurfaceForm};
+use eframe::egui::{Align, Button, ComboBox, DragValue, Id, Label, Layout, Response, ScrollArea, Ui, UiBuilder, WidgetInfo};
 use formats::SurfaceKind;
 use project::command::{
     Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameFault, RenameHorizon, SetFaultExtent, SetRaw,
     SetVelocity,
 };
-use project::document::FaultEntry;
+use project::document::{FaultEntry, VolumeEntry};
 use project::styles;
 use render::Scene;
 use survey::VerticalUnit;
 use ttf::ColourMap;
 use widgets::keyboard::{Renamed, Renaming};
 use widgets::obstacle::{needs, unless};
+use widgets::percent;
 
 /// Room at the right for the scroll bar, points.
 const BESIDE_BAR: f32 = 8.0;
@@ -71,7 +72,7 @@ impl Data {
                     }
                     return;
                 }
-                let row = named(ui, &entry.name, is_chosen, &format!("Remove horizon {}", entry.name));
+                let row = named(ui, &entry.name, Some(is_chosen), &format!("Remove horizon {}", entry.name));
                 if row.name.on_hover_text(format!("{}: {}", entry.name, entry.source.reading)).clicked() {
                     actions.push(Action::Horizon((!is_chosen).then(|| entry.name.clone())));
                 }
@@ -111,7 +112,7 @@ impl Data {
                     }
                     return;
                 }
-                let row = named(ui, &entry.name, is_chosen, &format!("Remove fault {}", entry.name));
+                let row = named(ui, &entry.name, Some(is_chosen), &format!("Remove fault {}", entry.name));
                 if row.name.on_hover_text(format!("{}: {}", entry.name, entry.source.reading)).clicked() {
                     self.fault = (!is_chosen).then(|| entry.name.clone());
                 }
@@ -221,12 +222,15 @@ struct Row {
     is_removed: bool,
 }
 
-/// A name that is cut off where there is no room, and a button to remove it at the end of the row.
-fn named(ui: &mut Ui, name: &str, is_chosen: bool, hint: &str) -> Row {
+/// A name that is cut off where there is no room, and can be chosen where that means something, and a button to remove it at the end of the row.
+fn named(ui: &mut Ui, name: &str, is_chosen: Option<bool>, hint: &str) -> Row {
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         let is_removed = ui.button("Remove").on_hover_text(hint).clicked();
-        let label = Button::selectable(is_chosen, name).truncate();
-        let name = ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.add(label)).inner;
+        let name = ui.with_layout(Layout::left_to_right(Align::Center), |ui| match is_chosen {
+            Some(is_chosen) => ui.add(Button::selectable(is_chosen, name).truncate()),
+            None => ui.add(Label::new(name).truncate()),
+        });
+        let name = name.inner;
         Row { name, is_removed }
     })
     .inner
@@ -262,23 +266,70 @@ fn volumes(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let document = &session.document;
     let raw = styles::transfer_functions(document).raw;
     for entry in &document.volumes {
+        let is_raw = raw.as_ref().is_some_and(|raw| raw.volume == entry.name);
         ui.horizontal(|ui| {
-            let is_raw = raw.as_ref().is_some_and(|raw| raw.volume == entry.name);
-            let radio = ui.radio(is_raw, &entry.name);
-            if radio
-                .on_hover_text(format!("Show as raw data; {} polarity; {}", entry.polarity, entry.source.reading))
-                .clicked()
+            on_sections(ui, session, entry, is_raw, actions);
+            let row = named(ui, &entry.name, Some(is_raw), &format!("Remove volume {}", entry.name));
+            let hint = format!(
+                "{}: show as raw data; {} polarity; {}",
+                entry.name, entry.polarity, entry.source.reading
+            );
+            if row.name.on_hover_text(hint).clicked()
                 && let Ok(raw) = styles::raw_colour(document, Some(&entry.name), ColourMap::Seismics, None)
             {
                 actions.push(Action::Apply(Box::new(Command::SetRaw(SetRaw { raw }))));
             }
-            if remove(ui, &format!("Remove volume {}", entry.name)) {
+            if row.is_removed {
                 let command = RemoveVolume { name: entry.name.clone() };
                 actions.push(Action::Apply(Box::new(Command::RemoveVolume(command))));
             }
         });
+        if let Some(over) = session.view.volumes.over.as_ref().filter(|over| over.volume == entry.name) {
+            ui.indent("over", |ui| blended(ui, session, over, actions));
+        }
     }
     add(ui, "Add a volume…", Choice::MoreSurvey, true, actions);
+}
+
+/// A box that shows a volume on the sections: the raw data, or another one over them.
+fn on_sections(ui: &mut Ui, session: &Session, entry: &VolumeEntry, is_raw: bool, actions: &mut Vec<Action>) {
+    let volumes = &session.view.volumes;
+    let is_over = volumes.over.as_ref().is_some_and(|over| over.volume == entry.name);
+    let before = if is_raw { !volumes.without_raw } else { is_over };
+    let mut is_shown = before;
+    let has_own = entry.geometry.is_some();
+    let shown = ui.name_inputs(format!("Show volume {}", entry.name), |ui| {
+        ui.add_enabled_ui(!has_own || is_raw, |ui| ui.checkbox(&mut is_shown, "")).inner
+    });
+    let hint = if is_raw { "The raw data of the sections" } else { "Over the raw data of the sections, in colours of its own" };
+    shown.on_hover_text(hint).on_disabled_hover_text("It has traces of its own and cannot be laid over the raw data");
+    if is_shown != before {
+        actions.push(Action::Volumes(match is_raw {
+            true => SectionVolumes { without_raw: !is_shown, ..volumes.clone() },
+            false => SectionVolumes { over: is_shown.then(|| Blended::new(&entry.name)), ..volumes.clone() },
+        }));
+    }
+}
+
+/// Colours and opacity of the volume over the raw data.
+fn blended(ui: &mut Ui, session: &Session, over: &Blended, actions: &mut Vec<Action>) {
+    let mut next = over.clone();
+    ui.horizontal(|ui| {
+        let colours = ComboBox::from_id_salt("colours of the second volume").width(110.0).selected_text(next.map.name());
+        ui.name_inputs(format!("Colours of {}", over.volume), |ui| {
+            colours.show_ui(ui, |ui| {
+                for map in ColourMap::ALL {
+                    ui.selectable_value(&mut next.map, map, map.name());
+                }
+            })
+            .response
+        });
+        ui.name_inputs(format!("Opacity of {}", over.volume), |ui| ui.add(percent::drag(&mut next.opacity)))
+            .on_hover_text("How much of the raw data it covers");
+    });
+    if next != *over {
+        actions.push(Action::Volumes(SectionVolumes { over: Some(next), ..session.view.volumes.clone() }));
+    }
 }
 
 fn wells(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -294,8 +345,9 @@ fn wells(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
                 let scene = Scene { hidden_wells: hidden, ..session.view.scene.clone() };
                 actions.push(Action::Show(Box::new(scene)));
             }
-            ui.label(&entry.name).on_hover_text(&entry.source.reading);
-            if remove(ui, &format!("Remove well {}", entry.name)) {
+            let row = named(ui, &entry.name, None, &format!("Remove well {}", entry.name));
+            row.name.on_hover_text(format!("{}: {}", entry.name, entry.source.reading));
+            if row.is_removed {
                 let command = RemoveWell { name: entry.name.clone() };
                 actions.push(Action::Apply(Box::new(Command::RemoveWell(command))));
             }

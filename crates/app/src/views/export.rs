@@ -1,7 +1,7 @@
 //! The dialogue for export: file, size and resolution.
 
 use super::notices;
-use crate::state::{Action, Dialogue, ExportForm, Place, Session, Shown, State};
+use crate::state::{Action, Dialogue, ExportForm, Layout, Place, SectionVolumes, Session, Shown, State};
 use eframe::egui::{Button, Checkbox, Context, DragValue, Grid, Id, Modal, Spinner, TextEdit, Ui, Vec2};
 use figure::Annotation;
 use pictures::SparseHorizon;
@@ -134,6 +134,9 @@ fn fields(
     let has_format = FigureFormat::of(Path::new(next.path.trim())).is_some();
     if !has_format {
         ui.colored_label(ui.visuals().error_fg_color, "The file's name must end in .png, .tif, .svg or .pdf");
+    }
+    if session.view.layout == Layout::Sections && session.view.volumes != SectionVolumes::default() {
+        ui.weak("Sections on the page show the raw data alone, without a second volume.");
     }
     let is_accepted = accept(ui, sparse, &mut next);
     ui.horizontal(|ui| {

@@ -55,7 +55,7 @@ pub fn is_held(ui: &Ui, session: &Session) -> bool {
 
 /// How a click picks, and where in the window; `None` where it does not pick.
 pub fn pick_at(ui: &Ui, response: &Response, session: &Session) -> Option<(How, Pos2)> {
-    let picks = response.clicked() && session.view.picking.tool != Tool::Sticks;
+    let picks = response.clicked() && !matches!(session.view.picking.tool, Tool::Sticks | Tool::Draw);
     picks.then(|| response.interact_pointer_pos().map(|at| (how(ui), at))).flatten()
 }
 
@@ -84,7 +84,8 @@ pub fn click(ui: &Ui, response: &Response, session: &Session, voxel: DVec3, acti
         let how = how(ui);
         actions.push(Action::Picking(match session.view.picking.tool {
             Tool::Sticks => PickingStep::Stick(voxel),
-            Tool::Pick | Tool::Lasso | Tool::Time => PickingStep::At(voxel, how),
+            Tool::Draw => PickingStep::Line(vec![voxel]),
+            Tool::Pick | Tool::Lasso | Tool::Time | Tool::Track => PickingStep::At(voxel, how),
         }));
     }
 }

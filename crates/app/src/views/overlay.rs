@@ -93,7 +93,9 @@ fn sticks(session: &Session) -> Vec<Stick> {
     let Some(geometry) = &session.document.geometry else { return Vec::new() };
     let made = session.document.sticks.iter().flat_map(|fault| &fault.sticks).map(|stick| (stick, Colour::BLACK));
     let places = |stick: &Vec<[f64; 3]>| stick.iter().map(|place| voxel_of(geometry, *place)).collect();
-    made.chain(own_sticks(session)).map(|(stick, colour)| Stick { places: places(stick), colour }).collect()
+    let line = &session.view.picking.line;
+    let line = (!line.is_empty()).then(|| (line, session.view.picking.colour_in(&session.document)));
+    made.chain(own_sticks(session)).chain(line).map(|(stick, colour)| Stick { places: places(stick), colour }).collect()
 }
 
 impl Overlay {

@@ -136,16 +136,15 @@ pub const INTERPRETING: &[Shortcut] = &[
     plain(Key::ArrowUp, "Up", "Climb", |_| picking(PickingStep::Climb(1))),
     plain(Key::ArrowDown, "Down", "Descend", |_| picking(PickingStep::Climb(-1))),
     plain(Key::H, "H", "Highest valid", |_| picking(PickingStep::HighestValid)),
-    plain(Key::Enter, "Enter", "Add to the horizon; end a stick", |_| picking(PickingStep::Accept)),
-    plain(Key::Escape, "Escape", "Deselect, or drop the stick", |_| picking(PickingStep::GiveUp)),
-    plain(Key::Backspace, "Backspace", "Remove the last point of a stick", |session| {
-        (session.view.picking.tool == Tool::Sticks).then_some(Action::Picking(PickingStep::Backspace))
+    plain(Key::Enter, "Enter", "Add to the horizon; end a stick or a line", |_| picking(PickingStep::Accept)),
+    plain(Key::Escape, "Escape", "Deselect, or drop the stick or the line", |_| picking(PickingStep::GiveUp)),
+    plain(Key::Backspace, "Backspace", "Remove the last point of a stick or a line", |session| {
+        matches!(session.view.picking.tool, Tool::Sticks | Tool::Draw).then_some(Action::Picking(PickingStep::Backspace))
     }),
     plain(Key::N, "N", "New horizon", |_| picking(PickingStep::Begin)),
-    plain(Key::F, "F", "Draw fault sticks, or pick again", |session| {
-        let is_drawing = session.view.picking.tool == Tool::Sticks;
-        picking(PickingStep::Use(if is_drawing { Tool::Pick } else { Tool::Sticks }))
-    }),
+    plain(Key::F, "F", "Draw fault sticks, or pick again", |session| turn_to(session, Tool::Sticks)),
+    plain(Key::M, "M", "Draw lines of a horizon by hand, or pick again", |session| turn_to(session, Tool::Draw)),
+    plain(Key::U, "U", "Track reflections from a click, or pick again", |session| turn_to(session, Tool::Track)),
     plain(Key::O, "O", "Volume rendering, or the faces of the block", |session| {
         let is_clear = session.view.picking.look == Look::VolumeRendering;
         picking(PickingStep::Look(if is_clear { Look::Faces } else { Look::VolumeRendering }))
@@ -171,6 +170,11 @@ pub const INTERPRETING: &[Shortcut] = &[
     // The key is held while dragging; pressing it does nothing by itself.
     plain(lasso::HELD, "A and drag", "Erase with the lasso", |_| None),
 ];
+
+/// Takes a tool, or puts it away where it is in hand.
+fn turn_to(session: &Session, tool: Tool) -> Option<Action> {
+    picking(PickingStep::Use(if session.view.picking.tool == tool { Tool::Pick } else { tool }))
+}
 
 fn picking(step: PickingStep) -> Option<Action> {
     Some(Action::Picking(step))

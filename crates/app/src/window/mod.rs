@@ -300,6 +300,7 @@ impl Window {
             }
             Command::Pick(_)
             | Command::PickSeveral(_)
+            | Command::DrawHorizon(_)
             | Command::MovePick(_)
             | Command::RemovePick(_)
             | Command::ReplayPicks(_)

@@ -29,7 +29,7 @@ pub use picks::{Interpreted, InterpretedHorizon, Picks, ShownFault, ShownPick, s
 pub use picture::{Drawing, Drawn, PictureRequest, Touch};
 pub use running::{Running, RunningLine};
 pub use share::SharePreview;
-pub use slice::{SliceRequest, Slices};
+pub use slice::{CutOf, SliceRequest, Slices};
 pub use swatches::Swatches;
 
 use super::state::{Notice, PickingStep, Place, Snapshot, Task};
@@ -38,7 +38,6 @@ use figure::cut::{FenceCut, SectionCut};
 use figure::map::HorizonMap;
 use image::RgbaImage;
 use project::command::PickNode;
-use render::FaceData;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, OnceLock};
@@ -70,8 +69,8 @@ pub enum Event {
     Sliced {
         /// The section.
         cut: SectionCut,
-        /// Its position, the number of its data, and what of the candidates it shows.
-        of: (f64, u64, FaceData),
+        /// What it shows.
+        of: CutOf,
     },
     /// A section along a line.
     Fenced(FenceCut),

@@ -3,12 +3,16 @@
 use super::fence::{self, FenceRequest};
 use super::latest_value::{Inbox, LatestValueWorker};
 use super::{Event, Outbox, Rocks};
-use crate::state::SectionKind;
+use crate::state::{Notice, Place, SectionKind, SectionVolumes};
 use figure::cut::{SectionCut, SectionSource};
+use image::Rgba;
 use pictures::load::Loaded;
+use project::document::Document;
+use project::{ProjectError, content, styles};
 use render::{DrawnWell, FaceData, NamedVolume};
 use std::collections::HashMap;
-use std::sync::PoisonError;
+use std::path::PathBuf;
+use std::sync::{Arc, PoisonError};
 
 /// A request for a section.
 #[derive(Clone)]
@@ -23,7 +27,14 @@ pub struct SliceRequest {
     pub version: u64,
     /// What it shows; amplitudes where no candidates are in memory.
     pub show: FaceData,
+    /// The volumes in it.
+    pub volumes: SectionVolumes,
+    /// The project that a second volume is read from.
+    pub project: (PathBuf, Arc<Document>),
 }
+
+/// What a section shows: its position, the number of its data, what of the candidates, which volumes.
+pub type CutOf = (f64, u64, FaceData, SectionVolumes);
 
 /// The latest request of each kind.
 #[derive(Default)]
@@ -60,10 +71,11 @@ impl Slices {
                     outbox.send(match next {
                         Next::Slice(request) => {
                             let loaded = request.rocks.read().unwrap_or_else(PoisonError::into_inner);
-                            Event::Sliced {
-                                cut: cut(&loaded, &request),
-                                of: (request.at, request.version, request.show),
+                            let mut cut = cut(&loaded, &request);
+                            if let Err(error) = blend(&mut cut, &request) {
+                                outbox.send(Event::Told(Notice::failure(Place::Block, &error)));
                             }
+                            Event::Sliced { cut, of: (request.at, request.version, request.show, request.volumes) }
                         }
                         Next::Fence(request) => {
                             let loaded = request.rocks.read().unwrap_or_else(PoisonError::into_inner);
@@ -99,4 +111,36 @@ pub(super) fn source<'a>(
 fn cut(loaded: &Loaded, request: &SliceRequest) -> SectionCut {
     let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
     SectionCut::new(&source(loaded, &volumes, &wells), request.kind, request.at, request.show)
+}
+
+/// Lays the second volume over a section, or takes the raw data away, as the request says.
+fn blend(cut: &mut SectionCut, request: &SliceRequest) -> Result<(), ProjectError> {
+    let SectionVolumes { without_raw, over } = &request.volumes;
+    if *without_raw && request.show == FaceData::Rock {
+        cut.image.pixels_mut().for_each(|pixel| *pixel = Rgba([255; 4]));
+    }
+    let Some(over) = over else { return Ok(()) };
+    let (root, document) = &request.project;
+    let Some(entry) = document.volumes.iter().find(|entry| entry.name == over.volume) else { return Ok(()) };
+    let colours = styles::raw_colour(document, Some(&over.volume), over.map, None)?.function;
+    let stored = content::open_recorded(root, entry, document.frame()?)?;
+    let (axis, [s, t]) = (cut.kind.axis(), cut.kind.axes());
+    let size = document.frame()?.size();
+    let (mut first, mut extent) = ([0; 3], size);
+    first[axis] = (cut.at.round().max(0.0) as usize).min(size[axis].saturating_sub(1));
+    extent[axis] = 1;
+    let samples = stored.read_box_f32(0, first, extent)?;
+    for (x, y, pixel) in cut.image.enumerate_pixels_mut() {
+        let mut at = [0; 3];
+        (at[s], at[t]) = (x as usize, y as usize);
+        let value = samples.trace(at[0], at[1])[at[2]];
+        if value.is_finite() {
+            let [red, green, blue, alpha] = colours.evaluate(value);
+            let cover = alpha * over.opacity;
+            for (channel, new) in pixel.0.iter_mut().zip([red, green, blue]) {
+                *channel = (f32::from(*channel) * (1.0 - cover) + 255.0 * new * cover + 0.5) as u8;
+            }
+        }
+    }
+    Ok(())
 }

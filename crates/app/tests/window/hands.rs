@@ -2,7 +2,7 @@
 
 use super::driven::{Driven, click, open, state};
 use super::picking::{act, interpreting, picking};
-use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, TouchPhase, vec2};
+use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, Role, TouchPhase, vec2};
 use egui_kittest::kittest::Queryable;
 use state::{PickingStep, Tool};
 
@@ -110,4 +110,32 @@ fn a_notch_of_the_wheel_is_one_line() {
     assert_eq!(inline(&harness), before + 1.0);
     at_once(&mut harness, [notch.clone(), notch.clone(), notch]);
     assert_eq!(inline(&harness), before + 4.0);
+}
+
+/// In front of the block a point stays on the section on which its stick was drawn.
+#[test]
+fn a_point_of_a_stick_is_dragged_in_front_of_the_block() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = interpreting(folder.path());
+    act(&mut harness, PickingStep::Use(Tool::Sticks));
+    for (crossline, z) in [(4.0, 6.0), (16.0, 24.0)] {
+        act(&mut harness, PickingStep::Stick(glam::DVec3::new(6.0, crossline, z)));
+    }
+    let before = picking(&harness).stick.clone();
+    let pane = harness.get_by_role_and_label(Role::Image, "Block").rect();
+    let session = state(&harness).session.as_ref().unwrap();
+    let geometry = session.document.geometry.clone().unwrap();
+    let size = glam::DVec2::new(f64::from(pane.width()), f64::from(pane.height()));
+    let view = state::camera::view(&session.view.scene, &geometry, size);
+    let at = view.project(glam::DVec3::new(6.0, 16.0, 24.0));
+    let from = pane.min + vec2(at.x as f32, at.y as f32);
+    let camera = session.view.scene.camera.clone();
+    at_once(&mut harness, [Event::PointerMoved(from), button(from, true)]);
+    at_once(&mut harness, [Event::PointerMoved(from + vec2(12.0, -20.0))]);
+    at_once(&mut harness, [Event::PointerMoved(from + vec2(20.0, -40.0))]);
+    at_once(&mut harness, [button(from + vec2(20.0, -40.0), false)]);
+    let after = picking(&harness).stick.clone();
+    assert_eq!((after.len(), after[0], after[1][0]), (2, before[0], before[1][0]));
+    assert!(after[1][1..] != before[1][1..] && after[1][2] < before[1][2], "{before:?} {after:?}");
+    assert_eq!(state(&harness).session.as_ref().unwrap().view.scene.camera, camera, "the block is not turned");
 }

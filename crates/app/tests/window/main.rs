@@ -1,7 +1,9 @@
 //! The window driven by its labels, without a display: what a reader of the screen finds is what is clicked.
 
 mod bar;
+mod blended;
 mod command;
+mod drawing;
 mod driven;
 mod dropped;
 mod hands;

@@ -50,6 +50,11 @@ fn of_horizon(document: &Document, entry: &HorizonEntry) -> Vec<String> {
         Some(1) => found.push("1 pick".to_owned()),
         Some(count) => found.push(format!("{count} picks")),
     }
+    match entry.assembly.as_ref().map(|log| log.drawn.len()) {
+        None | Some(0) => {}
+        Some(1) => found.push("1 part drawn or tracked".to_owned()),
+        Some(count) => found.push(format!("{count} parts drawn or tracked")),
+    }
     if document.fault_proposals.is_some() {
         found.push("the proposed faults".to_owned());
     }

@@ -6,6 +6,7 @@
 
 mod attribute;
 mod contact;
+mod draw;
 mod extract;
 mod fault;
 mod fault_pick;
@@ -26,6 +27,7 @@ mod well;
 
 pub use attribute::{AttributeComputed, AttributeKind, ComputeAttribute};
 pub use contact::SetContact;
+pub use draw::{DrawHorizon, HorizonDrawn};
 pub use extract::{Extract, ProposeFaults};
 pub use fault::{AddFault, FaultAdded, RemoveFault, RenameFault, SetFaultExtent, SetTruncation};
 pub use fault_pick::{AcceptFault, MoveStickPoint, PickFault};
@@ -92,6 +94,8 @@ pub enum Command {
     PickByTime(PickByTime),
     /// Make several picks of one horizon.
     PickSeveral(PickNodes),
+    /// Draw a line of a horizon, or track it from a place.
+    DrawHorizon(DrawHorizon),
     /// Move a pick up or down its tree.
     MovePick(MovePick),
     /// Remove a pick from its horizon's log.
@@ -176,6 +180,8 @@ pub enum Effect {
     HorizonAdded(Box<HorizonAdded>),
     /// A node was added to a horizon or removed, or a pick was moved.
     Picked(Box<Picked>),
+    /// A part of a horizon was drawn or tracked.
+    HorizonDrawn(Box<HorizonDrawn>),
     /// Picks were repeated.
     Replayed(Box<Replayed>),
     /// Holes of a horizon were filled.
@@ -223,6 +229,7 @@ impl Command {
             Self::RemoveHorizon(change) => change.execute(draft),
             Self::Pick(change) => change.execute(draft, progress),
             Self::PickSeveral(change) => change.execute(draft, progress),
+            Self::DrawHorizon(change) => change.execute(draft, progress),
             Self::MovePick(change) => change.execute(draft, progress),
             Self::RemovePick(change) => change.execute(draft, progress),
             Self::SetHorizonColour(change) => change.execute(draft),
@@ -278,6 +285,7 @@ impl Effect {
             | Self::Extracted(_)
             | Self::FaultsProposed(_)
             | Self::Picked(_)
+            | Self::HorizonDrawn(_)
             | Self::Replayed(_)
             | Self::HorizonRefined(_)
             | Self::Changed { .. } => Vec::new(),
@@ -305,6 +313,7 @@ impl Effect {
             Self::FaultsProposed(done) => format!("{} faults proposed", done.proposals.len()),
             Self::HorizonAdded(done) => format!("horizon {}", done.report.name),
             Self::Picked(done) => format!("pick {} of {}", done.pick, done.horizon),
+            Self::HorizonDrawn(done) => done.summary(),
             Self::Replayed(done) => format!("{} picks repeated", done.picks.len()),
             Self::HorizonRefined(done) if done.result.smoothed.is_some() => {
                 format!("horizon {} smoothed", done.horizon)
@@ -345,6 +354,7 @@ impl std::fmt::Display for Effect {
             Self::FaultsProposed(done) => write!(f, "{done}"),
             Self::HorizonAdded(done) => write!(f, "{}", done.report),
             Self::Picked(done) => write!(f, "{done}"),
+            Self::HorizonDrawn(done) => write!(f, "{done}"),
             Self::Replayed(done) => write!(f, "{done}"),
             Self::HorizonRefined(done) => write!(f, "{done}"),
             Self::FaultAdded(done) => write!(f, "{}", done.report),

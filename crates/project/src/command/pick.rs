@@ -180,7 +180,7 @@ fn climbed(
 
 impl PickNode {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
-        let mut log = self.log(draft)?;
+        let mut log = assembly::log_or_new(draft, &self.horizon)?;
         let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let id = next_id(draft);
@@ -188,7 +188,7 @@ impl PickNode {
         let stopped_by = self.enter(&mut log, id, &geometry, &candidates, &blocks)?;
         let stopped_by = stopped_by.and_then(|overlap| ReportedOverlap::new(overlap, &geometry));
         let PickEntry { leaf, up, node, .. } = log.picks[log.picks.len() - 1];
-        let result = rebuild(draft, &candidates, &blocks, &self.horizon, log, progress)?;
+        let result = rebuild(draft, Some(&candidates), &blocks, &self.horizon, log, progress)?;
         Ok(Effect::Picked(Box::new(Picked {
             pick: id,
             horizon: self.horizon.clone(),
@@ -200,16 +200,6 @@ impl PickNode {
             stopped_by,
             result,
         })))
-    }
-
-    /// The log of the horizon, or an empty one for a new horizon.
-    fn log(&self, draft: &Draft) -> Result<Assembly, ProjectError> {
-        let known = draft.document.horizons.iter().any(|entry| entry.name == self.horizon);
-        if known {
-            return assembly::log_of(draft, &self.horizon);
-        }
-        draft.document.check_new_name(Noun::Horizon, &self.horizon)?;
-        Ok(Assembly { colour: assembly::next_colour(&draft.document), fill: None, smooth: None, picks: Vec::new() })
     }
 
     /// Appends the pick to a log; returns the overlap that ended the climb.
@@ -269,14 +259,14 @@ impl PickNodes {
         if let Some(other) = self.picks.iter().find(|pick| pick.horizon != first.horizon) {
             return Err(ProjectError::SeveralHorizons { horizons: [first.horizon.clone(), other.horizon.clone()] });
         }
-        let mut log = first.log(draft)?;
+        let mut log = assembly::log_or_new(draft, &first.horizon)?;
         let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let id = next_id(draft);
         for (n, pick) in self.picks.iter().enumerate() {
             pick.enter(&mut log, id + n as u32, draft.document.frame()?, &candidates, &blocks)?;
         }
-        rebuild(draft, &candidates, &blocks, &first.horizon, log, progress)?;
+        rebuild(draft, Some(&candidates), &blocks, &first.horizon, log, progress)?;
         Ok(Effect::Changed { summary: format!("{} picks of {}", self.picks.len(), first.horizon) })
     }
 }
@@ -290,26 +280,29 @@ pub struct RemovePick {
 
 impl RemovePick {
     pub(super) fn execute(self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
-        let (name, mut log, place) = find(draft, self.id)?;
-        log.picks.remove(place);
-        let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
+        let (name, mut log) = find(draft, self.id)?;
+        log.picks.retain(|pick| pick.id != self.id);
+        log.drawn.retain(|drawn| drawn.id != self.id);
+        let candidates = assembly::needed(draft, &log, progress)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
-        rebuild(draft, &candidates, &blocks, &name, log, progress)?;
+        rebuild(draft, candidates.as_deref(), &blocks, &name, log, progress)?;
         Ok(Effect::Changed { summary: format!("removed pick {}", self.id) })
     }
 }
 
-/// Finds a pick by its number: its horizon, that horizon's log, and its position there.
-fn find(draft: &Draft, id: u32) -> Result<(String, Assembly, usize), ProjectError> {
+/// Finds a pick, or what was drawn, by its number: its horizon and that horizon's log.
+fn find(draft: &Draft, id: u32) -> Result<(String, Assembly), ProjectError> {
     let logs = || draft.document.horizons.iter().filter_map(|entry| Some((entry, entry.assembly.as_ref()?)));
-    let found = logs().find_map(|(entry, log)| {
-        let place = log.picks.iter().position(|pick| pick.id == id)?;
-        Some((entry.name.clone(), log.clone(), place))
-    });
-    found.ok_or_else(|| ProjectError::UnknownPick {
+    let found = logs().find(|(_, log)| numbers(log).any(|known| known == id));
+    found.map(|(entry, log)| (entry.name.clone(), log.clone())).ok_or_else(|| ProjectError::UnknownPick {
         pick: id,
-        known: logs().flat_map(|(_, log)| &log.picks).map(|pick| pick.id).collect(),
+        known: logs().flat_map(|(_, log)| numbers(log)).collect(),
     })
+}
+
+/// The numbers of the picks of a log and of what was drawn.
+fn numbers(log: &Assembly) -> impl Iterator<Item = u32> {
+    log.picks.iter().map(|pick| pick.id).chain(log.drawn.iter().map(|drawn| drawn.id))
 }
 
 /// Gives a horizon another colour.
@@ -333,15 +326,17 @@ impl SetHorizonColour {
     }
 }
 
-/// A number that no pick has yet.
-fn next_id(draft: &Draft) -> u32 {
+/// A number that no pick has yet, and nothing that was drawn.
+pub(super) fn next_id(draft: &Draft) -> u32 {
     let logs = draft.document.horizons.iter().filter_map(|entry| entry.assembly.as_ref());
-    logs.flat_map(|log| &log.picks).map(|pick| pick.id).max().unwrap_or(0) + 1
+    logs.flat_map(numbers).max().unwrap_or(0) + 1
 }
 
 impl MovePick {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
-        let (name, mut log, place) = find(draft, self.id)?;
+        let (name, mut log) = find(draft, self.id)?;
+        let place = log.picks.iter().position(|pick| pick.id == self.id);
+        let place = place.ok_or(ProjectError::NotClimbable { pick: self.id })?;
         let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
         // Refuses a log of another extraction.
         assembly::selection(&name, &log, &candidates)?;
@@ -361,7 +356,7 @@ impl MovePick {
         let stopped_by = stopped_by.and_then(|overlap| ReportedOverlap::new(overlap, geometry));
         let node = Fingerprint::of(&candidates.forest, node);
         (log.picks[place].up, log.picks[place].node) = (up, node);
-        let result = rebuild(draft, &candidates, &blocks, &name, log, progress)?;
+        let result = rebuild(draft, Some(&candidates), &blocks, &name, log, progress)?;
         Ok(Effect::Picked(Box::new(Picked {
             pick: self.id,
             horizon: name,
@@ -390,18 +385,20 @@ impl ReplayPicks {
             .filter(|entry| wanted(&entry.name))
             .filter_map(|entry| Some((entry.name.clone(), entry.assembly.clone()?)))
             .collect();
-        let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
+        let has_picks = logs.iter().any(|(_, log)| !log.picks.is_empty());
+        let candidates = has_picks.then(|| Candidates::load(draft.root(), &draft.document, progress)).transpose()?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let mut done = Replayed { picks: Vec::new(), horizons: Vec::new(), left: Vec::new() };
         for (name, mut log) in logs {
             let mut replayed = Vec::new();
             log.picks.retain_mut(|pick| {
                 let before = pick.node.triangles;
-                let fit = again(pick, &candidates, &geometry);
+                let again = |candidates| again(pick, candidates, &geometry);
+                let fit = candidates.as_deref().map_or(NodeFit::Different, again);
                 replayed.push(ReplayedPick { pick: pick.id, fit, triangles: [before, pick.node.triangles] });
                 fit != NodeFit::Different
             });
-            if log.picks.is_empty() {
+            if log.picks.is_empty() && log.drawn.is_empty() {
                 done.left.push((name, replayed.len()));
                 continue;
             }
@@ -411,7 +408,7 @@ impl ReplayPicks {
                 return Err(ProjectError::UnfitPicks { horizon: name, picks: unfit });
             }
             done.picks.extend(replayed);
-            let report = rebuild(draft, &candidates, &blocks, &name, log, progress)?;
+            let report = rebuild(draft, candidates.as_deref(), &blocks, &name, log, progress)?;
             done.horizons.push((name, report));
         }
         if let Some((horizon, _)) =

@@ -5,7 +5,6 @@ use crate::content;
 use crate::document::Assembly;
 use crate::folder::Draft;
 use crate::interpretation::assembly::{self, AssemblyReport, put, rebuild, refined, report_on};
-use crate::interpretation::candidates::Candidates;
 use ::refine::SmoothSettings;
 use interp::holes::FillSettings;
 use interp::reassembly::{from_horizon, to_horizon};
@@ -76,9 +75,9 @@ fn refine(
     let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
     let result = match draft.document.horizons[index].assembly.clone() {
         Some(mut log) => {
-            let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
+            let candidates = assembly::needed(draft, &log, progress)?;
             change(&mut log);
-            rebuild(draft, &candidates, &blocks, name, log, progress)?
+            rebuild(draft, candidates.as_deref(), &blocks, name, log, progress)?
         }
         None => {
             let geometry = draft.document.frame()?.clone();

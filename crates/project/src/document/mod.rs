@@ -17,7 +17,7 @@ pub use entries::{
     SceneEntry, Source, Style, TextureEntry, VolumeEntry, WellEntry, volumes_within,
 };
 use param::KDefinition;
-pub use picks::{Assembly, FaultSticks, PickEntry};
+pub use picks::{Assembly, Drawn, DrawnEntry, FaultSticks, PickEntry};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;

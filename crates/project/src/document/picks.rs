@@ -6,7 +6,7 @@
 
 use interp::assembly::{Fingerprint, Operation};
 use interp::holes::FillSettings;
-use refine::SmoothSettings;
+use refine::{SmoothSettings, TrackSettings};
 use serde::{Deserialize, Serialize};
 use ttf::Colour;
 
@@ -24,6 +24,59 @@ pub struct Assembly {
     pub smooth: Option<SmoothSettings>,
     /// Its picks, first to last.
     pub picks: Vec<PickEntry>,
+    /// What was drawn or tracked of it without candidates, first to last.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub drawn: Vec<DrawnEntry>,
+}
+
+/// A part of a horizon that was drawn or tracked.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DrawnEntry {
+    /// Unique in the project, among picks too.
+    pub id: u32,
+    /// What was done.
+    pub part: Drawn,
+}
+
+/// What is added to a horizon where there is no candidate. Places are inline, crossline, vertical value.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Drawn {
+    /// A line, with a node on each trace that it crosses, in place of what was there.
+    Line {
+        /// Its corners.
+        points: Vec<[f64; 3]>,
+        /// Whether its nodes are laid on the nearest peak or trough.
+        #[serde(default)]
+        snap: bool,
+    },
+    /// The reflection at a place, as far as it can be followed, where there is nothing yet.
+    Tracked {
+        /// The place.
+        at: [f64; 3],
+        /// How far.
+        #[serde(default)]
+        window: TrackSettings,
+    },
+}
+
+impl Drawn {
+    /// The first place of it.
+    pub fn place(&self) -> [f64; 3] {
+        match self {
+            Self::Line { points, .. } => points.first().copied().unwrap_or_default(),
+            Self::Tracked { at, .. } => *at,
+        }
+    }
+
+    /// What it is: a line, or tracked.
+    pub fn noun(&self) -> &'static str {
+        match self {
+            Self::Line { .. } => "line",
+            Self::Tracked { .. } => "tracking",
+        }
+    }
 }
 
 /// One pick.

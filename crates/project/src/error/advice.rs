@@ -89,7 +89,10 @@ impl ProjectError {
             | Self::NotExtracted
             | Self::NotFound { .. }
             | Self::NotPicked { .. }
+            | Self::NotClimbable { .. }
             | Self::NothingLeft { .. }
+            | Self::NothingTracked { .. }
+            | Self::ShortLine
             | Self::NothingToRedo
             | Self::NothingToUndo
             | Self::OutdatedPicks { .. }

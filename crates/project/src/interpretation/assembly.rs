@@ -4,10 +4,11 @@ use super::order;
 use crate::content;
 use crate::derived;
 use crate::document::Document;
-use crate::document::{Assembly, HorizonEntry, Source};
+use crate::document::{Assembly, HorizonEntry, Source, VolumeEntry};
 use crate::error::{Noun, ProjectError};
 use crate::folder::Draft;
 use crate::interpretation::candidates::Candidates;
+use crate::interpretation::drawn;
 use crate::weak_cache::WeakCache;
 use figure::style::horizon_colour;
 use interp::Forest;
@@ -15,7 +16,7 @@ use interp::assembly::{
     AssemblyError, Conflict, ConflictSettings, NamedSheets, Overlap, Selection, assemble, conflicts, node_above,
 };
 use interp::holes::{FillSettings, Filled, Hole, fill_holes, find_holes};
-use interp::reassembly::{VoxelSheet, from_horizon, reassemble, to_horizon};
+use interp::reassembly::{Reassembled, VoxelSheet, from_horizon, reassemble, to_horizon};
 use model::{ContactRules, FaultNetwork};
 use refine::{SmoothSettings, fill_along};
 use serde::Serialize;
@@ -39,6 +40,9 @@ pub struct AssemblyReport {
     /// Number of nodes left out because they were tracked past a fault, where the sheet of the other side runs.
     #[serde(skip_serializing_if = "is_zero")]
     pub past_faults: usize,
+    /// Number of nodes that the last line or tracking made.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub drawn: usize,
     /// The holes in it.
     pub holes: HoleReport,
     /// What was filled.
@@ -263,33 +267,70 @@ pub fn next_colour(document: &Document) -> Colour {
     horizon_colour(None, assembled)
 }
 
-/// Makes the sheets of horizon `name` from `log` and puts both into the draft, with the horizon at its place by depth.
+/// The candidates that a log needs: none where nothing was picked on them.
+///
+/// # Errors
+/// Something was picked, and there are none.
+pub(crate) fn needed(draft: &Draft, log: &Assembly, progress: &Progress) -> Result<Option<Arc<Candidates>>, ProjectError> {
+    if log.picks.is_empty() {
+        return Ok(None);
+    }
+    Candidates::load(draft.root(), &draft.document, progress).map(Some)
+}
+
+/// Makes the sheets of horizon `name` from `log` and puts both into the draft, with the horizon at its place by depth. A
+/// log without picks needs no candidates.
 pub(crate) fn rebuild(
     draft: &mut Draft,
-    candidates: &Candidates,
+    candidates: Option<&Candidates>,
     blocks: &FaultNetwork,
     name: &str,
     log: Assembly,
     progress: &Progress,
 ) -> Result<AssemblyReport, ProjectError> {
     let geometry = draft.document.frame()?.clone();
-    let forest = &candidates.forest;
-    let chosen = selection(name, &log, candidates)?;
-    if chosen.is_empty() {
+    let mut assembled = match candidates {
+        _ if log.picks.is_empty() => None,
+        Some(candidates) => Some(from_picks(name, &log, candidates, blocks)?),
+        None => return Err(ProjectError::NotExtracted),
+    }
+    .unwrap_or(Reassembled { sheets: Vec::new(), overlap: Overlap::default(), left_out: 0 });
+    let made = drawn::add(draft, &mut assembled.sheets, blocks, &log.drawn)?;
+    if assembled.sheets.iter().all(|sheet| sheet.nodes() == 0) {
         return Err(ProjectError::NothingLeft { horizon: name.to_owned() });
     }
-    let leaves = log.picks.iter().map(|pick| node_above(forest, pick.leaf, 0)).collect::<Result<Vec<_>, _>>()?;
-    let seeds: Vec<u32> = leaves.iter().map(|&leaf| forest.nodes[leaf as usize].triangles.start).collect();
-    let mut assembled = reassemble(forest, &chosen, &seeds, blocks);
-    let made = refined(draft, &mut assembled.sheets, blocks, log.fill.as_ref(), log.smooth.as_ref(), progress)?;
+    let refined = refined(draft, &mut assembled.sheets, blocks, log.fill.as_ref(), log.smooth.as_ref(), progress)?;
     let mut report = report_on(&assembled.sheets, &geometry);
-    (report.filled, report.smoothed) = made;
+    (report.filled, report.smoothed) = refined;
+    report.drawn = made;
     report.past_faults = assembled.left_out;
     report.overlap = ReportedOverlap::new(assembled.overlap, &geometry);
     let horizon = to_horizon(name, &assembled.sheets, &geometry);
     put(draft, &horizon, Some(log), "", progress)?;
     report.conflicts = conflicts_with(draft, candidates, blocks, name, &assembled.sheets, progress)?;
     Ok(report)
+}
+
+/// The sheets of what a log has picked on candidates.
+fn from_picks(
+    name: &str,
+    log: &Assembly,
+    candidates: &Candidates,
+    blocks: &FaultNetwork,
+) -> Result<Reassembled, ProjectError> {
+    let forest = &candidates.forest;
+    let chosen = selection(name, log, candidates)?;
+    let leaves = log.picks.iter().map(|pick| node_above(forest, pick.leaf, 0)).collect::<Result<Vec<_>, _>>()?;
+    let seeds: Vec<u32> = leaves.iter().map(|&leaf| forest.nodes[leaf as usize].triangles.start).collect();
+    Ok(reassemble(forest, &chosen, &seeds, blocks))
+}
+
+/// The volume in which reflections are followed: the one that candidates were extracted from, or else the first one on the
+/// project's lattice.
+pub(crate) fn followed(document: &Document) -> Result<&VolumeEntry, ProjectError> {
+    let extracted = document.extraction.as_ref().map(|extraction| &extraction.volume);
+    let own = || document.volumes.iter().filter(|entry| entry.geometry.is_none());
+    own().find(|entry| extracted == Some(&entry.name)).or_else(|| own().next()).ok_or(ProjectError::NoVolume)
 }
 
 /// Fills and smooths sheets; returns what was filled, and the largest change by smoothing in samples. A reflection is
@@ -307,10 +348,7 @@ pub(crate) fn refined(
     let plane = [size[0], size[1]];
     let filled = match fill {
         Some(settings) if settings.along_reflection => {
-            let extracted = document.extraction.as_ref().map(|extraction| &extraction.volume);
-            let own = || document.volumes.iter().filter(|entry| entry.geometry.is_none());
-            let entry = own().find(|entry| extracted == Some(&entry.name)).or_else(|| own().next());
-            let volume = content::open_recorded(draft.root(), entry.ok_or(ProjectError::NoVolume)?, document.frame()?)?;
+            let volume = content::open_recorded(draft.root(), followed(document)?, document.frame()?)?;
             let read = |first, extent| -> Result<_, ProjectError> { Ok(volume.read_box_f32(0, first, extent)?) };
             Some(fill_along(sheets, size, blocks, settings, read, progress)?)
         }
@@ -365,8 +403,14 @@ pub(crate) fn put(
     let document = &mut draft.document;
     let source = match (&log, old) {
         (Some(log), _) => {
-            let count = log.picks.len();
-            let reading = format!("assembled by {count} pick{}", if count == 1 { "" } else { "s" });
+            let counted = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
+            let reading = match (log.picks.len(), log.drawn.len()) {
+                (picks, 0) => format!("assembled by {}", counted(picks, "pick")),
+                (0, parts) => format!("{} drawn or tracked", counted(parts, "part")),
+                (picks, parts) => {
+                    format!("assembled by {}, {} drawn or tracked", counted(picks, "pick"), counted(parts, "part"))
+                }
+            };
             Source { path: PathBuf::from("picks"), bytes: 0, reading }
         }
         (None, Some(old)) => {
@@ -394,7 +438,7 @@ pub(crate) fn put(
 /// Conflicts that involve horizon `name`, in line numbers.
 fn conflicts_with(
     draft: &Draft,
-    candidates: &Candidates,
+    candidates: Option<&Candidates>,
     blocks: &FaultNetwork,
     name: &str,
     sheets: &[VoxelSheet],
@@ -410,7 +454,7 @@ fn conflicts_with(
         });
     }
     let all: Vec<&[VoxelSheet]> = all.iter().map(Vec::as_slice).collect();
-    let found = conflicts_of(&draft.document, Some(candidates), &all)?;
+    let found = conflicts_of(&draft.document, candidates, &all)?;
     Ok(found.into_iter().filter(|conflict| conflict.horizons().iter().any(|n| n == name)).collect())
 }
 
@@ -450,13 +494,13 @@ pub(crate) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), 
     if logs.is_empty() {
         return Ok(());
     }
-    let Ok(candidates) = Candidates::load(draft.root(), &draft.document, progress) else {
+    let candidates = Candidates::load(draft.root(), &draft.document, progress).ok();
+    if candidates.is_none() && logs.iter().any(|(_, log)| !log.picks.is_empty()) {
         progress.warn("the assembled horizons are as they were: there is no extraction to assemble them from");
-        return Ok(());
-    };
+    }
     let blocks = blocks(draft.root(), &draft.document, progress)?;
-    for (name, log) in logs {
-        match rebuild(draft, &candidates, &blocks, &name, log, progress) {
+    for (name, log) in logs.into_iter().filter(|(_, log)| candidates.is_some() || log.picks.is_empty()) {
+        match rebuild(draft, candidates.as_deref(), &blocks, &name, log, progress) {
             Ok(_) => {}
             Err(ProjectError::OutdatedPicks { .. }) => progress.warn(format!(
                 "horizon \"{name}\" was left unchanged: its picks were made on another extraction and have to be repeated"
@@ -474,6 +518,19 @@ pub(crate) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), 
 pub(crate) fn log_of(draft: &Draft, name: &str) -> Result<Assembly, ProjectError> {
     let entry = &draft.document.horizons[draft.document.position(Noun::Horizon, name)?];
     entry.assembly.clone().ok_or_else(|| ProjectError::NotAssembled { horizon: name.to_owned() })
+}
+
+/// The log of a horizon, or an empty one for a new horizon.
+///
+/// # Errors
+/// The horizon was imported, or the name cannot be given.
+pub(crate) fn log_or_new(draft: &Draft, name: &str) -> Result<Assembly, ProjectError> {
+    if draft.document.horizons.iter().any(|entry| entry.name == name) {
+        return log_of(draft, name);
+    }
+    draft.document.check_new_name(Noun::Horizon, name)?;
+    let colour = next_colour(&draft.document);
+    Ok(Assembly { colour, fill: None, smooth: None, picks: Vec::new(), drawn: Vec::new() })
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 
 pub mod assembly;
 pub mod candidates;
+pub(crate) mod drawn;
 pub mod extraction;
 pub(crate) mod order;
 pub mod proposals;

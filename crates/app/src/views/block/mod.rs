@@ -5,6 +5,7 @@
 
 mod compare;
 mod hand;
+mod sticks;
 
 pub use compare::{clip, compare, panes, rule};
 
@@ -44,6 +45,8 @@ pub struct BlockView {
     shown: u64,
     is_final: bool,
     hand: Hand,
+    /// The point of a stick that is dragged.
+    held: Option<sticks::Held>,
     lasso: LassoLine,
     device: String,
 }
@@ -137,7 +140,7 @@ impl BlockView {
         let size = dvec(pane.size());
         let handles = if view.handles { faces::handles(&view.scene, geometry, size) } else { Vec::new() };
         let has_lasso = lasso::is_held(ui, session);
-        if !has_lasso {
+        if !has_lasso && !sticks::drag(&mut self.held, ui, session, &response, pane, actions) {
             self.hand.touch(ui, &response, session, [pane, rect], &handles, actions);
         }
         // While the loaded data are being changed they cannot be looked at; the next frame tries again.

@@ -168,6 +168,7 @@ impl HorizonList {
             ui.colored_label(ui.visuals().warn_fg_color, format!("Conflict: {conflict}."));
         }
         picks(ui, entry, geometry, actions);
+        drawn(ui, entry, geometry, actions);
         self.holes(ui, session, entry, facts, actions);
         self.smooth(ui, entry, actions);
     }
@@ -260,6 +261,7 @@ fn picks(ui: &mut Ui, entry: &HorizonEntry, geometry: &SurveyGeometry, actions: 
         return;
     };
     let unit = geometry.vertical.unit.symbol();
+    let only = log.picks.len() + log.drawn.len() == 1;
     for pick in &log.picks {
         let [inline, crossline, z] = pick.at;
         let sign = if pick.operation == Operation::Add { "+" } else { "−" };
@@ -288,8 +290,29 @@ fn picks(ui: &mut Ui, entry: &HorizonEntry, geometry: &SurveyGeometry, actions: 
             button(ui, "Up", "Climb with", true, to(Move::Up(1)));
             button(ui, "Down", "Descend with", pick.up > 0, to(Move::Down(1)));
             button(ui, "Highest", "Highest valid for", true, to(Move::HighestValid));
-            let only = log.picks.len() == 1;
             button(ui, "Unpick", "Remove", !only, Command::RemovePick(RemovePick { id: pick.id }));
+        });
+    }
+}
+
+/// What was drawn and tracked of a horizon, first to last.
+fn drawn(ui: &mut Ui, entry: &HorizonEntry, geometry: &SurveyGeometry, actions: &mut Vec<Action>) {
+    let Some(log) = &entry.assembly else { return };
+    let only = log.picks.len() + log.drawn.len() == 1;
+    for drawn in &log.drawn {
+        let [inline, crossline, z] = drawn.part.place();
+        let (noun, unit) = (drawn.part.noun(), geometry.vertical.unit.symbol());
+        ui.horizontal(|ui| {
+            let text = format!("{noun} {}: {inline:.0}, {crossline:.0}, {z:.0} {unit}", drawn.id);
+            let hint = format!("Go to the beginning of {noun} {}", drawn.id);
+            if ui.selectable_label(false, text).on_hover_text(hint).clicked() {
+                go(geometry, drawn.part.place(), actions);
+            }
+            let why = needs(!only, "The horizon has nothing else: remove it instead");
+            let button = unless(ui, why, Button::new("Take out"));
+            if button.on_hover_text(format!("Remove {noun} {}", drawn.id)).clicked() {
+                actions.push(apply(Command::RemovePick(RemovePick { id: drawn.id })));
+            }
         });
     }
 }

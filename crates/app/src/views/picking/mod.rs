@@ -1,5 +1,6 @@
 //! The panel for interpreting: candidates, the selection, horizons with their picks, faults.
 
+mod drawing;
 mod faults;
 mod horizons;
 mod palette;
@@ -90,6 +91,12 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
                 "One click",
                 "Click a reflection: the horizon of its geologic time, over the whole survey; a second click corrects it",
             ),
+            (
+                Tool::Draw,
+                "Draw",
+                "Click along a reflection on a section, or drag: a line of the horizon, by hand; Enter adds it (M)",
+            ),
+            (Tool::Track, "Track", "Click a reflection: it is followed from there, also without candidates (U)"),
         ] {
             let can = tool != Tool::Time || has_time(&session.document);
             let label = Button::selectable(picking.tool == tool, name);
@@ -99,6 +106,7 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             }
         }
     });
+    drawing::show(ui, session, actions);
     ui.horizontal_wrapped(|ui| {
         ui.label("Block");
         for (look, name, hint) in [

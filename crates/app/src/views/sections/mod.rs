@@ -4,6 +4,7 @@
 //! fills its view whatever its shape. Ctrl and the wheel zoom about the pointer, a drag moves, the wheel alone goes to
 //! the next section.
 
+mod freehand;
 mod lines;
 mod wells;
 
@@ -13,10 +14,12 @@ use super::lasso::{self, LassoLine};
 use super::overlay::{Overlay, stick_point};
 use super::pointed::{self, Pointed};
 use super::texture;
-use crate::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, SectionKind, Session, StickPoint, Tool};
-use crate::work::{Rocks, SliceRequest, Slices};
+use crate::state::{
+    Action, Lasso, LassoOn, Layout, Panel, PickingStep, SectionKind, SectionVolumes, Session, StickPoint, Tool,
+};
+use crate::work::{CutOf, Rocks, SliceRequest, Slices};
 use eframe::egui::{
-    Align2, Color32, Context, DragValue, FontId, Painter, Pos2, Rect, Response, Role, Sense, Stroke, TextureHandle, Ui,
+    Align2, Color32, Context, DragValue, FontId, Label, Painter, PointerButton, Pos2, Rect, Response, RichText, Role, Sense, Stroke, TextureHandle, Ui,
     Vec2, WidgetInfo, vec2,
 };
 use figure::cut::SectionCut;
@@ -24,8 +27,10 @@ use figure::cut::{CutLine, value_at};
 use figure::draw::NamedColour;
 use figure::draw::axes::{self, Axis};
 use figure::draw::section::{SectionContents, Zoom};
+use freehand::Freehand;
 use glam::DVec2;
 use image::RgbaImage;
+use project::styles;
 use render::FaceData;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -62,6 +67,7 @@ struct Pane {
     /// The point of a stick that is being dragged.
     held: Option<StickPoint>,
     lasso: LassoLine,
+    freehand: Freehand,
 }
 
 impl Default for Pane {
@@ -78,6 +84,7 @@ impl Default for Pane {
             wheel: 0.0,
             held: None,
             lasso: LassoLine::default(),
+            freehand: Freehand::default(),
         }
     }
 }
@@ -113,12 +120,15 @@ impl Sections {
         let pane = self.panes.entry(kind).or_default();
         let at = session.view.slices[kind.axis()];
         let is_interpreting = session.view.panel == Panel::Interpret;
+        let volumes = &session.view.volumes;
         let show = if is_interpreting { session.view.picking.show } else { FaceData::Rock };
         if let Some((rocks, version)) = rocks
-            && pane.requested != Some((at, version, show))
+            && pane.requested.as_ref().is_none_or(|of| (of.0, of.1, of.2, &of.3) != (at, version, show, volumes))
         {
-            pane.requested = Some((at, version, show));
-            slices.cut(SliceRequest { kind, at, rocks: rocks.clone(), version, show });
+            pane.requested = Some((at, version, show, volumes.clone()));
+            let project = (session.root.clone(), Arc::new(session.document.clone()));
+            let volumes = volumes.clone();
+            slices.cut(SliceRequest { kind, at, rocks: rocks.clone(), version, show, volumes, project });
         }
         header(ui, session, kind, geometry, actions);
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
@@ -131,7 +141,7 @@ impl Sections {
         let has_lasso = lasso::is_held(ui, session);
         if !has_lasso {
             pane.drag_point(ui, session, kind, &response, body, actions);
-            pane.touch(ui, &response, body);
+            pane.touch(ui, &response, body, Freehand::is_in_hand(session));
         }
         let image = pane.paint(ui, session, kind, whole, overlay)?;
         let painter = ui.painter_at(body);
@@ -149,6 +159,14 @@ impl Sections {
             let corners = line.into_iter().map(to_section).collect();
             let on = LassoOn::Section(kind, at);
             actions.push(Action::Picking(PickingStep::Erase(Lasso { on, corners })));
+        }
+        if Freehand::is_in_hand(session)
+            && !has_lasso
+            && let Some(line) = pane.freehand.draw(ui, &painter, &response)
+        {
+            let inside = line.into_iter().map(|at| to_section(at).clamp(DVec2::ZERO, extent));
+            let voxels = inside.map(|st| kind.voxel(at, st)).collect();
+            actions.push(Action::Picking(PickingStep::Line(voxels)));
         }
         let st = response.hover_pos().filter(|pointer| body.contains(*pointer)).map(to_section)?;
         if !(st.x >= 0.0 && st.y >= 0.0 && st.x <= extent.x && st.y <= extent.y) {
@@ -185,9 +203,6 @@ impl Sections {
 fn body_of(whole: Rect) -> Rect {
     Rect::from_min_max(whole.min + MARGIN, whole.max - vec2(13.0, 4.0))
 }
-
-/// What a section shows: its position, the number of its data, what of the candidates.
-pub type CutOf = (f64, u64, FaceData);
 
 impl Pane {
     /// Whether the picture shows another section than the one that its title names.
@@ -250,8 +265,10 @@ impl Pane {
         Rect::from_min_size(body.center() - self.middle * size, size)
     }
 
-    fn touch(&mut self, ui: &Ui, response: &Response, body: Rect) {
-        if response.dragged() && self.held.is_none() {
+    /// Moves and zooms, unless a drag draws a line.
+    fn touch(&mut self, ui: &Ui, response: &Response, body: Rect, has_line: bool) {
+        let draws = has_line && response.dragged_by(PointerButton::Primary);
+        if response.dragged() && self.held.is_none() && !draws {
             self.middle -= response.drag_delta() / (body.size() * self.fit * self.zoom);
         }
         if let Some(pointer) = response.hover_pos() {
@@ -366,7 +383,25 @@ fn header(ui: &mut Ui, session: &Session, kind: SectionKind, geometry: &SurveyGe
             }
         }
         proportions(ui, session, kind, actions);
+        shown_volumes(ui, session);
     });
+}
+
+/// Says which volumes the section shows, where that is not the raw data alone.
+fn shown_volumes(ui: &mut Ui, session: &Session) {
+    let (document, SectionVolumes { without_raw, over }) = (&session.document, &session.view.volumes);
+    let raw = styles::transfer_functions(document).raw.map_or_else(String::new, |raw| raw.volume);
+    let text = match over {
+        Some(over) if *without_raw => format!("{}, {:.0} %", over.volume, 100.0 * over.opacity),
+        Some(over) => format!("{} over {raw}, {:.0} %", over.volume, 100.0 * over.opacity),
+        None if *without_raw => format!("{raw} is hidden"),
+        None => return,
+    };
+    let colours = over.as_ref().and_then(|over| styles::raw_colour(document, Some(&over.volume), over.map, None).ok());
+    let label = ui.add(Label::new(RichText::new(text).weak()).truncate());
+    if let (Some(over), Some([low, high])) = (over, colours.map(|raw| raw.function.domain)) {
+        label.on_hover_text(format!("{} from {low:.4} to {high:.4} ({})", over.volume, over.map.name()));
+    }
 }
 
 /// The choice of the sections' proportions.
@@ -392,17 +427,21 @@ fn proportions(ui: &mut Ui, session: &Session, kind: SectionKind, actions: &mut 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::state::Blended;
 
     #[test]
     fn a_picture_of_another_section_is_known_to_be_one() {
-        let (here, there) = ((3.0, 1, FaceData::Rock), (4.0, 1, FaceData::Rock));
-        let mut pane = Pane { requested: Some(here), ..Pane::default() };
+        let of = |at: f64, version: u64, show: FaceData| (at, version, show, SectionVolumes::default());
+        let (here, there) = (of(3.0, 1, FaceData::Rock), of(4.0, 1, FaceData::Rock));
+        let mut pane = Pane { requested: Some(here.clone()), ..Pane::default() };
         assert!(!pane.is_behind(), "nothing is shown yet");
         pane.of = Some(here);
+        let mut blended = of(3.0, 1, FaceData::Rock);
+        blended.3.over = Some(Blended::new("chaos"));
         assert!(!pane.is_behind());
-        for other in [there, (3.0, 2, FaceData::Rock), (3.0, 1, FaceData::Leaves)] {
+        for other in [there, of(3.0, 2, FaceData::Rock), of(3.0, 1, FaceData::Leaves), blended] {
             pane.requested = Some(other);
-            assert!(pane.is_behind(), "{other:?}");
+            assert!(pane.is_behind(), "{:?}", pane.requested);
         }
     }
 }

@@ -419,7 +419,7 @@ impl Keeper {
                 report: AssemblyReport { overlap, ..report_on(sheets, geometry) },
                 holes: find_holes(sheets, [nx, ny]),
                 conflicts: mine.map(sentence).collect(),
-                outdated: log.is_some() && chosen.is_none(),
+                outdated: log.is_some_and(|log| !log.picks.is_empty()) && chosen.is_none(),
             }
         });
         let horizons = horizons.collect();
