@@ -17,8 +17,8 @@ use interp::holes::FillSettings;
 use model::FaultNetwork;
 use project::Project;
 use project::command::{
-    AcceptFault, Climb, Command, ComputeTime, DrawHorizon, FillHorizon, Move, MovePick, PickByTime, PickFault, PickNode,
-    ReplayPicks, SmoothHorizon, TimeLevel, Unfit,
+    AcceptFault, Climb, Command, ComputeTime, DrawHorizon, FillHorizon, Move, MovePick, PickByTime, PickFault,
+    PickNode, ReplayPicks, SmoothHorizon, TimeLevel, Unfit,
 };
 use project::document::Drawn;
 use project::interpretation::candidates::Candidates;

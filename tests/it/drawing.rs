@@ -39,9 +39,8 @@ fn a_horizon_is_tracked_and_drawn_without_candidates() {
     // By hand: as drawn, or on the reflection.
     let [inline, crossline, z]: [f64; 3] =
         place.split(',').map(|number| number.parse().unwrap()).collect::<Vec<_>>().try_into().unwrap();
-    let line = |off: f64| {
-        format!("--line {inline},{},{} {inline},{},{}", crossline - 8.0, z + off, crossline + 8.0, z + off)
-    };
+    let line =
+        |off: f64| format!("--line {inline},{},{} {inline},{},{}", crossline - 8.0, z + off, crossline + 8.0, z + off);
     let drawn = run_in(at, &format!("horizon draw p.petro Hand {} --json", line(3.0))).done().json();
     assert!(nodes(&drawn) >= 5, "{drawn}");
     assert!(depths(at, "Hand").iter().all(|row| row[0] == inline && (row[2] - z - 3.0).abs() < 0.01));

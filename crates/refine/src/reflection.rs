@@ -70,7 +70,8 @@ impl Samples {
 
     /// The samples around a depth on a trace; none where they are not all there.
     pub(crate) fn window(&self, n: usize, z: f32) -> Option<Window> {
-        let [x, y] = [(n / self.crosslines).checked_sub(self.first[0])?, (n % self.crosslines).checked_sub(self.first[1])?];
+        let [x, y] =
+            [(n / self.crosslines).checked_sub(self.first[0])?, (n % self.crosslines).checked_sub(self.first[1])?];
         let [nx, ny, _] = self.samples.size();
         if x >= nx || y >= ny {
             return None;

@@ -164,9 +164,8 @@ impl Blended {
 
 impl SectionVolumes {
     fn fit(&mut self, document: &Document) {
-        let is_there = |over: &Blended| {
-            document.volumes.iter().any(|entry| entry.name == over.volume && entry.geometry.is_none())
-        };
+        let is_there =
+            |over: &Blended| document.volumes.iter().any(|entry| entry.name == over.volume && entry.geometry.is_none());
         self.over = self.over.take().filter(is_there);
     }
 }

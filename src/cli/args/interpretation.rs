@@ -1,9 +1,7 @@
 //! Arguments for volumes, horizons and faults.
 
 use super::SegyArgs;
-use super::assembly::{
-    DrawArgs, FaultPickArgs, FaultProposeArgs, FillArgs, ReplayArgs, SmoothArgs, TrackArgs,
-};
+use super::assembly::{DrawArgs, FaultPickArgs, FaultProposeArgs, FillArgs, ReplayArgs, SmoothArgs, TrackArgs};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -80,7 +78,9 @@ pub(in crate::cli) enum HorizonAction {
                       \n  petroglyph horizon draw north.petro \"Top Chalk\" --line 1250,1300,902 1250,1340,915 --snap")]
     Draw(DrawArgs),
     /// Track a reflection from one place within a window, never across a fault; it needs no extraction
-    #[command(after_help = "Example:\n  petroglyph horizon track north.petro \"Top Chalk\" --at 1250,1300,902 --traces 80")]
+    #[command(
+        after_help = "Example:\n  petroglyph horizon track north.petro \"Top Chalk\" --at 1250,1300,902 --traces 80"
+    )]
     Track(TrackArgs),
     /// Fill the holes of a horizon, never across a fault
     #[command(after_help = "Example:\n  petroglyph horizon fill north.petro \"Top Chalk\" --max-traces 200")]

@@ -3,7 +3,9 @@
 use super::notices;
 use super::picking::swatch;
 use crate::state::{Action, Blended, Choice, Dialogue, Place, SectionVolumes, Session, State, SurfaceForm};
-use eframe::egui::{Align, Button, ComboBox, DragValue, Id, Label, Layout, Response, ScrollArea, Ui, UiBuilder, WidgetInfo};
+use eframe::egui::{
+    Align, Button, ComboBox, DragValue, Id, Label, Layout, Response, ScrollArea, Ui, UiBuilder, WidgetInfo,
+};
 use formats::SurfaceKind;
 use project::command::{
     Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameFault, RenameHorizon, SetFaultExtent, SetRaw,
@@ -270,10 +272,8 @@ fn volumes(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ui.horizontal(|ui| {
             on_sections(ui, session, entry, is_raw, actions);
             let row = named(ui, &entry.name, Some(is_raw), &format!("Remove volume {}", entry.name));
-            let hint = format!(
-                "{}: show as raw data; {} polarity; {}",
-                entry.name, entry.polarity, entry.source.reading
-            );
+            let hint =
+                format!("{}: show as raw data; {} polarity; {}", entry.name, entry.polarity, entry.source.reading);
             if row.name.on_hover_text(hint).clicked()
                 && let Ok(raw) = styles::raw_colour(document, Some(&entry.name), ColourMap::Seismics, None)
             {
@@ -301,7 +301,11 @@ fn on_sections(ui: &mut Ui, session: &Session, entry: &VolumeEntry, is_raw: bool
     let shown = ui.name_inputs(format!("Show volume {}", entry.name), |ui| {
         ui.add_enabled_ui(!has_own || is_raw, |ui| ui.checkbox(&mut is_shown, "")).inner
     });
-    let hint = if is_raw { "The raw data of the sections" } else { "Over the raw data of the sections, in colours of its own" };
+    let hint = if is_raw {
+        "The raw data of the sections"
+    } else {
+        "Over the raw data of the sections, in colours of its own"
+    };
     shown.on_hover_text(hint).on_disabled_hover_text("It has traces of its own and cannot be laid over the raw data");
     if is_shown != before {
         actions.push(Action::Volumes(match is_raw {
@@ -315,14 +319,16 @@ fn on_sections(ui: &mut Ui, session: &Session, entry: &VolumeEntry, is_raw: bool
 fn blended(ui: &mut Ui, session: &Session, over: &Blended, actions: &mut Vec<Action>) {
     let mut next = over.clone();
     ui.horizontal(|ui| {
-        let colours = ComboBox::from_id_salt("colours of the second volume").width(110.0).selected_text(next.map.name());
+        let colours =
+            ComboBox::from_id_salt("colours of the second volume").width(110.0).selected_text(next.map.name());
         ui.name_inputs(format!("Colours of {}", over.volume), |ui| {
-            colours.show_ui(ui, |ui| {
-                for map in ColourMap::ALL {
-                    ui.selectable_value(&mut next.map, map, map.name());
-                }
-            })
-            .response
+            colours
+                .show_ui(ui, |ui| {
+                    for map in ColourMap::ALL {
+                        ui.selectable_value(&mut next.map, map, map.name());
+                    }
+                })
+                .response
         });
         ui.name_inputs(format!("Opacity of {}", over.volume), |ui| ui.add(percent::drag(&mut next.opacity)))
             .on_hover_text("How much of the raw data it covers");

@@ -139,7 +139,8 @@ pub const INTERPRETING: &[Shortcut] = &[
     plain(Key::Enter, "Enter", "Add to the horizon; end a stick or a line", |_| picking(PickingStep::Accept)),
     plain(Key::Escape, "Escape", "Deselect, or drop the stick or the line", |_| picking(PickingStep::GiveUp)),
     plain(Key::Backspace, "Backspace", "Remove the last point of a stick or a line", |session| {
-        matches!(session.view.picking.tool, Tool::Sticks | Tool::Draw).then_some(Action::Picking(PickingStep::Backspace))
+        matches!(session.view.picking.tool, Tool::Sticks | Tool::Draw)
+            .then_some(Action::Picking(PickingStep::Backspace))
     }),
     plain(Key::N, "N", "New horizon", |_| picking(PickingStep::Begin)),
     plain(Key::F, "F", "Draw fault sticks, or pick again", |session| turn_to(session, Tool::Sticks)),

@@ -52,7 +52,8 @@ fn a_horizon_is_drawn_by_clicks_and_freehand_and_tracked_without_candidates() {
 
     // A drag draws, and does not move the section.
     let middle = harness.get_by_label("Crossline section").rect().center();
-    let places: Vec<Pos2> = (0..12).map(|n| middle + vec2(8.0 * n as f32 - 40.0, if n < 6 { 0.0 } else { 6.0 })).collect();
+    let places: Vec<Pos2> =
+        (0..12).map(|n| middle + vec2(8.0 * n as f32 - 40.0, if n < 6 { 0.0 } else { 6.0 })).collect();
     drag(&mut harness, &places);
     let bends = picking(&harness).line.len();
     assert!((3..=6).contains(&bends), "{bends} points");

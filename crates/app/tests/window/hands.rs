@@ -2,7 +2,9 @@
 
 use super::driven::{Driven, click, open, state};
 use super::picking::{act, interpreting, picking};
-use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, Role, TouchPhase, vec2};
+use eframe::egui::{
+    Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, Role, TouchPhase, vec2,
+};
 use egui_kittest::kittest::Queryable;
 use state::{PickingStep, Tool};
 

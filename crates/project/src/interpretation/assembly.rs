@@ -271,7 +271,11 @@ pub fn next_colour(document: &Document) -> Colour {
 ///
 /// # Errors
 /// Something was picked, and there are none.
-pub(crate) fn needed(draft: &Draft, log: &Assembly, progress: &Progress) -> Result<Option<Arc<Candidates>>, ProjectError> {
+pub(crate) fn needed(
+    draft: &Draft,
+    log: &Assembly,
+    progress: &Progress,
+) -> Result<Option<Arc<Candidates>>, ProjectError> {
     if log.picks.is_empty() {
         return Ok(None);
     }

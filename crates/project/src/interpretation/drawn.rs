@@ -44,9 +44,7 @@ pub(crate) fn add(
                 lay(sheets, &nodes, [size[0], size[1]], blocks);
                 nodes.len()
             }
-            Drawn::Tracked { at, window } => {
-                track(sheets, voxel(geometry, *at).as_vec3(), size, blocks, window, read)?
-            }
+            Drawn::Tracked { at, window } => track(sheets, voxel(geometry, *at).as_vec3(), size, blocks, window, read)?,
         };
         if index + 1 == drawn.len() {
             last = made;

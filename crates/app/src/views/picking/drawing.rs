@@ -17,7 +17,8 @@ pub(super) fn show(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 fn line(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let picking = &session.view.picking;
     let mut snap = picking.snap;
-    let hint = "Lay the line on the nearest peak or trough, whichever the samples along it are; otherwise it stays as drawn";
+    let hint =
+        "Lay the line on the nearest peak or trough, whichever the samples along it are; otherwise it stays as drawn";
     if ui.checkbox(&mut snap, "On the reflection").on_hover_text(hint).changed() {
         actions.push(Action::Picking(PickingStep::Snap(snap)));
     }

@@ -19,8 +19,8 @@ use crate::state::{
 };
 use crate::work::{CutOf, Rocks, SliceRequest, Slices};
 use eframe::egui::{
-    Align2, Color32, Context, DragValue, FontId, Label, Painter, PointerButton, Pos2, Rect, Response, RichText, Role, Sense, Stroke, TextureHandle, Ui,
-    Vec2, WidgetInfo, vec2,
+    Align2, Color32, Context, DragValue, FontId, Label, Painter, PointerButton, Pos2, Rect, Response, RichText, Role,
+    Sense, Stroke, TextureHandle, Ui, Vec2, WidgetInfo, vec2,
 };
 use figure::cut::SectionCut;
 use figure::cut::{CutLine, value_at};
