@@ -53,14 +53,7 @@ impl State {
                 }
                 return picking.accept().into_iter().collect();
             }
-            PickingStep::GiveUp => {
-                if picking.stick.is_empty() && picking.pick.is_none() && picking.line.is_empty() {
-                    picking.tool = Tool::Pick;
-                }
-                picking.stick.clear();
-                picking.line.clear();
-                picking.pick = None;
-            }
+            PickingStep::GiveUp => picking.give_up(),
             PickingStep::Begin => return picking.turn_to(None, document),
             PickingStep::Choose(name) => return picking.turn_to(Some(name), document),
             PickingStep::Name(name) => picking.horizon = Some(name),
@@ -100,13 +93,7 @@ impl State {
                 }
             }
             PickingStep::EndStick => picking.end_stick(),
-            PickingStep::Backspace if picking.tool == Tool::Draw => drop(picking.line.pop()),
-            PickingStep::Backspace => {
-                if picking.stick.is_empty() {
-                    picking.stick = picking.sticks.pop().unwrap_or_default();
-                }
-                picking.stick.pop();
-            }
+            PickingStep::Backspace => picking.take_last_point(),
             PickingStep::NameFault(name) => picking.fault = name,
             PickingStep::MakeFault => return picking.make_fault().into_iter().collect(),
             PickingStep::Dismiss(id) => picking.dismissed.push(id),
@@ -132,6 +119,28 @@ impl State {
 }
 
 impl Picking {
+    /// What was begun is given up; where nothing was, the tool is.
+    fn give_up(&mut self) {
+        if self.stick.is_empty() && self.pick.is_none() && self.line.is_empty() {
+            self.tool = Tool::Pick;
+        }
+        self.stick.clear();
+        self.line.clear();
+        self.pick = None;
+    }
+
+    /// The last point of the line or stick that is being drawn is taken back; then that of the stick before.
+    fn take_last_point(&mut self) {
+        if self.tool == Tool::Draw {
+            self.line.pop();
+            return;
+        }
+        if self.stick.is_empty() {
+            self.stick = self.sticks.pop().unwrap_or_default();
+        }
+        self.stick.pop();
+    }
+
     /// A click at a place in line numbers: selects the leaf there, accepts the previous selection first, or removes the
     /// leaf, as `how` says.
     fn click(&mut self, at: [f64; 3], how: How) -> Vec<Task> {

@@ -7,18 +7,20 @@
 //! |---|---|---|---|
 //! | along | `t.x·i + t.y·a·j` | k (times the vertical frequency) | side faces; the others when the layer strikes along t |
 //! | across | `−t.y·i + t.x·a·j` | k (times the vertical frequency) | top and bottom faces on which the layer strikes across t |
-//! | map | `i` | `a·j` (times the horizontal frequency) | any face that is parallel to the layer |
+//! | map | as along | `−t.y·i + t.x·a·j` (times the horizontal frequency) | any face that is parallel to the layer |
 //!
 //! t is the horizontal direction that lies in the face: y for a face of constant x, x for a face of constant
 //! y, x for a horizontal face, and the true direction for an oblique one, so that a pattern keeps its size on
 //! any vertical cut. The paper always uses `along` on top faces, with t = x. Where a layer dips towards x, i
 //! and k then change together and nothing changes along y, so the pattern smears into stripes. We take the
 //! horizontal coordinate that runs along strike. Where the face is parallel to the layer, k does not change
-//! at all, and j takes its place.
+//! at all, and the way across t takes its place: j on a top face, the way down the layer on a side face that shows a
+//! steep limb. At an angle of 30° between face and layer `along` is stretched by 2, which is as much as a calm pattern
+//! may be (`render::distortion`), so from there on the map begins to replace it.
 //!
 //! The weights follow from the strike line on the face, s = n × g, for face normal n and g = ∇k/|∇k|: |s| is
-//! the sine of the angle between face and layer. With S(a, b, x) the cubic smoothstep: `map = 1 − S(sin² 10°,
-//! sin² 25°, |s|²)`, `r = (s·t)²/((s·t)² + (s·t′)²)`, `along = (1 − map)·S(0.35, 0.65, r)`, `across = 1 − map
+//! the sine of the angle between face and layer. With S(a, b, x) the cubic smoothstep: `map = 1 − S(sin² 18°,
+//! sin² 30°, |s|²)`, `r = (s·t)²/((s·t)² + (s·t′)²)`, `along = (1 − map)·S(0.35, 0.65, r)`, `across = 1 − map
 //! − along`; t′ = t turned by 90°.
 //!
 //! On a wall that turns, `along` continues from one plane to the next: u is shifted so that it is the same on both sides
@@ -28,10 +30,10 @@
 //! metres downwards); their signs do not matter. All arithmetic is f32, so that the WGSL twin computes the
 //! same.
 
-/// sin² of the angle between face and layer below which only the map mapping is used (10°).
-pub const MAP_ONLY_SIN_SQ: f32 = 0.030_153_69;
-/// sin² of the angle between face and layer above which the map mapping is not used (25°).
-pub const NO_MAP_SIN_SQ: f32 = 0.178_606_2;
+/// sin² of the angle between face and layer below which only the map mapping is used (18°).
+pub const MAP_ONLY_SIN_SQ: f32 = 0.095_491_5;
+/// sin² of the angle between face and layer above which the map mapping is not used (30°).
+pub const NO_MAP_SIN_SQ: f32 = 0.25;
 /// Share of the strike line along t below which the across mapping alone is used.
 pub const ACROSS_ONLY_SHARE: f32 = 0.35;
 /// Share of the strike line along t above which the along mapping alone is used.
@@ -57,7 +59,7 @@ pub struct MappingWeights {
     pub along: f32,
     /// Weight of u across t, v = k.
     pub across: f32,
-    /// Weight of u = i, v = j.
+    /// Weight of u along t, v across t.
     pub map: f32,
 }
 
@@ -134,10 +136,11 @@ impl FaceFrame {
     pub fn mappings(&self, aspect_j: f32) -> [Mapping; 3] {
         let [x, y] = self.along;
         let k = [0.0, 0.0, 1.0];
+        let (along, across) = ([x, y * aspect_j, 0.0], [-y, x * aspect_j, 0.0]);
         [
-            Mapping { u: [x, y * aspect_j, 0.0], v: k, shift: self.shift },
-            Mapping { u: [-y, x * aspect_j, 0.0], v: k, shift: 0.0 },
-            Mapping { u: [1.0, 0.0, 0.0], v: [0.0, aspect_j, 0.0], shift: 0.0 },
+            Mapping { u: along, v: k, shift: self.shift },
+            Mapping { u: across, v: k, shift: 0.0 },
+            Mapping { u: along, v: across, shift: self.shift },
         ]
     }
 }
@@ -220,19 +223,35 @@ mod tests {
     }
 
     #[test]
-    fn the_map_takes_over_between_25_and_10_degrees_without_a_jump() {
+    fn the_map_takes_over_between_30_and_18_degrees_without_a_jump() {
         let at = |degrees: f32| {
             let (sin, cos) = degrees.to_radians().sin_cos();
             weights([0.0, 0.0, 1.0], [0.0, sin, -cos])
         };
-        near(at(9.9), [0.0, 0.0, 1.0]);
-        near(at(25.1), [1.0, 0.0, 0.0]);
+        near(at(17.9), [0.0, 0.0, 1.0]);
+        near(at(30.1), [1.0, 0.0, 0.0]);
         let mut previous = at(0.0);
         for step in 1..=900 {
             let now = at(step as f32 * 0.1);
             assert!((now.iter().sum::<f32>() - 1.0).abs() < 1e-5);
             assert!(now[2] <= previous[2] && previous[2] - now[2] < 0.02);
             previous = now;
+        }
+    }
+
+    #[test]
+    fn a_steep_limb_on_a_side_face_lies_along_the_horizontal() {
+        for (normal, limb) in [([1.0, 0.0, 0.0], [1.0, 0.0, -0.1]), ([0.0, 1.0, 0.0], [0.0, -1.0, 0.1])] {
+            let frame = FaceFrame::new(normal);
+            near(frame.weights(limb).to_array(), [0.0, 0.0, 1.0]);
+            let [along, _, map] = frame.mappings(2.0);
+            let (strike, dip) =
+                if normal[0] == 1.0 { ([0.0, 0.3, 0.0], [0.4, 0.0, 0.0]) } else { ([0.3, 0.0, 0.0], [0.0, 0.4, 0.0]) };
+            // Along strike both mappings are the same, so bricks go on where one replaces the other.
+            assert_eq!(map.apply(strike)[0], along.apply(strike)[0]);
+            assert_eq!(map.apply(strike)[1], 0.0);
+            assert_eq!(map.apply(dip)[0], 0.0);
+            assert!(map.apply(dip)[1].abs() >= 0.4);
         }
     }
 

@@ -51,64 +51,12 @@ impl ProjectError {
             Self::OverBudget { .. } => {
                 "allow more (--size-limit, --triangles), or show less: fewer scenes (--scene), sections (--sections) or cut-outs"
             }
-
             Self::BadNote(_) => {
                 "list the notes and their numbers with `petroglyph note list`, and the survey's lines with `petroglyph info`"
             }
             Self::BadGrowth { .. } => "state metres, 0 or more",
-            Self::Io { .. }
-            | Self::Segy(_)
-            | Self::Format(_)
-            | Self::Well(_)
-            | Self::Store(_)
-            | Self::Synth(_)
-            | Self::Assembly(_)
-            | Self::Attribute(_)
-            | Self::Model(_)
-            | Self::Param(_)
-            | Self::Interp(_)
-            | Self::Time(_)
-            | Self::Memory(_)
-            | Self::Render(_)
-            | Self::AlreadyPicked { .. }
-            | Self::AtLeaf { .. }
-            | Self::Crossing { .. }
-            | Self::DiskFull { .. }
-            | Self::Duplicate { .. }
-            | Self::Figure(_)
-            | Self::NoCandidate { .. }
-            | Self::NoGeometry
-            | Self::NoTime
-            | Self::NoPickFits { .. }
-            | Self::NoProposals
-            | Self::NoVolume
-            | Self::NotATruth { .. }
-            | Self::NotAssembled { .. }
-            | Self::NotDrawn { .. }
-            | Self::NoStickPoint { .. }
-            | Self::NotExtracted
-            | Self::NotFound { .. }
-            | Self::NotPicked { .. }
-            | Self::NotClimbable { .. }
-            | Self::NothingLeft { .. }
-            | Self::NothingTracked { .. }
-            | Self::ShortLine
-            | Self::NothingToRedo
-            | Self::NothingToUndo
-            | Self::OutdatedPicks { .. }
-            | Self::OutdatedProposals
-            | Self::PickOutside { .. }
-            | Self::Placement { .. }
-            | Self::Font { .. }
-            | Self::Scene(_)
-            | Self::SeveralInFile { .. }
-            | Self::ShortStick { .. }
-            | Self::Style(_)
-            | Self::UnfitPicks { .. }
-            | Self::Unknown { .. }
-            | Self::UnknownPick { .. }
-            | Self::UnknownProposal { .. }
-            | Self::Unsound { .. } => return None,
+            // Contains its advice, or gets it from the program that shows it.
+            _ => return None,
         })
     }
 

@@ -68,8 +68,8 @@ override with_raw: u32 = 1u;
 override with_scalars: u32 = 1u;
 
 const NONE: u32 = 0xffffffffu;
-const MAP_ONLY_SIN_SQ: f32 = 0.03015369;
-const NO_MAP_SIN_SQ: f32 = 0.1786062;
+const MAP_ONLY_SIN_SQ: f32 = 0.0954915;
+const NO_MAP_SIN_SQ: f32 = 0.25;
 const ACROSS_ONLY_SHARE: f32 = 0.35;
 const ALONG_ONLY_SHARE: f32 = 0.65;
 
@@ -132,13 +132,15 @@ fn map_flat(mappings: Mappings, mapping: u32, flat: vec3<f32>) -> vec2<f32> {
     let i = flat.x;
     let j = flat.y * ttf.aspect_j;
     let t = mappings.along;
+    let along = t.x * i + t.y * j;
+    let across = -t.y * i + t.x * j;
     if mapping == 0u {
-        return vec2(t.x * i + t.y * j, flat.z);
+        return vec2(along, flat.z);
     }
     if mapping == 1u {
-        return vec2(-t.y * i + t.x * j, flat.z);
+        return vec2(across, flat.z);
     }
-    return vec2(i, j);
+    return vec2(along, across);
 }
 
 // A texture at a frequency, dissolved into the finer one.
@@ -163,7 +165,7 @@ fn sample_scaled(texture: u32, scale: vec2<f32>, point: ShadePoint, mappings: Ma
         let factor = select(scale, scale.xx, mapping == 2u);
         sum += weight * sample_texture(
             texture,
-            (map_flat(mappings, mapping, point.ijk) + vec2(select(0.0, mappings.shift, mapping == 0u), 0.0)) * factor,
+            (map_flat(mappings, mapping, point.ijk) + vec2(select(mappings.shift, 0.0, mapping == 1u), 0.0)) * factor,
             map_flat(mappings, mapping, point.dx) * factor,
             map_flat(mappings, mapping, point.dy) * factor,
         );
