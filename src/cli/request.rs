@@ -14,15 +14,14 @@ use super::{assembly, extraction, interpretation};
 use crate::bench;
 use chains::illustrate::IllustrateSettings;
 use formats::{ExportOptions, Format, ImportOptions, SurfaceKind};
-use interp::ExtractSettings;
 use interp::faults::ProposeSettings;
 use param::KDefinition;
 use pictures::Device;
 use pictures::figures::FigureFormat;
 use pictures::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use project::command::{
-    AddNote, AddTexture, Command, ImportVolume, RemoveNote, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer,
-    SetLayer, SetParameterization, SetScalar, SetVelocity,
+    AddNote, AddTexture, Command, Extract, ImportVolume, RemoveNote, RemoveScalar, RemoveScene, RemoveVolume,
+    ResetLayer, SetLayer, SetParameterization, SetScalar, SetVelocity,
 };
 use project::document::NoteEntry;
 use project::memory_budget;
@@ -64,7 +63,7 @@ pub(super) enum Request {
     /// List parts of a project.
     List { project: PathBuf, what: Listing },
     /// Extract horizon candidates.
-    Extract { project: PathBuf, volume: Option<String>, settings: ExtractSettings },
+    Extract { project: PathBuf, extract: Extract },
     /// Write the points of all candidates to a file.
     ExportCandidates { project: PathBuf, out: PathBuf },
     /// Write a horizon to a file.

@@ -13,7 +13,7 @@ use pictures::load::Stage;
 use pictures::{load, scene};
 use project::Project;
 use project::ProjectError;
-use project::command::{AddScene, Command, Effect, Extract, ImportVolume, ProposeFaults, SetParameterization, SetRaw};
+use project::command::{AddScene, Command, Effect, ImportVolume, ProposeFaults, SetParameterization, SetRaw};
 use project::folder::refuse_inside_project;
 use project::interpretation::extraction;
 use project::{derived, segy_export, styles, surface_export};
@@ -79,8 +79,8 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
         Request::Export { project, out, surface: (kind, name), format, options } => {
             export(&project, &out, (kind, &name), format, &options, &progress)?
         }
-        Request::Extract { project, volume, settings } => {
-            let extract = Command::Extract(Extract { volume, settings });
+        Request::Extract { project, extract } => {
+            let extract = Command::Extract(extract);
             match open(&project)?.apply(&extract, &progress)? {
                 Effect::Extracted(done) => told(done),
                 other => told(other),

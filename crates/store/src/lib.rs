@@ -52,6 +52,7 @@ mod pyramid;
 mod ranges;
 mod replacement;
 mod sample;
+mod scratch;
 mod shard;
 #[cfg(test)]
 mod tests;
@@ -71,6 +72,7 @@ pub use layout::{ArrayLayout, BRICK};
 pub use parameterization::{NO_ID, ParameterizationVolumes, StoredParameterization, write_parameterization};
 pub use replacement::{Replacement, replace_file};
 pub use sample::StoredSample;
+pub use scratch::FolderArrays;
 pub use volume::StoredVolume;
 pub use volume_info::VolumeInfo;
 pub use well::{read_well, write_well};
