@@ -20,10 +20,10 @@ use pictures::Device;
 use pictures::figures::FigureFormat;
 use pictures::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use project::command::{
-    AddNote, AddTexture, Command, Extract, ImportVolume, RemoveNote, RemoveScalar, RemoveScene, RemoveVolume,
-    ResetLayer, SetLayer, SetParameterization, SetScalar, SetVelocity,
+    AddNote, AddTexture, Command, Extract, LinkVolume, RemoveNote, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer,
+    SetLayer, SetParameterization, SetScalar, SetVelocity,
 };
-use project::document::NoteEntry;
+use project::document::{NoteEntry, Polarity};
 use project::memory_budget;
 use render::{IsosurfaceSource, Scope};
 use segy::{SegyOptions, WriteFormat};
@@ -46,8 +46,8 @@ pub(super) enum Request {
     SynthOutcrop { out: PathBuf, settings: SynthSettings },
     /// Describe a file or project.
     Info { path: PathBuf, distortion: bool, segy: SegyOptions, reading: ImportOptions },
-    /// Import a volume; the project is created if it does not exist.
-    Import { project: PathBuf, command: ImportVolume },
+    /// Import or link a volume; the project is created if it does not exist.
+    Import { project: PathBuf, command: Command },
     /// Create a project.
     Create { project: PathBuf, geometry: Option<SurveyGeometry> },
     /// Change a project.
@@ -167,11 +167,16 @@ impl TryFrom<Action> for Request {
                 reading: interpretation::import_options(reading)?,
             },
             Action::View { project, frame_times } => Self::Window { project, frame_times },
-            Action::Import(typed) => {
-                Self::Import { project: typed.project.clone(), command: interpretation::import(typed)? }
-            }
+            Action::Import(typed) => Self::Import {
+                project: typed.project.clone(),
+                command: Command::Import(interpretation::import(typed)?),
+            },
             Action::Attribute(typed) => interpretation::attribute(typed)?,
             Action::Volume(VolumeAction::List { project }) => Self::List { project, what: Listing::Volumes },
+            Action::Volume(VolumeAction::Link { project, url, name }) => {
+                let link = LinkVolume { url, name, polarity: Polarity::default() };
+                Self::Import { project, command: Command::LinkVolume(link) }
+            }
             Action::Volume(VolumeAction::Remove { project, name }) => {
                 change(project, Command::RemoveVolume(RemoveVolume { name }))
             }

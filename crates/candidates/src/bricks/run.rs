@@ -92,6 +92,12 @@ impl Bricks<'_> {
         Ok(report)
     }
 
+    /// Count of stages that an earlier run has done.
+    pub fn done_stages(&self) -> usize {
+        let is_done = |stage: &Stage| self.arrays.is_whole(&format!("done-{}", stage.name()), usize::MAX);
+        self.stages().iter().take_while(|stage| is_done(stage)).count()
+    }
+
     /// Does all tasks of a stage that are not done yet.
     fn run_stage(&self, stage: Stage, workers: usize, progress: &Progress) -> Result<(), InterpError> {
         let done = format!("done-{}", stage.name());

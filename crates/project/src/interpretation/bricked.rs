@@ -55,6 +55,11 @@ impl BrickedExtraction<'_> {
     ) -> Result<ExtractReport, ProjectError> {
         let arrays = FolderArrays::open(&scratch.path("arrays"))?;
         let bricks = Bricks::new(self.source, &arrays, self.settings, cut)?;
+        let done = bricks.done_stages();
+        if done > 0 {
+            let all = bricks.stages().len();
+            progress.warn(format!("continued an interrupted extraction: {done} of {all} stages were complete already"));
+        }
         let mut report = bricks.run(cut.workers, progress)?;
         let storing = Instant::now();
         let forest = bricks.forest()?;
