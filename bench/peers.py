@@ -17,7 +17,7 @@ template for post-stack volumes and its default chunks and codec, then reads the
 times VTK's volume mappers on the volume, function, camera and step that `volume_speed` draws: one sample a voxel, the white ramp, a parallel
 projection over a corner. VTK's graphics mapper runs on whatever OpenGL there is, without a window.
 
-    cargo run -p petroglyph-interp --example extraction_speed -- 256 1 amplitude.npy
+    cargo run -p petroglyph-candidates --example extraction_speed -- 256 1 amplitude.npy
     venv/bin/python bench/peers.py --amplitude amplitude.npy
 
 times scipy's nearest extrema and connected extrema on the samples that our extraction was timed on.

@@ -1,9 +1,10 @@
 //! Turns the options of an extraction into settings.
 
 use super::args::ExtractArgs;
-use super::interpretation::word;
+use super::interpretation::{bytes, word};
 use super::request::{Request, Usage};
 use interp::{DistanceSettings, ExtractSettings, Extremum, ForestSettings, GrowSettings, Method};
+use project::command::Extract;
 
 /// The words for what surfaces can follow.
 const KINDS: [(&str, Extremum); 3] = [("peak", Extremum::Peak), ("trough", Extremum::Trough), ("zero", Extremum::Zero)];
@@ -24,5 +25,7 @@ pub(super) fn extract(typed: ExtractArgs) -> Result<Request, Usage> {
         forest: ForestSettings { min_leaf_triangles: typed.min_leaf_triangles, ..ForestSettings::default() },
         distance: DistanceSettings { max_distance: typed.max_distance },
     };
-    Ok(Request::Extract { project: typed.project, volume: typed.volume, settings })
+    let memory_bytes = bytes("--memory", typed.memory.as_deref())?;
+    let extract = Extract { volume: typed.volume, settings, memory_bytes };
+    Ok(Request::Extract { project: typed.project, extract })
 }

@@ -14,17 +14,16 @@ use super::{assembly, extraction, interpretation};
 use crate::bench;
 use chains::illustrate::IllustrateSettings;
 use formats::{ExportOptions, Format, ImportOptions, SurfaceKind};
-use interp::ExtractSettings;
 use interp::faults::ProposeSettings;
 use param::KDefinition;
 use pictures::Device;
 use pictures::figures::FigureFormat;
 use pictures::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use project::command::{
-    AddNote, AddTexture, Command, ImportVolume, RemoveNote, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer,
+    AddNote, AddTexture, Command, Extract, LinkVolume, RemoveNote, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer,
     SetLayer, SetParameterization, SetScalar, SetVelocity,
 };
-use project::document::NoteEntry;
+use project::document::{NoteEntry, Polarity};
 use project::memory_budget;
 use render::{IsosurfaceSource, Scope};
 use segy::{SegyOptions, WriteFormat};
@@ -47,8 +46,8 @@ pub(super) enum Request {
     SynthOutcrop { out: PathBuf, settings: SynthSettings },
     /// Describe a file or project.
     Info { path: PathBuf, distortion: bool, segy: SegyOptions, reading: ImportOptions },
-    /// Import a volume; the project is created if it does not exist.
-    Import { project: PathBuf, command: ImportVolume },
+    /// Import or link a volume; the project is created if it does not exist.
+    Import { project: PathBuf, command: Command },
     /// Create a project.
     Create { project: PathBuf, geometry: Option<SurveyGeometry> },
     /// Change a project.
@@ -64,7 +63,7 @@ pub(super) enum Request {
     /// List parts of a project.
     List { project: PathBuf, what: Listing },
     /// Extract horizon candidates.
-    Extract { project: PathBuf, volume: Option<String>, settings: ExtractSettings },
+    Extract { project: PathBuf, extract: Extract },
     /// Write the points of all candidates to a file.
     ExportCandidates { project: PathBuf, out: PathBuf },
     /// Write a horizon to a file.
@@ -168,11 +167,16 @@ impl TryFrom<Action> for Request {
                 reading: interpretation::import_options(reading)?,
             },
             Action::View { project, frame_times } => Self::Window { project, frame_times },
-            Action::Import(typed) => {
-                Self::Import { project: typed.project.clone(), command: interpretation::import(typed)? }
-            }
+            Action::Import(typed) => Self::Import {
+                project: typed.project.clone(),
+                command: Command::Import(interpretation::import(typed)?),
+            },
             Action::Attribute(typed) => interpretation::attribute(typed)?,
             Action::Volume(VolumeAction::List { project }) => Self::List { project, what: Listing::Volumes },
+            Action::Volume(VolumeAction::Link { project, url, name }) => {
+                let link = LinkVolume { url, name, polarity: Polarity::default() };
+                Self::Import { project, command: Command::LinkVolume(link) }
+            }
             Action::Volume(VolumeAction::Remove { project, name }) => {
                 change(project, Command::RemoveVolume(RemoveVolume { name }))
             }

@@ -13,7 +13,7 @@ use pictures::load::Stage;
 use pictures::{load, scene};
 use project::Project;
 use project::ProjectError;
-use project::command::{AddScene, Command, Effect, Extract, ImportVolume, ProposeFaults, SetParameterization, SetRaw};
+use project::command::{AddScene, Command, Effect, ProposeFaults, SetParameterization, SetRaw};
 use project::folder::refuse_inside_project;
 use project::interpretation::extraction;
 use project::{derived, segy_export, styles, surface_export};
@@ -75,12 +75,12 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
         Request::Info { path, distortion, segy, reading } => {
             info::describe(&path, distortion, &segy, &reading, &progress)?
         }
-        Request::Import { project, command } => import(&project, wait, command, &progress)?,
+        Request::Import { project, command } => import(&project, wait, &command, &progress)?,
         Request::Export { project, out, surface: (kind, name), format, options } => {
             export(&project, &out, (kind, &name), format, &options, &progress)?
         }
-        Request::Extract { project, volume, settings } => {
-            let extract = Command::Extract(Extract { volume, settings });
+        Request::Extract { project, extract } => {
+            let extract = Command::Extract(extract);
             match open(&project)?.apply(&extract, &progress)? {
                 Effect::Extracted(done) => told(done),
                 other => told(other),
@@ -193,14 +193,13 @@ fn told(done: impl std::fmt::Display + serde::Serialize) -> Report {
     report
 }
 
-/// Imports a volume. A project that does not exist is created, and appears only when the import has succeeded.
-fn import(path: &Path, wait: Duration, command: ImportVolume, progress: &Progress) -> anyhow::Result<Report> {
-    let command = Command::Import(command);
+/// Imports or links a volume. A project that does not exist is created, and appears only when the import has succeeded.
+fn import(path: &Path, wait: Duration, command: &Command, progress: &Progress) -> anyhow::Result<Report> {
     if path.exists() {
-        return change(Project::open(path)?.waiting(wait), &command, progress);
+        return change(Project::open(path)?.waiting(wait), command, progress);
     }
     let mut project = Project::create(path, None)?;
-    let mut effect = project.project().apply(&command, progress)?;
+    let mut effect = project.project().apply(command, progress)?;
     option::name_in(effect.notes_mut());
     project.publish()?;
     let mut report = Report::line(format!("created {}", path.display()));

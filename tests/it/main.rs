@@ -6,6 +6,7 @@ mod assembly;
 mod bad_input;
 mod batch;
 mod bombs;
+mod bricks;
 mod chain;
 mod check;
 mod correlation;
@@ -26,6 +27,8 @@ mod legibility;
 mod memory;
 mod program;
 mod proposed_faults;
+#[cfg(feature = "remote")]
+mod remote;
 mod review;
 mod safety;
 mod shapes;

@@ -165,7 +165,10 @@ pub const LAYERS: usize = 6;
 /// No level of time stands out, data are damaged, or the user cancelled.
 pub fn layers_by_time(project: &mut Project, layers: usize, progress: &Progress) -> Result<Vec<String>, ProjectError> {
     if project.document().extraction.is_none() {
-        project.apply(&Command::Extract(Extract { volume: None, settings: ExtractSettings::default() }), progress)?;
+        project.apply(
+            &Command::Extract(Extract { volume: None, settings: ExtractSettings::default(), memory_bytes: None }),
+            progress,
+        )?;
     }
     if project.document().faults.is_empty() {
         accept_faults(project, progress)?;

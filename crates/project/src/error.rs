@@ -546,10 +546,12 @@ impl From<interp::InterpError> for ProjectError {
     fn from(error: interp::InterpError) -> Self {
         match error {
             interp::InterpError::Cancelled(cancelled) => Self::Cancelled(cancelled),
-            interp::InterpError::Sink(error) => match error.downcast::<StoreError>() {
-                Ok(error) => Self::Store(*error),
-                Err(error) => Self::Interp(interp::InterpError::Sink(error)),
-            },
+            interp::InterpError::Sink(e) | interp::InterpError::Arrays(e) | interp::InterpError::Source(e) => {
+                match e.downcast() {
+                    Ok(error) => Self::Store(*error),
+                    Err(e) => Self::Interp(interp::InterpError::Sink(e)),
+                }
+            }
             other => Self::Interp(other),
         }
     }

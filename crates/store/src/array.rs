@@ -8,6 +8,7 @@
 use super::capacity;
 use super::error::StoreError;
 use super::layout::{ArrayLayout, gather, grid_index};
+use super::placed::ArrayFiles;
 use super::sample::StoredSample;
 use super::shard::{ShardGrid, Shards};
 use rayon::prelude::*;
@@ -250,6 +251,25 @@ pub struct StoredArray {
 impl StoredArray {
     /// Opens the array `name` of the folder `group`.
     pub fn open(group: &Path, name: &str) -> Result<Self, StoreError> {
+        let opened = Self::of_metadata(group, name)?;
+        let edge = opened.file_shape()?;
+        let counts: Vec<usize> = opened.shape.iter().zip(&edge).map(|(&n, &edge)| n.div_ceil(edge)).collect();
+        capacity::check_count(group, name, &opened.shape, &counts)?;
+        let shards = plain_shards(group, name, &opened.shape).map(|grid| Shards::new(grid, group, name));
+        Ok(Self { shards, ..opened })
+    }
+
+    /// Opens an array whose metadata lie in the folder `group` and whose files elsewhere; its bricks must be stored as
+    /// this program stores them.
+    pub(super) fn open_linked(group: &Path, name: &str, files: Arc<dyn ArrayFiles>) -> Result<Self, StoreError> {
+        let opened = Self::of_metadata(group, name)?;
+        let Some(grid) = plain_shards(group, name, &opened.shape) else {
+            return Err(StoreError::OtherChunks { path: group.to_owned(), array: name.to_owned() });
+        };
+        Ok(Self { shards: Some(Shards::of_files(grid, files, group, name)), ..opened })
+    }
+
+    fn of_metadata(group: &Path, name: &str) -> Result<Self, StoreError> {
         let missing = || StoreError::MissingArray { path: group.to_owned(), array: name.to_owned() };
         capacity::check_metadata(&group.join(name).join("zarr.json"))?;
         let array = match Array::open(file_store(group, "read")?, &format!("/{name}")) {
@@ -265,12 +285,7 @@ impl StoredArray {
             }
         };
         let shape: Vec<usize> = array.shape().iter().map(|&n| n as usize).collect();
-        let opened = Self { group: group.to_owned(), name: name.to_owned(), shape, array, shards: None };
-        let edge = opened.file_shape()?;
-        let counts: Vec<usize> = opened.shape.iter().zip(&edge).map(|(&n, &edge)| n.div_ceil(edge)).collect();
-        capacity::check_count(group, name, &opened.shape, &counts)?;
-        let shards = plain_shards(group, name, &opened.shape).map(|grid| Shards::new(grid, group, name));
-        Ok(Self { shards, ..opened })
+        Ok(Self { group: group.to_owned(), name: name.to_owned(), shape, array, shards: None })
     }
 
     /// Where it is, for errors.

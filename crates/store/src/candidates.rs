@@ -15,8 +15,10 @@
 //! is. Distances remain in voxels of level 0. The extraction defines what leaves and nodes mean; here they are only
 //! tables.
 //!
-//! Memory while writing: an eighth of the volume's voxels at 5 bytes each for the pyramid, and one file per
-//! thread.
+//! Memory while writing slabs: an eighth of the volume's voxels at 5 bytes each for the pyramid, and one file per
+//! thread. Columns (`bricks`) need no more than themselves.
+
+mod bricks;
 
 use super::array::{ArrayWriter, StoredArray, write_array, write_group};
 use super::error::StoreError;
@@ -58,8 +60,8 @@ pub struct CandidateWriter {
     size: [usize; 3],
     distance: ArrayWriter<u8>,
     leaf: LeafWriter,
-    /// Level 1.
-    half: Level,
+    /// Level 1, once there are slabs.
+    half: Option<Level>,
 }
 
 impl CandidateWriter {
@@ -75,10 +77,7 @@ impl CandidateWriter {
         let layout = ArrayLayout::volume(size);
         let distance = ArrayWriter::create(group, "distance", layout.clone(), BEYOND)?;
         let leaf = LeafWriter::create(group, "leaf", layout, leaves)?;
-        let coarse = halved(size);
-        let count = coarse.iter().product();
-        let half = Level { size: coarse, distance: vec![BEYOND; count], leaf: vec![0; count] };
-        Ok(Self { replacement, size, distance, leaf, half })
+        Ok(Self { replacement, size, distance, leaf, half: None })
     }
 
     /// Number of inlines of each slab but the last: as many as fill the files.
@@ -114,9 +113,10 @@ impl CandidateWriter {
             self.leaf.write_shard(&index, gather(leaf, &size, &start, edge))?;
             Ok::<(), StoreError>(progress.check()?)
         })?;
-        let row = self.half.size[1] * self.half.size[2];
+        let half = self.half.get_or_insert_with(|| Level::empty(halved(self.size)));
+        let row = half.size[1] * half.size[2];
         let part = first / 2 * row..(first / 2 + lines.div_ceil(2)) * row;
-        halve(size, distance, leaf, &mut self.half.distance[part.clone()], &mut self.half.leaf[part]);
+        halve(size, distance, leaf, &mut half.distance[part.clone()], &mut half.leaf[part]);
         Ok(())
     }
 
@@ -130,7 +130,8 @@ impl CandidateWriter {
         forest: &ForestTables,
         progress: &Progress,
     ) -> Result<(), StoreError> {
-        let Self { replacement, size, mut half, .. } = self;
+        let Self { replacement, size, half, .. } = self;
+        let mut half = half.unwrap_or_else(|| Level::empty(halved(size)));
         let group = replacement.path();
         write_group(group, "pyramid", serde_json::Map::new())?;
         for level in 1..levels(size) {
@@ -220,10 +221,13 @@ fn level_name(level: usize, array: &str) -> String {
 }
 
 impl Level {
-    fn halved(&self) -> Self {
-        let size = halved(self.size);
+    fn empty(size: [usize; 3]) -> Self {
         let count = size.iter().product();
-        let mut half = Self { size, distance: vec![BEYOND; count], leaf: vec![0; count] };
+        Self { size, distance: vec![BEYOND; count], leaf: vec![0; count] }
+    }
+
+    fn halved(&self) -> Self {
+        let mut half = Self::empty(halved(self.size));
         halve(self.size, &self.distance, &self.leaf, &mut half.distance, &mut half.leaf);
         half
     }
@@ -262,9 +266,13 @@ fn write_table<T: StoredSample>(
     columns: usize,
     progress: &Progress,
 ) -> Result<(), StoreError> {
-    let rows = values.len() / columns;
+    write_array(group, name, table_layout(values.len() / columns, columns), T::FILL, values, progress)
+}
+
+/// The division of a table.
+fn table_layout(rows: usize, columns: usize) -> ArrayLayout {
     let chunk = rows.clamp(1, ROWS);
-    let layout = match columns {
+    match columns {
         1 => ArrayLayout { shape: vec![rows], chunk: vec![chunk], shard: None, axes: vec!["row"] },
         _ => ArrayLayout {
             shape: vec![rows, columns],
@@ -272,8 +280,7 @@ fn write_table<T: StoredSample>(
             shard: None,
             axes: vec!["row", "column"],
         },
-    };
-    write_array(group, name, layout, T::FILL, values, progress)
+    }
 }
 
 /// Candidates on disk.

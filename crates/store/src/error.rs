@@ -75,6 +75,35 @@ pub enum StoreError {
         /// Type found.
         found: String,
     },
+    /// A linked array whose bricks are not stored as this program stores them.
+    #[error("array {array:?} of {} has other chunks than a linked volume may have (uncompressed bricks in shards, as \
+             this program writes them); import the volume instead", path.display())]
+    OtherChunks {
+        /// The group.
+        path: PathBuf,
+        /// The array.
+        array: String,
+    },
+    /// Object storage does not answer, or not with what was asked for.
+    #[error("{url} could not be read: {reason}")]
+    Remote {
+        /// The object.
+        url: String,
+        /// What is wrong, and what to do.
+        reason: String,
+    },
+    /// The program was built without object storage.
+    #[error("{url} lies in object storage, which this program was built without; build it with `--features remote`")]
+    WithoutRemote {
+        /// The volume.
+        url: String,
+    },
+    /// A linked volume is no longer what was linked.
+    #[error("{url} has changed since it was linked; remove the volume from the project and link it again")]
+    RemoteChanged {
+        /// The volume.
+        url: String,
+    },
     /// Data that is cut off, altered or missing.
     #[error("array {array:?} of {} is damaged ({reason}); import the data again, or delete it if it is derived", path.display())]
     Damaged {

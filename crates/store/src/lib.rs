@@ -2,7 +2,7 @@
 //! which other programs can open; faults and wells are in JSON.
 //!
 //! ```text
-//! volumes/NAME.zarr               write_volume, write_blocks, resume_blocks, StoredVolume
+//! volumes/NAME.zarr               write_volume, write_blocks, resume_blocks, link_volume, StoredVolume
 //! horizons/NAME.zarr              write_horizon, read_horizon
 //! faults/NAME.json                write_fault, read_fault
 //! wells/NAME.json                 write_well, read_well
@@ -47,11 +47,14 @@ mod header;
 mod horizon;
 mod ingest;
 mod layout;
+mod linked;
 mod parameterization;
+mod placed;
 mod pyramid;
 mod ranges;
 mod replacement;
 mod sample;
+mod scratch;
 mod shard;
 #[cfg(test)]
 mod tests;
@@ -68,9 +71,11 @@ pub use header::VERSION;
 pub use horizon::{read_horizon, write_horizon};
 pub use ingest::{Ingested, MEMORY_BYTES, resume_blocks, write_blocks, write_volume};
 pub use layout::{ArrayLayout, BRICK};
+pub use linked::{is_remote, link_volume};
 pub use parameterization::{NO_ID, ParameterizationVolumes, StoredParameterization, write_parameterization};
 pub use replacement::{Replacement, replace_file};
 pub use sample::StoredSample;
+pub use scratch::FolderArrays;
 pub use volume::StoredVolume;
 pub use volume_info::VolumeInfo;
 pub use well::{read_well, write_well};

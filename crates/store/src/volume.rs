@@ -20,6 +20,7 @@ use super::error::StoreError;
 use super::header::read_header;
 use super::ingest::is_unfinished;
 use super::layout::BRICK;
+use super::linked;
 use super::pyramid::halved;
 use super::sample::StoredSample;
 use super::verify::Findings;
@@ -39,6 +40,8 @@ pub struct StoredVolume {
     info: VolumeInfo,
     levels: Vec<StoredArray>,
     live: Vec<bool>,
+    /// Where its bricks lie, if not beside the rest.
+    link: Option<linked::Link>,
 }
 
 impl StoredVolume {
@@ -52,7 +55,12 @@ impl StoredVolume {
         }
         let info: VolumeInfo = read_header(path, KIND, "a volume")?;
         info.geometry.validate().map_err(|source| StoreError::Geometry { path: path.to_owned(), source })?;
-        let mut levels = vec![StoredArray::open(path, "0")?];
+        let link = linked::Link::read(path)?;
+        let array = |name: &str| match &link {
+            Some(link) => StoredArray::open_linked(path, name, link.files(name)?),
+            None => StoredArray::open(path, name),
+        };
+        let mut levels = vec![array("0")?];
         let damaged = |array: &str, reason: String| StoreError::Damaged {
             path: path.to_owned(),
             array: array.to_owned(),
@@ -65,7 +73,7 @@ impl StoredVolume {
         let mut size = full;
         while size.iter().any(|&n| n > BRICK) {
             size = halved(size);
-            let array = StoredArray::open(path, &levels.len().to_string())?;
+            let array = array(&levels.len().to_string())?;
             if array.shape() != size {
                 return Err(damaged(&levels.len().to_string(), format!("it has {:?}, not {size:?}", array.shape())));
             }
@@ -76,7 +84,7 @@ impl StoredVolume {
             return Err(damaged("live", format!("it has {:?}", mask.shape())));
         }
         let live = mask.read::<u8>(&Progress::silent())?.into_iter().map(|live| live != 0).collect();
-        Ok(Self { path: path.to_owned(), info, levels, live })
+        Ok(Self { path: path.to_owned(), info, levels, live, link })
     }
 
     /// Facts about the volume.
@@ -87,6 +95,11 @@ impl StoredVolume {
     /// The path of the volume.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Whether its bricks lie in object storage.
+    pub fn is_linked(&self) -> bool {
+        self.link.is_some()
     }
 
     /// Count of levels, the full volume included.
@@ -175,11 +188,15 @@ impl StoredVolume {
     }
 
     /// Checksums of the samples of level 0, brick by brick, which change when the samples do. They are read
-    /// from the files and not computed.
+    /// from the files and not computed. Of a linked volume they are those of what was linked, which is compared when
+    /// it is opened.
     ///
     /// # Errors
     /// [`StoreError`] when a file is missing or damaged.
     pub fn checksums(&self) -> Result<Vec<u32>, StoreError> {
+        if let Some(link) = &self.link {
+            return Ok(link.checksums());
+        }
         let array = self.array(0)?;
         let of = |sums: Option<Result<Vec<u32>, StoreError>>| sums.unwrap_or(Ok(Vec::new()));
         match array.type_name().as_str() {
@@ -218,9 +235,13 @@ impl StoredVolume {
     ///
     /// # Errors
     /// [`StoreError::Damaged`] with all that is missing or damaged, of which the first is named; or cancelled.
+    ///
+    /// Of a linked volume only what lies here is read.
     pub fn verify(&self, progress: &Progress) -> Result<(), StoreError> {
         let mut findings = Findings::default();
-        self.levels.iter().try_for_each(|array| array.find_damage(&mut findings, progress))?;
+        if self.link.is_none() {
+            self.levels.iter().try_for_each(|array| array.find_damage(&mut findings, progress))?;
+        }
         StoredArray::open(&self.path, "live")?.find_damage(&mut findings, progress)?;
         findings.into_result(&self.path)?;
         (0..self.levels.len()).try_for_each(|level| self.brick_ranges(level).map(drop))

@@ -4,6 +4,7 @@
 use crate::progress::Progress;
 use crate::source::SourceError;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// The code for a distance greater than [`CandidateInfo::max_distance`].
 pub const BEYOND: u8 = u8::MAX;
@@ -78,4 +79,53 @@ pub trait CandidateSink {
         forest: &ForestTables,
         progress: &Progress,
     ) -> Result<(), SourceError>;
+}
+
+/// Counts of rows of the tables of surfaces and trees.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct ForestCounts {
+    /// Vertices.
+    pub vertices: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// Surfaces.
+    pub surfaces: usize,
+    /// Nodes of their trees.
+    pub nodes: usize,
+}
+
+/// Surfaces and trees as tables whose rows are read some at a time; see [`ForestTables`] for what they hold.
+pub trait ForestRows: Sync {
+    /// Counts of rows.
+    fn counts(&self) -> ForestCounts;
+
+    /// Rows of [`ForestTables::trace`].
+    ///
+    /// # Errors
+    /// They cannot be read.
+    fn trace(&self, rows: Range<usize>) -> Result<Vec<[u16; 2]>, SourceError>;
+
+    /// Rows of [`ForestTables::z`].
+    ///
+    /// # Errors
+    /// They cannot be read.
+    fn z(&self, rows: Range<usize>) -> Result<Vec<f32>, SourceError>;
+
+    /// Rows of [`ForestTables::triangles`].
+    ///
+    /// # Errors
+    /// They cannot be read.
+    fn triangles(&self, rows: Range<usize>) -> Result<Vec<[u32; 3]>, SourceError>;
+
+    /// Rows of [`ForestTables::surfaces`].
+    ///
+    /// # Errors
+    /// They cannot be read.
+    fn surfaces(&self, rows: Range<usize>) -> Result<Vec<[u32; 5]>, SourceError>;
+
+    /// Rows of [`ForestTables::nodes`].
+    ///
+    /// # Errors
+    /// They cannot be read.
+    fn nodes(&self, rows: Range<usize>) -> Result<Vec<[u32; 6]>, SourceError>;
 }

@@ -27,6 +27,7 @@
 //!
 //! Only [`geometry::SurveyGeometry`] converts between them.
 
+pub mod arrays;
 pub mod block;
 pub mod candidates;
 pub mod fault;

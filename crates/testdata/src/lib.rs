@@ -1,7 +1,10 @@
-//! Where tests find the real data files: the folder that `PETROGLYPH_DATA` names.
+//! What tests share: the folder of the real data files, which `PETROGLYPH_DATA` names, and an object storage on
+//! loopback ([`s3`]).
 //!
-//! Without it a test on real data says that it is skipped. Where the data are promised, because the variable is set or
+//! Without the folder a test on real data says that it is skipped. Where the data are promised, because the variable is set or
 //! because continuous integration runs (`CI=true`), their absence is a failure. Used by tests only.
+
+pub mod s3;
 
 use std::env;
 use std::path::PathBuf;

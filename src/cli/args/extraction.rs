@@ -10,6 +10,10 @@ pub(in crate::cli) struct ExtractArgs {
     /// Volume to extract from [default: the first on the project's lattice]
     #[arg(long, value_name = "NAME")]
     pub(in crate::cli) volume: Option<String>,
+    /// Memory to use, such as 4G: what takes more in one piece (31 bytes a voxel) is done in bricks, with the same
+    /// result; a killed one goes on when it is started again [default: half of what is available]
+    #[arg(long, value_name = "BYTES")]
+    pub(in crate::cli) memory: Option<String>,
     /// How surfaces grow: `ours`, or `paper` for the published method
     #[arg(long, value_name = "ours|paper", default_value = "ours")]
     pub(in crate::cli) method: String,

@@ -110,6 +110,7 @@ pub(super) enum Action {
     Well(WellAction),
     /// Find horizon candidates in a volume: surfaces, their trees, and the closest leaf of every voxel
     #[command(after_help = "Examples:\n  petroglyph extract north.petro\
+                      \n  petroglyph extract north.petro --memory 4G\
                       \n  petroglyph extract north.petro --extrema peak --min-front-width 6 --json")]
     Extract(ExtractArgs),
     /// Compute geologic time: a volume in which every bed has one value, also beyond faults

@@ -1,6 +1,6 @@
 //! The commands that change files, each with the small folder that it begins in.
 //!
-//! A test compares them with what the program's help lists: no command can be forgotten. Six are left out, each with
+//! A test compares them with what the program's help lists: no command can be forgotten. Seven are left out, each with
 //! its reason ([`ELSEWHERE`]).
 
 use super::supervised::{self, Verdict};
@@ -281,7 +281,7 @@ const READING: [&str; 16] = [
 ];
 
 /// What is not disturbed itself, and why.
-const ELSEWHERE: [(&str, &str); 6] = [
+const ELSEWHERE: [(&str, &str); 7] = [
     (
         "demo",
         "carries out `synth`, `import`, `extract`, `pick`, `climb`, `horizon fill`, `layer set`, `scene add` and `render`",
@@ -291,6 +291,10 @@ const ELSEWHERE: [(&str, &str); 6] = [
         "carries out `import`, `extract`, `time`, `pick --by-time`, `layer set` and `render`, and draws for seconds",
     ),
     ("patterns", "writes its picture by what `render` writes pictures by, and draws it for seconds"),
+    (
+        "volume link",
+        "reads from object storage, and writes its folder by what `import` writes volumes by; `remote` tests it",
+    ),
     ("bench", "changes no project; with `--dump` and `--segy` it writes files of its own to a folder"),
     ("evaluate", "reads a project and the truth, and prints"),
     ("view", "is the window, which changes projects by the same commands"),

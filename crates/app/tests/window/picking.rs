@@ -17,7 +17,7 @@ use survey::Progress;
 const LEAF: u32 = 80;
 
 fn extract(project: &mut Project, settings: &ExtractSettings) {
-    let extract = Extract { volume: None, settings: settings.clone() };
+    let extract = Extract { volume: None, settings: settings.clone(), memory_bytes: None };
     project.apply(&Command::Extract(extract), &Progress::silent()).unwrap();
 }
 

@@ -164,3 +164,19 @@ fn true_sheets_take_a_pick_a_part() {
     assert!(open[0].replay.reached, "{:?}", open[0].replay);
     assert!(!open[1].oracle.reached && open[1].oracle.picks == 0, "nothing of Bravo is there");
 }
+
+#[test]
+fn ours_is_purer_than_the_papers_on_a_faulted_survey() {
+    let settings = SynthSettings { size: [96, 96, 96], seed: 1, snr: Some(3.0), ..SynthSettings::default() };
+    let survey = Synthetic::generate(&settings, &Progress::silent()).unwrap();
+    let [ours, papers] = [Method::Ours, Method::Paper].map(|method| {
+        let settings = GrowSettings { method, ..GrowSettings::default() };
+        let surfaces = grow_surfaces(&survey.seismic, &settings, &Progress::silent()).unwrap();
+        let found = evaluate(&surfaces, &survey.truth, &EvaluateSettings::default());
+        // Over all surfaces, so that merged ones count whatever else they run along.
+        let [on_one, on_any] = found.surfaces.iter().fold([0, 0], |sum, s| [sum[0] + s.on_majority, sum[1] + s.on_any]);
+        (on_one as f64 / on_any as f64, found.all.coverage())
+    });
+    assert!(ours.0 > 0.95 && papers.0 < 0.8, "{} {}", ours.0, papers.0);
+    assert!(ours.1 > 0.94, "{}", ours.1);
+}

@@ -25,6 +25,10 @@ pub struct Extract {
     /// The settings of the extraction.
     #[serde(default)]
     pub settings: ExtractSettings,
+    /// Memory to use, bytes; `None`: half of what is available. What takes more in one piece is done in bricks. It is not
+    /// recorded, since the result does not depend on it.
+    #[serde(skip)]
+    pub memory_bytes: Option<u64>,
 }
 
 impl Extract {
@@ -36,14 +40,27 @@ impl Extract {
         progress: &Progress,
     ) -> Result<Option<StageSeconds>, ProjectError> {
         let volume = self.volume.as_deref();
-        let extracted = extraction::compute(root, document, volume, &self.settings, Stored::Verified, progress)?;
+        let extracted = extraction::compute(
+            root,
+            document,
+            volume,
+            &self.settings,
+            (Stored::Verified, self.memory_bytes),
+            progress,
+        )?;
         Ok(extracted.report.seconds.filter(|_| extracted.computed))
     }
 
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let (root, volume) = (draft.root().to_owned(), self.volume.as_deref());
-        let mut extracted =
-            extraction::compute(&root, &draft.document, volume, &self.settings, Stored::Trusted, progress)?;
+        let mut extracted = extraction::compute(
+            &root,
+            &draft.document,
+            volume,
+            &self.settings,
+            (Stored::Trusted, self.memory_bytes),
+            progress,
+        )?;
         // They are renamed when the state that names them is saved.
         extracted.file = extraction::present_path(&root);
         draft.document.extraction =

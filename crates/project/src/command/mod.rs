@@ -13,6 +13,7 @@ mod fault_pick;
 mod horizon;
 mod import;
 mod layer;
+mod link;
 mod note;
 mod parameterization;
 pub(crate) mod pick;
@@ -34,6 +35,7 @@ pub use fault_pick::{AcceptFault, MoveStickPoint, PickFault};
 pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
 pub use import::{ImportVolume, RemoveVolume, VolumeImported};
 pub use layer::{ResetLayer, SetLayer};
+pub use link::LinkVolume;
 pub use note::{AddNote, RemoveNote};
 pub use parameterization::SetParameterization;
 pub use pick::{
@@ -80,6 +82,8 @@ pub enum Command {
     Time(ComputeTime),
     /// Propose faults from the horizons.
     ProposeFaults(ProposeFaults),
+    /// Take in a volume that stays in object storage.
+    LinkVolume(LinkVolume),
     /// Remove a volume.
     RemoveVolume(RemoveVolume),
     /// Add a horizon from a file.
@@ -223,6 +227,7 @@ impl Command {
             Self::Time(change) => change.execute(draft, progress),
             Self::PickByTime(change) => change.execute(draft, progress),
             Self::ProposeFaults(change) => change.execute(draft, progress),
+            Self::LinkVolume(change) => change.execute(draft, progress),
             Self::RemoveVolume(change) => change.execute(draft),
             Self::AddHorizon(change) => change.execute(draft, progress),
             Self::RenameHorizon(change) => change.execute(draft),

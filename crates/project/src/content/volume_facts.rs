@@ -43,8 +43,13 @@ pub(crate) fn entry(path: &Path, facts: Facts, progress: &Progress) -> Result<Vo
 }
 
 /// The value that most samples of live traces do not exceed in magnitude, estimated on evenly spread traces; 1 where
-/// all are zero.
+/// all are zero. Of a volume in object storage it is estimated on the coarsest level, so that few bricks are read.
 fn clip_of(stored: &StoredVolume, progress: &Progress) -> Result<f32, ProjectError> {
+    if stored.is_linked() {
+        let coarsest = stored.read_f32(stored.level_count() - 1, progress)?;
+        let values: Vec<f32> = coarsest.samples().iter().copied().filter(|value| value.is_finite()).collect();
+        return Ok(ttf::symmetric_clip(&values, SHOWN_SHARE).unwrap_or(1.0));
+    }
     let [_, crosslines, samples] = stored.size(0);
     let live: Vec<usize> =
         stored.live().iter().enumerate().filter(|(_, live)| **live).map(|(place, _)| place).collect();

@@ -23,7 +23,7 @@ pub use blocks::{blocks_key, keep_blocks, load_blocks};
 pub use grids::{keep_grids, load_grids, load_volumes, parameterization_key, volumes_path, voxels_of, write_volumes};
 
 pub(crate) use kept::verify_kept;
-pub(crate) use scratch::{Scratch, abandoned, remove_leftovers};
+pub(crate) use scratch::{RESUMABLE, Scratch, abandoned, remove_leftovers, remove_resumable};
 
 use serde::Serialize;
 use std::path::{Path, PathBuf};

@@ -11,7 +11,7 @@ pub const MODEL: u32 = 2;
 pub const PARAMETERIZATION: u32 = 3;
 
 /// Horizon candidates: extrema, growing, surface trees, distances.
-pub const EXTRACTION: u32 = 1;
+pub const EXTRACTION: u32 = 2;
 
 /// Proposed faults.
 pub const PROPOSALS: u32 = 1;
@@ -143,7 +143,7 @@ mod tests {
         let known = [
             ("MODEL", MODEL, of_model(), (2, "f3513521b9d7")),
             ("PARAMETERIZATION", PARAMETERIZATION, of_parameterization(), (3, "b365248c779a")),
-            ("EXTRACTION", EXTRACTION, of_extraction(), (1, "7a7715634834")),
+            ("EXTRACTION", EXTRACTION, of_extraction(), (2, "7a7715634834")),
             ("PROPOSALS", PROPOSALS, of_proposals(), (1, "1fc6c26217e7")),
             ("FOUND_FAULTS", FOUND_FAULTS, of_found_faults(), (1, "e89afb8fab47")),
         ];

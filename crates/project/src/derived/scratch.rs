@@ -3,7 +3,8 @@
 //!
 //! Derived data are stored without the project's lock, and several programs may do so at once. Each writer therefore
 //! has a folder of its own, beside a lock file that the system releases however the program ends. The next writer
-//! removes the folders whose lock is free.
+//! removes the folders whose lock is free. The folder of work in bricks has a name that tells the work: when the same
+//! work is asked for again, it goes on with what is there.
 
 use super::folder;
 use crate::error::ProjectError;
@@ -21,6 +22,7 @@ pub(crate) struct Scratch {
     root: PathBuf,
     name: String,
     _lock: File,
+    is_left: bool,
 }
 
 impl Scratch {
@@ -40,7 +42,35 @@ impl Scratch {
         let lock = made().or_else(|_| made()).map_err(fail)?;
         lock.lock().map_err(fail)?;
         fs::create_dir_all(all.join(&name)).map_err(fail)?;
-        Ok(Self { root: root.to_owned(), name, _lock: lock })
+        Ok(Self { root: root.to_owned(), name, _lock: lock, is_left: false })
+    }
+
+    /// The folder of the work that `name` identifies: that of a program that was stopped, or a new one; after removing
+    /// those of other work. `None` while another program does the same work.
+    ///
+    /// # Errors
+    /// As [`Scratch::begin`].
+    pub(crate) fn resume(root: &Path, name: &str) -> Result<Option<Self>, ProjectError> {
+        storage::refuse_links(root)?;
+        let all = root.join(UNFINISHED);
+        let fail = |source| ProjectError::io("written", &all, source);
+        for file in abandoned(root).into_iter().filter(|file| !is_of(file, name)) {
+            storage::remove(root, &file);
+        }
+        let made = || fs::create_dir_all(&all).and_then(|()| File::create(all.join(lock_of(name))));
+        let lock = made().or_else(|_| made()).map_err(fail)?;
+        match lock.try_lock() {
+            Ok(()) => {}
+            Err(fs::TryLockError::WouldBlock) => return Ok(None),
+            Err(fs::TryLockError::Error(source)) => return Err(fail(source)),
+        }
+        fs::create_dir_all(all.join(name)).map_err(fail)?;
+        Ok(Some(Self { root: root.to_owned(), name: name.to_owned(), _lock: lock, is_left: false }))
+    }
+
+    /// Leaves what was written for the next call of [`Scratch::resume`].
+    pub(crate) fn leave(mut self) {
+        self.is_left = true;
     }
 
     /// The path at which to write what will become `derived/FILE`.
@@ -63,6 +93,9 @@ impl Scratch {
 
 impl Drop for Scratch {
     fn drop(&mut self) {
+        if self.is_left {
+            return;
+        }
         storage::remove(&self.root, &format!("{UNFINISHED}/{}", self.name));
         storage::remove(&self.root, &format!("{UNFINISHED}/{}", lock_of(&self.name)));
         // This succeeds only when no other writer is at work.
@@ -74,9 +107,28 @@ fn lock_of(name: &str) -> String {
     format!("{name}.lock")
 }
 
-/// Removes the folders of writers that no longer run.
+/// What the name of the folder of work begins with that a later program may go on with.
+pub(crate) const RESUMABLE: &str = "bricks-";
+
+/// Removes the folders of writers that no longer run, but for work that may be gone on with.
 pub(crate) fn remove_leftovers(root: &Path) {
+    let resumable = format!("{UNFINISHED}/{RESUMABLE}");
+    for file in abandoned(root).into_iter().filter(|file| !file.starts_with(&resumable)) {
+        storage::remove(root, &file);
+    }
+}
+
+/// Removes the folders of work that was stopped and may be gone on with.
+pub(crate) fn remove_resumable(root: &Path) {
     abandoned(root).iter().for_each(|file| storage::remove(root, file));
+    // This succeeds only when no other writer is at work.
+    let _ = fs::remove_dir(root.join(UNFINISHED));
+}
+
+/// Whether a file of [`abandoned`] belongs to the work that `name` identifies.
+fn is_of(file: &str, name: &str) -> bool {
+    let entry = file.rsplit('/').next().unwrap_or(file);
+    entry == name || entry == lock_of(name)
 }
 
 /// Folders and lock files of writers that no longer run, relative to the project.
@@ -113,6 +165,25 @@ mod tests {
         assert_eq!(fs::read_to_string(root.join("derived/a.zarr/0")).unwrap(), "two");
         assert_eq!(names(root), Vec::<String>::new());
         assert!(!root.join("derived/other").exists());
+    }
+
+    #[test]
+    fn work_in_bricks_goes_on_where_it_was_stopped() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        let scratch = Scratch::resume(root, "bricks-a").unwrap().unwrap();
+        fs::write(scratch.path("part"), "1").unwrap();
+        assert!(Scratch::resume(root, "bricks-a").unwrap().is_none(), "another one does it");
+        scratch.leave();
+        // Neither another writer nor another command takes it away; the same work finds it.
+        drop(Scratch::begin(root).unwrap());
+        remove_leftovers(root);
+        let again = Scratch::resume(root, "bricks-a").unwrap().unwrap();
+        assert_eq!(fs::read_to_string(again.path("part")).unwrap(), "1");
+        again.leave();
+        // Other work does not.
+        drop(Scratch::resume(root, "bricks-b").unwrap());
+        assert_eq!(names(root), Vec::<String>::new());
     }
 
     #[test]

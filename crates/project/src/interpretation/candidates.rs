@@ -110,7 +110,7 @@ mod tests {
     }
 
     fn extract(project: &mut Project, settings: &ExtractSettings) {
-        let extract = Extract { volume: None, settings: settings.clone() };
+        let extract = Extract { volume: None, settings: settings.clone(), memory_bytes: None };
         project.apply(&Command::Extract(extract), &Progress::silent()).unwrap();
     }
 

@@ -6,12 +6,14 @@
 //! samples, the settings. The number of inlines that are read at a time is not part of it. Candidates lie on
 //! the project's own lattice, so that their voxels are the project's voxels.
 
+use super::bricked::BrickedExtraction;
 use crate::content;
-use crate::derived::{Scratch, folder, key_of, revision};
+use crate::derived::{Scratch, folder, key_of, remove_resumable, revision};
 use crate::document::{Document, VolumeEntry};
 use crate::error::ProjectError;
 use crate::folder::{history, refuse_inside_project, storage};
-use interp::{ExtractReport, ExtractSettings, Forest, extract_into};
+use crate::memory_budget;
+use interp::{ExtractReport, ExtractSettings, Forest, Method, extract_into};
 use serde::Serialize;
 use std::fmt;
 use std::fs::File;
@@ -212,8 +214,22 @@ pub(crate) fn replace_damaged(root: &Path, document: &Document) {
     }
 }
 
+/// Bytes that an extraction in one piece takes for each voxel.
+const BYTES_A_VOXEL: u64 = 31;
+
+/// Whether an extraction takes more memory in one piece than is stated, or, if none is, than half of what is available.
+/// Only our own method can be done in bricks.
+fn needs_bricks(size: [usize; 3], settings: &ExtractSettings, memory_bytes: Option<u64>) -> bool {
+    let needed = size.iter().fold(BYTES_A_VOXEL, |bytes, &n| bytes.saturating_mul(n as u64));
+    match memory_bytes {
+        Some(stated) => needed > stated,
+        None => settings.grow.method == Method::Ours && needed > memory_budget::half_of_available(),
+    }
+}
+
 /// Extracts the candidates of a volume, unless they exist undamaged, and stores them under their key;
-/// [`crate::command::Extract`] makes the state that names them. Needs no lock.
+/// [`crate::command::Extract`] makes the state that names them. Needs no lock. Takes at most `memory_bytes`, or half of
+/// what is available: in bricks, where one piece would take more.
 ///
 /// # Errors
 /// There is no such volume, the settings are invalid, data are damaged, the disk is full, or the user cancelled; former
@@ -223,7 +239,7 @@ pub(crate) fn compute(
     document: &Document,
     volume: Option<&str>,
     settings: &ExtractSettings,
-    how: Stored,
+    (how, memory_bytes): (Stored, Option<u64>),
     progress: &Progress,
 ) -> Result<Extracted, ProjectError> {
     let entry = choose(document, volume)?;
@@ -242,11 +258,20 @@ pub(crate) fn compute(
     if let Some((file, report)) = find_stored(root, &key, how, progress)? {
         return Ok(answer(file, report, false));
     }
-    let scratch = Scratch::begin(root)?;
+    let size = source.info().geometry.size();
     let file = parked(&key);
-    let begin = |size, leaves| Ok(CandidateWriter::create(&scratch.path(&file), size, leaves)?);
-    let report = extract_into(begin, &key, &source, &settings, progress)?;
-    scratch.publish(&file)?;
+    let report = if needs_bricks(size, &settings, memory_bytes) {
+        let work = BrickedExtraction { root, key: &key, file: &file, source: &source, settings: &settings };
+        work.run(memory_bytes.unwrap_or_else(memory_budget::half_of_available), progress)?
+    } else {
+        // What an extraction in bricks left is not gone on with any more.
+        remove_resumable(root);
+        let scratch = Scratch::begin(root)?;
+        let begin = |size, leaves| Ok(CandidateWriter::create(&scratch.path(&file), size, leaves)?);
+        let report = extract_into(begin, &key, &source, &settings, progress)?;
+        scratch.publish(&file)?;
+        report
+    };
     if let Some(sentence) = report.nothing_found() {
         progress.warn(&sentence);
     }

@@ -4,6 +4,7 @@
 //! Commands, the window and the demonstration make horizons from picks only through [`assembly`].
 
 pub mod assembly;
+mod bricked;
 pub mod candidates;
 pub(crate) mod drawn;
 pub mod extraction;

@@ -170,6 +170,7 @@ impl Project {
     pub fn prune(&mut self) -> Result<(), ProjectError> {
         let _lock = self.lock(&Progress::silent())?;
         history::forget_all_but(&self.root, self.document.step)?;
+        derived::remove_resumable(&self.root);
         self.settle_derived();
         Ok(())
     }

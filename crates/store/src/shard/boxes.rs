@@ -1,13 +1,14 @@
 //! Boxes of an array, out of its shard files.
 
 use super::super::error::StoreError;
+use super::super::placed::{ArrayFiles, Folder};
 use super::super::sample::StoredSample;
 use super::file::{Lines, Shard, Trouble};
 use super::{ShardGrid, Span};
 use rayon::prelude::*;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Below so many samples a box is read by one thread.
 const WORTH_THREADS: usize = 1 << 15;
@@ -17,6 +18,7 @@ const WORTH_THREADS: usize = 1 << 15;
 #[derive(Debug)]
 pub(in super::super) struct Shards {
     grid: ShardGrid,
+    files: Arc<dyn ArrayFiles>,
     /// The group, and the array's name in it, for errors.
     group: PathBuf,
     name: String,
@@ -25,8 +27,14 @@ pub(in super::super) struct Shards {
 
 impl Shards {
     pub fn new(grid: ShardGrid, group: &Path, name: &str) -> Self {
+        let files = Arc::new(Folder(grid.folder.clone()));
+        Self::of_files(grid, files, group, name)
+    }
+
+    /// The shards whose files lie elsewhere.
+    pub fn of_files(grid: ShardGrid, files: Arc<dyn ArrayFiles>, group: &Path, name: &str) -> Self {
         let known = (0..grid.counts().iter().product()).map(|_| OnceLock::new()).collect();
-        Self { grid, group: group.to_owned(), name: name.to_owned(), known }
+        Self { grid, files, group: group.to_owned(), name: name.to_owned(), known }
     }
 
     fn shard<T: StoredSample>(&self, index: [usize; 3]) -> Result<&Shard, StoreError> {
@@ -35,9 +43,8 @@ impl Shards {
         if let Some(shard) = cell.get() {
             return Ok(shard);
         }
-        let path = self.grid.folder.join(ShardGrid::key(index));
-        let count = self.grid.chunks().iter().product();
-        let opened = Shard::open(&path, count, self.grid.chunk, size_of::<T>());
+        let (key, count) = (ShardGrid::key(index), self.grid.chunks().iter().product());
+        let opened = Shard::open(&self.files, key, count, self.grid.chunk, size_of::<T>());
         // Another thread may have been first; what it found is as good.
         opened.map(|shard| cell.get_or_init(|| shard)).map_err(|trouble| self.explain(index, trouble))
     }
@@ -47,7 +54,11 @@ impl Shards {
         let key = ShardGrid::key(index);
         let reason = match trouble {
             Trouble::Io(error) if error.kind() == ErrorKind::NotFound => format!("the file {key} is missing"),
-            Trouble::Io(error) => return StoreError::io("read", &self.grid.folder.join(key), error),
+            // What object storage answers has its sentence already.
+            Trouble::Io(error) if error.get_ref().is_some_and(|cause| cause.is::<StoreError>()) => {
+                return error.downcast().unwrap_or_else(|error| StoreError::io("read", &self.files.place(&key), error));
+            }
+            Trouble::Io(error) => return StoreError::io("read", &self.files.place(&key), error),
             Trouble::Damage(reason) => format!("the file {key}: {reason}"),
             Trouble::Chunk(number) => {
                 let chunks = self.grid.chunks();

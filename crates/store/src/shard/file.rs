@@ -1,12 +1,12 @@
 //! One shard file: its index, and verified parts of its chunks.
 
+use super::super::placed::{ArrayFiles, PlacedBytes};
 use super::super::sample::StoredSample;
 use super::{CROSSLINES_TOGETHER, sums_of};
 use bytemuck::cast_slice_mut;
 use std::io::{self, ErrorKind};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
-use survey::positional::PlacedFile;
+use std::sync::Arc;
 
 /// Bytes of a checksum.
 pub(super) const CHECKSUM: usize = 4;
@@ -42,7 +42,8 @@ impl From<io::Error> for Trouble {
 /// Where the chunks of a shard file are, and their checksums.
 #[derive(Debug)]
 pub(super) struct Shard {
-    path: PathBuf,
+    files: Arc<dyn ArrayFiles>,
+    key: String,
     /// Edges of a chunk.
     edges: [usize; 3],
     /// Bytes of each chunk without its checksum; empty = only the fill value.
@@ -53,9 +54,15 @@ pub(super) struct Shard {
 
 impl Shard {
     /// Reads the index of a file of `count` chunks of `edges` samples, each of `sample_bytes`.
-    pub fn open(path: &Path, count: usize, edges: [usize; 3], sample_bytes: usize) -> Result<Self, Trouble> {
-        let file = PlacedFile::open(path).map_err(Trouble::Io)?;
-        let length = file.metadata().map_err(Trouble::Io)?.len();
+    pub fn open(
+        files: &Arc<dyn ArrayFiles>,
+        key: String,
+        count: usize,
+        edges: [usize; 3],
+        sample_bytes: usize,
+    ) -> Result<Self, Trouble> {
+        let file = files.open(&key).map_err(Trouble::Io)?;
+        let length = file.length().map_err(Trouble::Io)?;
         let index_bytes = count * ENTRY + CHECKSUM;
         let sums_bytes = count * sums_of(edges) * CHECKSUM + CHECKSUM;
         let Some(index_at) = length.checked_sub(index_bytes as u64) else {
@@ -89,12 +96,13 @@ impl Shard {
             Some(Some(sums)) => Some(sums.chunks_exact(CHECKSUM).map(|sum| number(sum) as u32).collect()),
             Some(None) => return Err(Trouble::Damage("the checksum of its sums does not fit".to_owned())),
         };
-        Ok(Self { path: path.to_owned(), edges, chunks, sums })
+        drop(file);
+        Ok(Self { files: files.clone(), key, edges, chunks, sums })
     }
 
     /// Opens the file once more, to read chunks.
     pub fn reader(&self) -> Result<ShardReader<'_>, Trouble> {
-        Ok(ShardReader { shard: self, file: PlacedFile::open(&self.path).map_err(Trouble::Io)? })
+        Ok(ShardReader { shard: self, file: self.files.open(&self.key).map_err(Trouble::Io)? })
     }
 
     pub fn is_absent(&self, chunk: usize) -> bool {
@@ -117,7 +125,7 @@ pub(super) struct Lines {
 /// An open shard file.
 pub(super) struct ShardReader<'a> {
     shard: &'a Shard,
-    file: PlacedFile,
+    file: Box<dyn PlacedBytes + 'a>,
 }
 
 impl ShardReader<'_> {

@@ -187,7 +187,10 @@ impl Picks {
                 let (guard, progress) = running.begin("Extracting", Place::Interpret, outbox.wake.clone());
                 let done = compute_apart(|| {
                     let mut project = Project::open(&root)?.waiting(DEFAULT_WAIT);
-                    project.apply(&Command::Extract(Extract { volume, settings: *settings }), &progress)?;
+                    project.apply(
+                        &Command::Extract(Extract { volume, settings: *settings, memory_bytes: None }),
+                        &progress,
+                    )?;
                     snapshot(&project)
                 });
                 let warnings = guard.warnings();

@@ -1,0 +1,89 @@
+//! The stage `distances`: the closest leaf of every voxel, in columns of traces ([`crate::distance`]).
+
+use super::Bricks;
+use super::tiles::{Area, Tiling};
+use super::trees::Cell;
+use crate::distance::{CellTriangle, columns_among};
+use crate::error::InterpError;
+use bytemuck::Zeroable;
+use std::ops::Range;
+use survey::Progress;
+
+/// Edge of a column, traces: that of the files in which candidates are stored.
+pub const COLUMN: usize = 128;
+
+/// Inlines of a column that are searched together, if their triangles fit.
+const LINES: usize = 64;
+
+/// Triangles in a voxel, where there are many.
+const DENSE: f64 = 0.7;
+
+impl Bricks<'_> {
+    /// The columns of the survey.
+    pub(crate) fn columns(&self) -> Tiling {
+        Tiling { size: [self.size[0], self.size[1]], edge: [COLUMN; 2] }
+    }
+
+    /// Distances and leaf ids of a column.
+    pub(crate) fn distances(&self, column: usize, progress: &Progress) -> Result<(), InterpError> {
+        let area = self.columns().area(column);
+        let nz = self.size[2];
+        let reach = self.settings.distance.max_distance.ceil() as usize + 2;
+        let mut lines = LINES;
+        let triangles =
+            |lines: usize| DENSE * (lines + 2 * reach) as f64 * (area.y.len() + 2 * reach) as f64 * nz as f64;
+        while lines > 8 && triangles(lines) > self.together as f64 {
+            lines /= 2;
+        }
+        let (mut distance, mut leaf): (Vec<u8>, Vec<u32>) = Default::default();
+        for first in area.x.clone().step_by(lines) {
+            progress.check()?;
+            let strip = Area { x: first..(first + lines).min(area.x.end), y: area.y.clone() };
+            let around = self.columns().with_halo(&strip, super::tiles::Halo::around(reach));
+            let cells = self.cells_within(&around.x, &around.y)?;
+            let size = [around.x.len(), around.y.len(), nz];
+            let local = |range: &Range<usize>, from: usize| range.start - from..range.end - from;
+            let (x, y) = (local(&strip.x, around.x.start), local(&strip.y, around.y.start));
+            let found = columns_among(size, &self.settings.distance, cells, x, y, progress)?;
+            distance.extend(found.distance);
+            leaf.extend(found.leaf);
+        }
+        let reached = leaf.iter().filter(|&&leaf| leaf != 0).count() as u32;
+        self.write("reached", column, &[reached])?;
+        self.write("distance", column, &distance)?;
+        self.write("leaf", column, &leaf)
+    }
+
+    /// The triangles whose cells lie in an area, by cell of the area.
+    fn cells_within(&self, x: &Range<usize>, y: &Range<usize>) -> Result<Vec<([usize; 2], CellTriangle)>, InterpError> {
+        let (mut found, mut room) = (Vec::new(), Vec::new());
+        for (batch, id, leaf) in self.forest()?.leaves_within(x, y)? {
+            let [start, end] = leaf.triangles.map(|at| at as usize);
+            room.resize(end - start, Cell::zeroed());
+            self.read_at("tree-cells", batch, start, &mut room)?;
+            for cell in &room {
+                let (cell_x, cell_y) = (usize::from(cell.x), usize::from(cell.y));
+                if x.contains(&cell_x) && y.contains(&cell_y) {
+                    let triangle = CellTriangle { z: cell.z, code: id << 2 | cell.corner };
+                    found.push(([cell_x - x.start, cell_y - y.start], triangle));
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// Count of columns of [`COLUMN`] × [`COLUMN`] traces, numbered along crosslines first.
+    pub fn column_count(&self) -> usize {
+        self.columns().count()
+    }
+
+    /// First inline and crossline of a column and how many there are, its coded distances and its leaf ids
+    /// `[inline][crossline][sample]`, once the stage has run.
+    ///
+    /// # Errors
+    /// An array cannot be read.
+    pub fn column(&self, column: usize) -> Result<([Range<usize>; 2], Vec<u8>, Vec<u32>), InterpError> {
+        let Area { x, y } = self.columns().area(column);
+        Ok(([x, y], self.read("distance", column)?, self.read("leaf", column)?))
+    }
+}

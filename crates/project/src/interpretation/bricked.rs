@@ -1,0 +1,89 @@
+//! The extraction of candidates in bricks: spilled to `derived/unfinished/bricks-KEY`, gone on with after a kill, and
+//! stored as an extraction in one piece is.
+
+use crate::derived::{RESUMABLE, Scratch};
+use crate::error::ProjectError;
+use interp::bricks::{BrickSettings, Bricks};
+use interp::{ExtractReport, ExtractSettings, InterpError, StageSeconds};
+use rayon::prelude::*;
+use std::path::Path;
+use std::time::Instant;
+use store::{CandidateWriter, FolderArrays, StoredVolume};
+use survey::Progress;
+use survey::candidates::CandidateInfo;
+
+/// Bytes that the program takes beside the work on bricks.
+const PROGRAM_BYTES: u64 = 24 << 20;
+
+/// An extraction that is done in bricks.
+pub(super) struct BrickedExtraction<'a> {
+    pub(super) root: &'a Path,
+    pub(super) key: &'a str,
+    /// Name of the result in `derived/`.
+    pub(super) file: &'a str,
+    pub(super) source: &'a StoredVolume,
+    pub(super) settings: &'a ExtractSettings,
+}
+
+impl BrickedExtraction<'_> {
+    /// Extracts in at most so many bytes.
+    pub(super) fn run(&self, memory_bytes: u64, progress: &Progress) -> Result<ExtractReport, ProjectError> {
+        let size = self.source.info().geometry.size();
+        let stated = memory_bytes.saturating_sub(PROGRAM_BYTES);
+        let cut = BrickSettings::within(stated, size, rayon::current_num_threads())?;
+        // Arrays of other bricks are no use, so the bricks are part of the name.
+        let [x, y] = cut.edge;
+        let name = format!("{RESUMABLE}{}-{x}x{y}-{}", self.key, cut.triangles_together);
+        let Some(scratch) = Scratch::resume(self.root, &name)? else {
+            return Err(InterpError::DoneElsewhere.into());
+        };
+        let done = self.extract(&scratch, &cut, progress);
+        match &done {
+            Ok(_) => scratch.publish(self.file)?,
+            // What is there is gone on with; after any other failure, as of a full disk, it is removed.
+            Err(ProjectError::Cancelled(_)) => scratch.leave(),
+            Err(_) => {}
+        }
+        done
+    }
+
+    fn extract(
+        &self,
+        scratch: &Scratch,
+        cut: &BrickSettings,
+        progress: &Progress,
+    ) -> Result<ExtractReport, ProjectError> {
+        let arrays = FolderArrays::open(&scratch.path("arrays"))?;
+        let bricks = Bricks::new(self.source, &arrays, self.settings, cut)?;
+        let done = bricks.done_stages();
+        if done > 0 {
+            let all = bricks.stages().len();
+            progress.warn(format!("continued an interrupted extraction: {done} of {all} stages were complete already"));
+        }
+        let mut report = bricks.run(cut.workers, progress)?;
+        let storing = Instant::now();
+        let forest = bricks.forest()?;
+        let size = self.source.info().geometry.size();
+        let writer = CandidateWriter::create(&scratch.path(self.file), size, forest.leaf_count())?;
+        let count = bricks.column_count();
+        progress.begin("storing candidates", count as u64);
+        (0..count).into_par_iter().with_max_len(1).try_for_each(|column| {
+            let (lines, distance, leaf) = bricks.column(column)?;
+            writer.write_column(lines, &distance, &leaf, progress)?;
+            Ok::<(), ProjectError>(progress.step(1)?)
+        })?;
+        let info = CandidateInfo {
+            key: self.key.to_owned(),
+            size,
+            max_distance: self.settings.distance.max_distance,
+            leaves: report.leaves,
+            report: ExtractReport { seconds: None, ..report.clone() },
+        };
+        writer.finish_columns(&info, &forest, progress)?;
+        if let Some(StageSeconds { storing: stored, total, .. }) = &mut report.seconds {
+            *stored = storing.elapsed().as_secs_f64();
+            *total += *stored;
+        }
+        Ok(report)
+    }
+}

@@ -1,0 +1,153 @@
+//! Named arrays in a folder: where a computation in bricks spills what does not fit into memory.
+//!
+//! ```text
+//! FOLDER/ARRAY/PART     the bytes, and their crc32c
+//! FOLDER/.system        the start of the system in which they were written
+//! ```
+//!
+//! A part is written beside its place and renamed, so that a killed program leaves whole parts only. Parts are not
+//! flushed: after a power cut nothing of them is believed, which the number that the system gives itself at its start
+//! tells.
+
+use super::error::StoreError;
+use std::fs;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use survey::arrays::NamedArrays;
+use survey::positional::PlacedFile;
+use survey::source::SourceError;
+
+/// Bytes of a checksum.
+const CHECKSUM: usize = 4;
+
+/// The file that tells in which start of the system the folder was written.
+const SYSTEM: &str = ".system";
+
+/// Where Linux tells its present start.
+const PRESENT_START: &str = "/proc/sys/kernel/random/boot_id";
+
+/// Named arrays in a folder.
+#[derive(Debug)]
+pub struct FolderArrays {
+    folder: PathBuf,
+}
+
+impl FolderArrays {
+    /// Opens a folder, or makes it. What is there is kept if the system has not been started again since it was written.
+    ///
+    /// # Errors
+    /// The folder cannot be made or emptied.
+    pub fn open(folder: &Path) -> Result<Self, StoreError> {
+        let fail = |source| StoreError::io("written", folder, source);
+        // Where a system does not tell, nothing is kept.
+        let present = fs::read_to_string(PRESENT_START).unwrap_or_default();
+        let noted = fs::read_to_string(folder.join(SYSTEM)).unwrap_or_default();
+        if folder.exists() && (present.is_empty() || present != noted) {
+            fs::remove_dir_all(folder).map_err(fail)?;
+        }
+        fs::create_dir_all(folder).map_err(fail)?;
+        fs::write(folder.join(SYSTEM), present).map_err(fail)?;
+        Ok(Self { folder: folder.to_owned() })
+    }
+
+    fn path(&self, array: &str, part: usize) -> PathBuf {
+        let part = if part == usize::MAX { "all".to_owned() } else { part.to_string() };
+        self.folder.join(array).join(part)
+    }
+
+    fn fail(&self, action: &'static str, array: &str, part: usize, source: io::Error) -> SourceError {
+        if source.kind() == ErrorKind::UnexpectedEof || source.kind() == ErrorKind::NotFound {
+            let reason = format!("its part {part} is missing or was cut off");
+            return Box::new(StoreError::Damaged { path: self.folder.clone(), array: array.to_owned(), reason });
+        }
+        Box::new(StoreError::io(action, &self.path(array, part), source))
+    }
+}
+
+impl NamedArrays for FolderArrays {
+    fn write(&self, array: &str, part: usize, bytes: &[u8]) -> Result<(), SourceError> {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let path = self.path(array, part);
+        let partial =
+            self.folder.join(array).join(format!(".{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
+        let write = || -> io::Result<()> {
+            use io::Write;
+            let mut file = fs::File::create(&partial)?;
+            file.write_all(bytes)?;
+            file.write_all(&crc32c::crc32c(bytes).to_le_bytes())
+        };
+        let written = match write() {
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                fs::create_dir_all(self.folder.join(array)).and_then(|()| write())
+            }
+            written => written,
+        };
+        written.and_then(|()| fs::rename(&partial, &path)).map_err(|source| {
+            let _ = fs::remove_file(&partial);
+            self.fail("written", array, part, source)
+        })
+    }
+
+    fn is_whole(&self, array: &str, part: usize) -> bool {
+        let Ok(bytes) = fs::read(self.path(array, part)) else { return false };
+        let Some((content, sum)) = bytes.split_last_chunk::<CHECKSUM>() else { return false };
+        crc32c::crc32c(content) == u32::from_le_bytes(*sum)
+    }
+
+    fn length(&self, array: &str, part: usize) -> Result<u64, SourceError> {
+        let length = fs::metadata(self.path(array, part)).map(|facts| facts.len());
+        let content = length.and_then(|n| n.checked_sub(CHECKSUM as u64).ok_or(ErrorKind::UnexpectedEof.into()));
+        content.map_err(|source| self.fail("read", array, part, source))
+    }
+
+    fn read(&self, array: &str, part: usize, offset: u64, out: &mut [u8]) -> Result<(), SourceError> {
+        let file = PlacedFile::open(&self.path(array, part));
+        file.and_then(|file| file.read_exact_at(offset, out)).map_err(|source| self.fail("read", array, part, source))
+    }
+
+    fn remove(&self, array: &str) {
+        // What cannot be removed goes with the folder.
+        let _ = fs::remove_dir_all(self.folder.join(array));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_come_back_and_damage_is_noticed() {
+        let folder = tempfile::tempdir().unwrap();
+        let arrays = FolderArrays::open(&folder.path().join("spilled")).unwrap();
+        assert!(!arrays.is_whole("z-0", 3));
+        arrays.write("z-0", 3, b"0123456789").unwrap();
+        arrays.write("done", usize::MAX, b"").unwrap();
+        let mut out = [0; 4];
+        arrays.read("z-0", 3, 2, &mut out).unwrap();
+        assert_eq!((&out, arrays.length("z-0", 3).unwrap()), (b"2345", 10));
+        assert!(arrays.is_whole("z-0", 3) && arrays.is_whole("done", usize::MAX));
+        let missing = arrays.read("z-0", 4, 0, &mut out).unwrap_err().to_string();
+        assert!(missing.contains("z-0") && missing.contains("missing"), "{missing}");
+        // Opened again it is still there; what was altered is not whole.
+        let again = FolderArrays::open(&folder.path().join("spilled")).unwrap();
+        assert_eq!(again.is_whole("z-0", 3), Path::new(PRESENT_START).exists());
+        arrays.write("z-0", 3, b"0123456789").unwrap();
+        let path = folder.path().join("spilled/z-0/3");
+        let mut bytes = fs::read(&path).unwrap();
+        bytes[1] ^= 1;
+        fs::write(&path, bytes).unwrap();
+        assert!(!again.is_whole("z-0", 3));
+        again.remove("z-0");
+        assert!(again.length("z-0", 3).is_err());
+    }
+
+    #[test]
+    fn what_another_start_of_the_system_left_is_not_believed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("spilled");
+        FolderArrays::open(&path).unwrap().write("z", 0, b"1").unwrap();
+        fs::write(path.join(SYSTEM), "another").unwrap();
+        assert!(!FolderArrays::open(&path).unwrap().is_whole("z", 0));
+    }
+}
