@@ -39,6 +39,7 @@ pub(super) struct PageRequest {
     file: Option<PathBuf>,
     fonts: Vec<PathBuf>,
     proportions: Option<f64>,
+    section_blend: Option<f32>,
 }
 
 impl PageRequest {
@@ -82,6 +83,7 @@ impl PageRequest {
             file: typed.figure,
             fonts: typed.font,
             proportions: typed.proportions.map(proportions).transpose()?,
+            section_blend: typed.section_blend.map(section_blend).transpose()?,
         };
         let parts = meant.sections.len()
             + usize::from(!meant.fence.is_empty())
@@ -120,13 +122,14 @@ impl PageRequest {
                 kind: *kind,
                 at: *at,
                 show,
+                blend: self.section_blend,
                 zoom: Zoom::default(),
                 proportions: self.proportions,
             })
         };
         let mut parts: Vec<Part> = self.sections.iter().map(section).collect();
         if !self.fence.is_empty() {
-            parts.push(Part::Fence(FencePart { corners: self.fence.clone(), show }));
+            parts.push(Part::Fence(FencePart { corners: self.fence.clone(), show, blend: self.section_blend }));
         }
         if let Some((horizon, thickness_to)) = &self.map {
             let topmost = project.document().horizons.first().map(|entry| entry.name.clone());
@@ -189,6 +192,12 @@ fn annotations(typed: &[String]) -> Result<Vec<Annotation>, Usage> {
 fn proportions(factor: f64) -> Result<f64, Usage> {
     let is_usable = (0.01..=1000.0).contains(&factor);
     is_usable.then_some(factor).ok_or_else(|| format!("--proportions {factor}: expected a number from 0.01 to 1000"))
+}
+
+/// Checks how much of the measured data sections show.
+fn section_blend(blend: f32) -> Result<f32, Usage> {
+    let is_usable = (0.0..=1.0).contains(&blend);
+    is_usable.then_some(blend).ok_or_else(|| format!("--section-blend {blend}: expected a number from 0 to 1"))
 }
 
 /// Parses width and height in centimetres.
@@ -265,6 +274,7 @@ mod tests {
         refused(FigureArgs { fence: vec!["1,2".into(), "3".into()], ..FigureArgs::default() });
         refused(FigureArgs { compare: Some("0,2".into()), ..FigureArgs::default() });
         refused(FigureArgs { compare: Some("0,1".into()), wipe: Some(1.5), ..FigureArgs::default() });
+        refused(FigureArgs { section_blend: Some(1.5), ..FigureArgs::default() });
         refused(FigureArgs { size_cm: Some("16".into()), ..FigureArgs::default() });
         refused(FigureArgs { size_cm: Some("0x4".into()), ..FigureArgs::default() });
         refused(FigureArgs { annotate: vec!["axes".into(), "north".into()], ..FigureArgs::default() });

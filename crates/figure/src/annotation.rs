@@ -14,6 +14,8 @@ pub enum Annotation {
     Faults,
     /// Names of wells at their heads, and of their tops, where they are seen.
     Wells,
+    /// Lines of horizons dashed where they were filled, dotted and queried where they were only continued.
+    Quality,
     /// A bar that says which values the colours of measured data stand for.
     Colours,
     /// A line that says which program and which project a figure comes from, and whose data it shows.
@@ -22,7 +24,8 @@ pub enum Annotation {
 
 impl Annotation {
     /// All of them.
-    pub const ALL: [Self; 6] = [Self::Axes, Self::Layers, Self::Faults, Self::Wells, Self::Colours, Self::Provenance];
+    pub const ALL: [Self; 7] =
+        [Self::Axes, Self::Layers, Self::Faults, Self::Wells, Self::Quality, Self::Colours, Self::Provenance];
 
     /// What people call it.
     pub const fn name(self) -> &'static str {
@@ -31,6 +34,7 @@ impl Annotation {
             Self::Layers => "layers",
             Self::Faults => "faults",
             Self::Wells => "wells",
+            Self::Quality => "quality",
             Self::Colours => "colours",
             Self::Provenance => "provenance",
         }

@@ -98,6 +98,14 @@ impl Figure {
         self.hidden.iter().any(|hidden| hidden == name)
     }
 
+    /// Whether a section or fence shows rock, if only in part.
+    pub fn has_rock_sections(&self) -> bool {
+        self.parts.iter().any(|part| match part {
+            Part::Section(SectionPart { blend, .. }) | Part::Fence(FencePart { blend, .. }) => blend.is_some_and(|b| b < 1.0),
+            _ => false,
+        })
+    }
+
     /// What is changed about labels: by the scene of its first block, and by itself.
     pub(crate) fn all_labels(&self) -> Vec<LabelChange> {
         let blocks = self.parts.iter().find_map(|part| match part {
@@ -186,6 +194,9 @@ pub struct SectionPart {
     /// What of the candidates lies over the amplitudes.
     #[serde(default)]
     pub show: FaceData,
+    /// From 0, the rock with its patterns, to 1, the measured data. Absent: measured data where there are some.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub blend: Option<f32>,
     /// Which part of it is seen.
     #[serde(default)]
     pub zoom: Zoom,
@@ -203,6 +214,9 @@ pub struct FencePart {
     /// What of the candidates lies over the amplitudes.
     #[serde(default)]
     pub show: FaceData,
+    /// As [`SectionPart::blend`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub blend: Option<f32>,
 }
 
 /// A map.
@@ -244,7 +258,11 @@ mod tests {
             size: PageSize::Px([800, 600]),
             parts: vec![
                 BlockPart { comparison: Comparison::Wipe([0.0, 1.0], 0.4), ..BlockPart::default() }.into(),
-                Part::Fence(FencePart { corners: vec![[1.0, 2.0], [3.0, 4.0]], show: FaceData::Leaves }),
+                Part::Fence(FencePart {
+                    corners: vec![[1.0, 2.0], [3.0, 4.0]],
+                    show: FaceData::Leaves,
+                    blend: Some(0.5),
+                }),
                 Part::Map(MapPart { horizon: "Top".into(), thickness_to: Some("Base".into()) }),
                 Part::Correlation(CorrelationPart { datum: Some("Top".into()), ..CorrelationPart::default() }),
             ],

@@ -1,6 +1,6 @@
 //! Sizes and colours that all figures share, so that they look like figures of one book.
 //!
-//! Type is 7 to 9 points, lines are 0.4 to 1.6 points, ink is a warm black, and what merely frames is grey.
+//! Type is 7 to 11 points, lines are 0.4 to 1.6 points, ink is a warm black, and what merely frames is grey.
 
 use ttf::Colour;
 
@@ -10,8 +10,8 @@ pub const TITLE_PT: f64 = 9.5;
 pub const TEXT_PT: f64 = 8.0;
 /// Font size of numbers along axes, points.
 pub const NUMBER_PT: f64 = 7.0;
-/// No text is smaller, points.
-pub const LEAST_TEXT_PT: f64 = 5.5;
+/// No text is smaller on paper, whatever the page's size, points: what has no room is shortened or left out.
+pub const LEAST_TEXT_PT: f64 = 7.0;
 
 /// Letters and the lines that belong to them.
 pub const INK: Colour = Colour::new(0x23, 0x1f, 0x1b);

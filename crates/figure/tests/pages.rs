@@ -6,18 +6,17 @@ use figure::draw::block::Comparison;
 use figure::draw::moved::{LabelChange, changed, movable};
 use figure::list::{DisplayList, Text};
 use figure::{
-    Annotation, BlockPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part, Rect, SectionKind,
+    BlockPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part, Rect, SectionKind,
     SectionPart, make, raster,
 };
 use glam::DVec2;
 use image::{Rgba, RgbaImage};
 use model::{ModelSettings, StructuralModel};
-use render::{Corner, FaceData, Ground, Inputs, NamedVolume, Projection, Scene, VoxelBox};
+use render::{FaceData, Inputs, NamedVolume, Scene};
 use survey::{
     Contact, Horizon, NodeGrid, Progress, Quality, Sheet, StratigraphicHorizon, Stratigraphy, SurveyGeometry,
     VerticalUnit, Volume,
 };
-use synth::closed_form::ClosedForm;
 use ttf::{Colour, ColourMap, LayerStyle, RawColour, RgbaFunction, TextureLibrary};
 
 const SIZE: [usize; 3] = [31, 25, 41];
@@ -35,13 +34,6 @@ fn model(geometry: &SurveyGeometry) -> StructuralModel {
     let horizons = [flat("Top", 40.0), flat("Base", 120.0)];
     let settings = ModelSettings::default();
     StructuralModel::build(geometry, &stratigraphy, &horizons, &[], &settings, &Progress::silent()).unwrap()
-}
-
-/// Two flat horizons that a fault moves.
-fn faulted(geometry: &SurveyGeometry) -> StructuralModel {
-    let closed = ClosedForm::flat(geometry, &[10.0, 26.0]).with_fault(60.0, 5.0);
-    let (settings, quiet) = (ModelSettings::default(), Progress::silent());
-    StructuralModel::build(geometry, &closed.stratigraphy, &closed.horizons, &closed.faults, &settings, &quiet).unwrap()
 }
 
 fn made(figure: &Figure) -> Result<DisplayList, FigureError> {
@@ -66,7 +58,7 @@ fn made_of(
         horizons: &horizons,
         strata: &model.stratigraphy().horizons,
         wells: &[],
-        faults: &["Northern boundary fault".to_owned()],
+        faults: &[],
         layers,
         library,
         interpretation: None,
@@ -79,7 +71,7 @@ fn made_of(
 }
 
 fn section(kind: SectionKind, at: f64) -> Part {
-    Part::Section(SectionPart { kind, at, show: FaceData::Rock, zoom: Default::default(), proportions: None })
+    Part::Section(SectionPart { kind, at, show: FaceData::Rock, blend: None, zoom: Default::default(), proportions: None })
 }
 
 fn figure(parts: Vec<Part>) -> Figure {
@@ -90,7 +82,7 @@ fn parts() -> Vec<Part> {
     vec![
         section(SectionKind::Inline, 12.0),
         section(SectionKind::Slice, 80.0),
-        Part::Fence(FencePart { corners: vec![[2.0, 3.0], [20.0, 9.0], [30.0, 24.0]], show: FaceData::Rock }),
+        Part::Fence(FencePart { corners: vec![[2.0, 3.0], [20.0, 9.0], [30.0, 24.0]], show: FaceData::Rock, blend: None }),
         Part::Map(MapPart { horizon: "Top".into(), thickness_to: Some("Base".into()) }),
     ]
 }
@@ -125,6 +117,7 @@ fn a_section_has_the_proportions_that_were_asked_for() {
             kind: SectionKind::Inline,
             at: 12.0,
             show: FaceData::Rock,
+            blend: None,
             zoom: Default::default(),
             proportions: Some(factor),
         };
@@ -218,7 +211,7 @@ fn what_has_no_page_is_refused() {
     assert!(matches!(made(&tiny), Err(FigureError::NoRoom { .. })));
     let seen = Figure { interpretation: true, ..figure(parts()) };
     assert!(matches!(made(&seen), Err(FigureError::NoInterpretation)));
-    let short = Part::Fence(FencePart { corners: vec![[2.0, 3.0]; 3], show: FaceData::Rock });
+    let short = Part::Fence(FencePart { corners: vec![[2.0, 3.0]; 3], show: FaceData::Rock, blend: None });
     assert!(matches!(made(&figure(vec![short])), Err(FigureError::ShortFence { corners: 1 })));
 }
 
@@ -244,125 +237,4 @@ fn labels_of_maps_and_sections_stand_where_they_were_moved() {
     let hidden = LabelChange { label: "Inline 12: heading".into(), is_hidden: true, ..LabelChange::default() };
     let without = made(&Figure { labels: vec![hidden], ..plain }).unwrap();
     assert!(!movable(&without).iter().any(|label| label.label == "Inline 12: heading"));
-}
-
-/// Numbers that look random, the same in every run (Knuth's linear congruential generator).
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: u64) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % limit
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.below(1001) as f64 / 1000.0
-    }
-
-    fn is_so(&mut self) -> bool {
-        self.below(2) == 1
-    }
-}
-
-/// A figure of blocks with every annotation switched by chance.
-fn random_figure(random: &mut Random) -> Figure {
-    let words = "Seen towards north-west, with a corner cut away that shows how the folded limestone ends at the fault";
-    let mut said = |most: u64| {
-        let count = random.below(most) as usize;
-        (count > 0).then(|| words.split(' ').cycle().take(count).collect::<Vec<_>>().join(" "))
-    };
-    let (title, caption) = (said(9), said(40));
-    let block = |random: &mut Random| {
-        let mut scene = Scene::default();
-        scene.camera.azimuth_deg = Some(random.between(0.0, 360.0));
-        scene.camera.elevation_deg = random.between(-80.0, 90.0);
-        if random.is_so() {
-            scene.camera.projection = Projection::Perspective { fov_deg: random.between(10.0, 70.0) };
-        }
-        scene.exaggeration = random.between(0.5, 5.0);
-        scene.blend = random.below(3) as f32 * 0.5;
-        if random.is_so() {
-            let corner = Corner::ALL[random.below(4) as usize];
-            let share = [random.between(0.2, 0.8), random.between(0.2, 0.8)];
-            scene.cut_outs = vec![VoxelBox::of_size(SIZE).corner_cut(corner, share)];
-        }
-        scene.ground = random.is_so().then(Ground::default);
-        BlockPart { scene, comparison: Comparison::None }.into()
-    };
-    let count = 1 + random.below(4);
-    Figure {
-        size: PageSize::Cm([random.between(5.0, 25.0), random.between(4.0, 18.0)]),
-        dpi: 72.0,
-        parts: (0..count).map(|_| block(random)).collect(),
-        legend: random.is_so(),
-        scale_bar: random.is_so(),
-        north_arrow: random.is_so(),
-        annotate: Annotation::ALL.into_iter().filter(|_| random.below(4) > 0).collect(),
-        credit: Some("TNO and dGB Earth Sciences, CC BY-SA 3.0".into()),
-        title,
-        caption,
-        ..Figure::default()
-    }
-}
-
-#[test]
-fn no_two_labels_overlap_on_two_hundred_random_pages() {
-    let library = TextureLibrary::builtin().unwrap();
-    let models = [model(&geometry()), faulted(&geometry())];
-    let mut random = Random(16);
-    let (mut drawn, mut labels) = (0, 0);
-    for n in 0..260 {
-        let figure = random_figure(&mut random);
-        let style = |k: u64| match format!("Layer {k} of marl and chalk") {
-            name if k == 0 => LayerStyle::textured(&name, Colour::WHITE, "shale"),
-            name => LayerStyle::plain(&name, Colour::WHITE),
-        };
-        let layers: Vec<LayerStyle> = (0..random.below(14)).map(style).collect();
-        let page = match made_of(&models[n % 2], &figure, &layers, Some(&library)) {
-            Ok(page) => page,
-            Err(FigureError::NoRoom { .. }) => continue,
-            Err(error) => panic!("page {n}: {error}"),
-        };
-        drawn += 1;
-        let texts = page.texts();
-        labels += texts.len();
-        for (index, text) in texts.iter().enumerate() {
-            let letters = lettering(text);
-            let is_inside = letters.iter().flatten().all(|corner| page.bounds().contains(*corner));
-            assert!(is_inside, "page {n}: {} at {letters:?} leaves {:?}", text.text, page.size);
-            for other in &texts[..index] {
-                if !other.bounds().meets(&text.bounds()) {
-                    continue;
-                }
-                let others = lettering(other);
-                let is_over = letters.iter().any(|one| others.iter().any(|other| meet(one, other)));
-                assert!(!is_over, "page {n}: {} lies over {}", text.text, other.text);
-            }
-        }
-    }
-    assert!(drawn >= 200 && labels > 1000, "{drawn} pages, {labels} labels");
-}
-
-/// The rectangles around a text's letters, turned as they are: one, or one for each letter of a bent text.
-fn lettering(text: &Text) -> Vec<[DVec2; 4]> {
-    let turned = |line: Text| {
-        let Rect { min, max } = line.clone().turned(0.0).outline().bounds()?;
-        let turn = DVec2::from_angle(line.turn_deg.to_radians());
-        let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
-        Some(corners.map(|corner| line.at + turn.rotate(corner - line.at)))
-    };
-    text.straight().into_iter().filter_map(turned).collect()
-}
-
-/// Whether two rectangles meet: no line along a side of either parts them.
-fn meet(one: &[DVec2; 4], other: &[DVec2; 4]) -> bool {
-    let span = |corners: &[DVec2; 4], axis: DVec2| {
-        let along = corners.map(|corner| corner.dot(axis));
-        [along.into_iter().fold(f64::INFINITY, f64::min), along.into_iter().fold(f64::NEG_INFINITY, f64::max)]
-    };
-    let axes = [one, other].into_iter().flat_map(|corners| [corners[1] - corners[0], corners[3] - corners[0]]);
-    !axes.into_iter().any(|axis| {
-        let ([low, high], [other_low, other_high]) = (span(one, axis), span(other, axis));
-        high < other_low || other_high < low
-    })
 }

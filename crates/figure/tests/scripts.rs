@@ -46,11 +46,35 @@ fn a_page_remembers_its_faces() {
 }
 
 #[test]
-fn letters_that_join_are_not_bent() {
-    let page = faces().scope(page);
-    let texts = page.texts();
+fn joined_letters_stay_on_one_line_and_what_is_not_joined_follows_the_curve() {
+    let straight = faces().scope(page);
+    let texts = straight.texts();
     assert_eq!(texts.iter().map(|text| text.letters.len()).collect::<Vec<_>>(), [0, 0, 2, 0]);
     assert!((texts[3].bounds().centre() - DVec2::new(40.0, 69.0)).length() < 6.0);
+    // A quarter of a circle, and a name of two words: its letters are joined up to the third and the seventh.
+    let radius = 60.0;
+    let middle = DVec2::new(80.0, 75.0);
+    let arc: Vec<DVec2> =
+        (0..=90).map(|deg| middle + radius * DVec2::from_angle(f64::from(deg - 135).to_radians())).collect();
+    let bent = || Text::new(DVec2::ZERO, "حجر جيري").sized(14.0).along(&arc, radius * 45f64.to_radians());
+    let name = faces().scope(bent);
+    let pieces = faces().scope(|| name.straight());
+    assert_eq!(pieces.iter().map(|piece| piece.text.as_str()).collect::<Vec<_>>(), ["حجر", " ", "جير", "ي"]);
+    for piece in faces().scope(|| pieces.iter().map(Text::corners).collect::<Vec<_>>()) {
+        let off = (piece.iter().sum::<DVec2>() / 4.0).distance(middle) - radius;
+        assert!(off.abs() < 3.5, "{off}");
+    }
+    // Read from right to left: each word lies to the left of the one before, turned the more to the left.
+    assert!(pieces.windows(2).all(|pair| pair[1].at.x < pair[0].at.x && pair[1].turn_deg < pair[0].turn_deg));
+    // Shaped alone they are as wide as the whole.
+    let width = faces().scope(|| pieces.iter().map(Text::width).sum::<f64>());
+    assert!((width - faces().scope(|| name.width())).abs() < 1e-3);
+    let drawn = faces().scope(|| {
+        let mut page = DisplayList::new(DVec2::new(160.0, 80.0));
+        page.items.push(bent().into());
+        svg(&page, "t").unwrap()
+    });
+    assert!(drawn.contains("aria-label=\"حجر جيري\"") && drawn.matches("<text").count() == 3 && drawn.contains(">حجر<"));
 }
 
 #[test]

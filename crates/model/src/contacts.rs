@@ -14,6 +14,7 @@
 //! Because the bits suffice, a section is cut by the smooth, unclipped sheets, and junctions are exact
 //! intersections of two of them.
 
+use crate::below::Below;
 use survey::stratigraphy::{Contact, Stratigraphy};
 
 /// The contacts of a stratigraphy, youngest first, ready to be applied to the sheets of a model.
@@ -39,7 +40,7 @@ pub struct ContactRules {
 }
 
 impl ContactRules {
-    /// The rules of `stratigraphy` (at most 64 horizons: one bit each).
+    /// The rules of `stratigraphy`.
     pub fn new(stratigraphy: &Stratigraphy) -> Self {
         Self { contacts: stratigraphy.horizons.iter().map(|h| h.contact).collect() }
     }
@@ -59,10 +60,10 @@ impl ContactRules {
         &self.contacts
     }
 
-    /// The layer of a place, whose bit h of `below` says that it lies at or below the sheet of horizon h.
-    pub fn layer(&self, below: u64) -> u16 {
+    /// The layer of a place that lies below these horizons.
+    pub fn layer(&self, below: &Below) -> u16 {
         let n = self.contacts.len();
-        let is_below = |h: usize| below >> h & 1 == 1;
+        let is_below = |h: usize| below.has(h);
         // The place belongs to the youngest intrusion that contains it, if no erosion has removed that there.
         let mut is_eroded = false;
         for h in 0..n {
@@ -152,8 +153,8 @@ mod tests {
         ContactRules::new(&Stratigraphy { horizons, layer_names: Vec::new() })
     }
 
-    fn bits(z: f32, sheets: &[f32]) -> u64 {
-        sheets.iter().enumerate().map(|(h, &s)| u64::from(z >= s) << h).sum()
+    fn below(z: f32, sheets: &[f32]) -> Below {
+        sheets.iter().map(|&s| z >= s).collect()
     }
 
     #[test]
@@ -161,8 +162,8 @@ mod tests {
         let r = rules(&[Contact::Conformable, Contact::Erosional, Contact::Conformable, Contact::Conformable]);
         // The third horizon rises above the unconformity at 50; the place between them is already eroded.
         let sheets = [20.0, 50.0, 40.0, 80.0];
-        assert_eq!(r.layer(bits(45.0, &sheets)), 3);
-        assert_eq!(r.layer(bits(60.0, &sheets)), 1);
+        assert_eq!(r.layer(&below(45.0, &sheets)), 3);
+        assert_eq!(r.layer(&below(60.0, &sheets)), 1);
         let mut z = sheets;
         r.clip(&mut z);
         assert_eq!(z, [20.0, 50.0, 50.0, 80.0]);
@@ -172,7 +173,7 @@ mod tests {
     fn a_younger_horizon_laps_onto_an_onlap_surface() {
         let r = rules(&[Contact::Conformable, Contact::Onlap, Contact::Conformable]);
         let sheets = [60.0, 50.0, 70.0];
-        assert_eq!(r.layer(bits(55.0, &sheets)), 1);
+        assert_eq!(r.layer(&below(55.0, &sheets)), 1);
         let mut z = sheets;
         r.clip(&mut z);
         assert_eq!(z, [50.0, 50.0, 70.0]);
@@ -182,8 +183,8 @@ mod tests {
     fn salt_replaces_everything_below_its_top() {
         let r = rules(&[Contact::Conformable, Contact::Conformable, Contact::Intrusive]);
         let sheets = [20.0, 40.0, 10.0];
-        assert_eq!(r.layer(bits(30.0, &sheets)), 0);
-        assert_eq!(r.layer(bits(5.0, &sheets)), 3);
+        assert_eq!(r.layer(&below(30.0, &sheets)), 0);
+        assert_eq!(r.layer(&below(5.0, &sheets)), 3);
         let mut z = sheets;
         r.clip(&mut z);
         assert_eq!(z, [10.0, 10.0, 10.0]);
@@ -194,7 +195,7 @@ mod tests {
         let r = rules(&[Contact::Conformable, Contact::Erosional, Contact::Conformable, Contact::Truncated]);
         // The intrusion rises to 10 through the erosion surface at 30, over which the youngest bed lies at 20.
         let sheets = [20.0, 30.0, 60.0, 10.0];
-        assert_eq!([5.0, 15.0, 25.0, 35.0].map(|z| r.layer(bits(z, &sheets))), [4, 4, 3, 0]);
+        assert_eq!([5.0, 15.0, 25.0, 35.0].map(|z| r.layer(&below(z, &sheets))), [4, 4, 3, 0]);
         let mut z = sheets;
         r.clip(&mut z);
         assert_eq!(z, [20.0, 30.0, 30.0, 30.0]);
@@ -223,7 +224,7 @@ mod tests {
             r.clip(&mut cut);
             assert!(cut.windows(2).all(|w| w[0] <= w[1]), "{contacts:?} {cut:?}");
             let passed = cut.iter().filter(|&&s| z >= s).count();
-            assert_eq!(usize::from(r.layer(bits(z, &sheets))), 5 - passed, "{contacts:?} {sheets:?} {z}");
+            assert_eq!(usize::from(r.layer(&below(z, &sheets))), 5 - passed, "{contacts:?} {sheets:?} {z}");
         }
     }
 }

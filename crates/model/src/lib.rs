@@ -48,6 +48,7 @@
 //! Positions are voxel coordinates (x, y, z) with z down. Distances to faults are metric (m).
 
 pub mod accuracy;
+mod below;
 #[cfg(test)]
 pub(crate) mod closed_form;
 mod contacts;
@@ -65,6 +66,7 @@ mod strays;
 mod structural;
 mod touching;
 
+pub use below::Below;
 pub use contacts::ContactRules;
 pub use levels::{
     CutLattice, Equations, LevelSurface, NodeBox, Terms, check_surface, is_closed, resampled, surface_through,

@@ -31,11 +31,14 @@ pub(super) fn keep_order(
             .flat_map(|h| (h + 1..sheets.len()).map(move |g| (h, g)))
             .filter(|&(h, g)| !rules.may_cross(h, g))
             .collect();
-        for &(h, g) in &pairs {
-            check(geometry, lattice, names, sheets, (h, g), b, settings)?;
+        // Where all horizons lie in order, no pair crosses.
+        let is_mixed = |n: &usize| sheets.windows(2).any(|pair| pair[0][b].field.z[*n] > pair[1][b].field.z[*n]);
+        let mixed: Vec<usize> = (0..lattice.len()).filter(is_mixed).collect();
+        for &(h, g) in pairs.iter().filter(|_| !mixed.is_empty()) {
+            check(geometry, lattice, names, sheets, (h, g), (b, &mixed), settings)?;
         }
         let mut clamped = vec![(0usize, 0.0f32); pairs.len()];
-        for n in 0..lattice.len() {
+        for n in mixed {
             // Pulling one pair together can push it over a third; a few rounds settle it.
             for _ in 0..sheets.len() {
                 let mut moved = false;
@@ -73,19 +76,19 @@ pub(super) fn keep_order(
     Ok(notes)
 }
 
-/// An error when picks of `pair` cross in block `b`.
+/// An error when picks of `pair` cross in block `b`, at one of the nodes `mixed`.
 fn check(
     geometry: &SurveyGeometry,
     lattice: MarginLattice,
     names: &[&str],
     sheets: &[Vec<ExtendedSheet>],
     pair: (usize, usize),
-    b: usize,
+    (b, mixed): (usize, &[usize]),
     settings: &ModelSettings,
 ) -> Result<(), ModelError> {
     let (top, base) = (&sheets[pair.0][b], &sheets[pair.1][b]);
     let (mut nodes, mut worst, mut place) = (0, 0.0f32, 0);
-    for n in 0..lattice.len() {
+    for &n in mixed {
         let crossing = top.field.z[n] - base.field.z[n];
         if top.known[n] && base.known[n] && crossing > settings.crossing_tolerance {
             nodes += 1;

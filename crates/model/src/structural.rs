@@ -1,5 +1,6 @@
 //! The structural model: sheets, faults and contact rules together.
 
+use super::below::{Below, MOST_HORIZONS};
 use super::contacts::ContactRules;
 use super::lattice::MarginLattice;
 use super::levels::{Given, LevelSurface};
@@ -19,9 +20,6 @@ use survey::height_field::HeightField;
 use survey::horizon::{Horizon, Quality};
 use survey::progress::Progress;
 use survey::stratigraphy::{Contact, Stratigraphy};
-
-/// Largest number of horizons: each takes one bit of a mask.
-const MOST_HORIZONS: usize = 64;
 
 /// The part of a layer that lies inside one fault block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -73,7 +71,22 @@ pub struct StructuralModel {
     sheets: Vec<Vec<ExtendedSheet>>,
     /// `[horizon][block]`; `None` for height fields.
     levels: Vec<Vec<Option<LevelSurface>>>,
+    /// Between which depths each sheet lies where nodes surround a place, `[horizon][block]`.
+    spans: Vec<Vec<[f32; 2]>>,
     report: ModelReport,
+}
+
+/// The most that the absolute weights of the 4 × 4 nodes around a place add up to: (1 + 1/4)², halfway between nodes.
+const MOST_WEIGHT: f32 = 1.5625;
+
+/// Between which depths a sheet lies where nodes surround a place.
+fn span(sheet: &ExtendedSheet) -> [f32; 2] {
+    let z = &sheet.field.z;
+    let low = z.iter().copied().fold(f32::INFINITY, f32::min);
+    let high = z.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    // A little more than it can be, for rounding.
+    let (middle, reach) = (0.5 * (low + high), 0.5 * MOST_WEIGHT * (high - low) + 1e-3 * (1.0 + high.abs().max(low.abs())));
+    [middle - reach, middle + reach]
 }
 
 impl StructuralModel {
@@ -132,6 +145,7 @@ impl StructuralModel {
             };
             sheets.insert(h, surfaces.par_iter().flatten().map(top).collect());
         }
+        let spans = sheets.iter().map(|of_block| of_block.iter().map(span).collect()).collect();
         Ok(Self {
             size,
             metric: geometry.metric_from_voxel(),
@@ -140,6 +154,7 @@ impl StructuralModel {
             faults,
             sheets,
             levels: levels.surfaces,
+            spans,
             report,
         })
     }
@@ -230,15 +245,15 @@ impl StructuralModel {
 
     /// The layer at voxel position `p` according to the sheets of `block`, with the contact rules applied.
     pub fn layer_at(&self, p: Vec3, block: u16) -> u16 {
-        self.rules.layer(self.below_at(p, block))
+        self.rules.layer(&self.below_at(p, block))
     }
 
-    /// Bit h set: voxel position `p` lies at or below the unclipped surface of horizon h in `block`, on its older side,
-    /// or inside the body.
-    pub fn below_at(&self, p: Vec3, block: u16) -> u64 {
+    /// Which unclipped surfaces of horizons in `block` voxel position `p` lies at or below, on their older side, or
+    /// inside their body.
+    pub fn below_at(&self, p: Vec3, block: u16) -> Below {
         let mut last: Option<(&Arc<LevelField>, f32)> = None;
-        let mut is_below = |h: usize| match self.level(h, block) {
-            None => p.z >= self.sheet(h, block).z_at(p.x, p.y),
+        let is_below = |h: usize| match self.level(h, block) {
+            None => self.is_below_sheet(h, block, p),
             // Horizons of one series share their field.
             Some(level) => match last {
                 Some((field, value)) if Arc::ptr_eq(field, &level.field) => value >= level.at,
@@ -249,7 +264,16 @@ impl StructuralModel {
                 }
             },
         };
-        (0..self.sheets.len()).map(|h| u64::from(is_below(h)) << h).sum()
+        (0..self.sheets.len()).map(is_below).collect()
+    }
+
+    /// Whether a voxel position lies at or below a sheet. Most sheets of many lie wholly above or below it.
+    fn is_below_sheet(&self, horizon: usize, block: u16, p: Vec3) -> bool {
+        let (sheet, [low, high]) = (self.sheet(horizon, block), self.spans[horizon][usize::from(block)]);
+        if (low..=high).contains(&p.z) || !sheet.surrounds(p.x, p.y) {
+            return p.z >= sheet.z_at(p.x, p.y);
+        }
+        p.z > high
     }
 
     /// Layer and block at voxel position `p`.
@@ -275,9 +299,9 @@ impl StructuralModel {
     /// youngest horizon: they do not where something else has cut it off.
     pub fn crops_out_at(&self, horizon: usize, p: Vec3, block: u16) -> bool {
         // The place is rock, just below the surface.
-        let below = self.below_at(p, block) | 1;
-        let layer = |below: u64| self.rules.layer(below);
-        layer(below | 1 << horizon) != layer(below & !(1 << horizon)) && self.block_at(p) == block
+        let below = self.below_at(p, block).with(0, true);
+        let layer = |is_below: bool| self.rules.layer(&below.with(horizon, is_below));
+        layer(true) != layer(false) && self.block_at(p) == block
     }
 
     /// [`StructuralModel::region_at`] at every depth (voxel z) of the trace at (x, y), in order: `found(n,
@@ -294,8 +318,8 @@ impl StructuralModel {
             }
             let sheets_z = sheets_z[usize::from(block)]
                 .get_or_insert_with(|| (0..self.sheets.len()).map(|h| self.sheet(h, block).z_at(x, y)).collect());
-            let below = sheets_z.iter().enumerate().map(|(h, &sheet_z)| u64::from(z >= sheet_z) << h).sum();
-            found(n, Region { layer: self.rules.layer(below), block });
+            let below: Below = sheets_z.iter().map(|&sheet_z| z >= sheet_z).collect();
+            found(n, Region { layer: self.rules.layer(&below), block });
         }
     }
 

@@ -364,3 +364,36 @@ fn a_trace_has_the_regions_of_its_points() {
         assert_eq!(regions, expected, "at {at}");
     }
 }
+
+/// A thousand horizons, a twentieth of a sample apart, each lower by a sample on the far side: the layer of a place and the
+/// areas of a section are counted, and one horizon more than there may be is refused.
+#[test]
+fn a_thousand_horizons_are_told_apart() {
+    let geometry = SurveyGeometry::regular([6, 6, 61], 10.0, 10.0, VerticalUnit::Metres);
+    let grid = NodeGrid::of_survey(&geometry);
+    let built = |count: usize| {
+        let horizon = |n: usize| StratigraphicHorizon { name: format!("H{n}"), contact: Contact::Conformable };
+        let stratigraphy = Stratigraphy { horizons: (0..count).map(horizon).collect(), layer_names: Vec::new() };
+        let depth = |n: usize, x: usize| 10.0 * (5.0 + 0.05 * n as f32 + 0.2 * x as f32);
+        let sheet = |n: usize| Sheet::new(grid, (0..36).map(|node| depth(n, node / 6)).collect(), Quality::Picked);
+        let horizons: Vec<Horizon> = (0..count).map(|n| Horizon::new(format!("H{n}").as_str(), vec![sheet(n)])).collect();
+        let settings = ModelSettings::default();
+        StructuralModel::build(&geometry, &stratigraphy, &horizons, &[], &settings, &Progress::silent())
+    };
+    let model = built(1000).unwrap();
+    for (x, z) in [(0.0, 2.0), (0.0, 5.01), (2.5, 20.0), (4.0, 33.33), (5.0, 56.1), (3.0, 58.0)] {
+        let passed = (0..1000).filter(|n| f64::from(z) >= 5.0 + 0.05 * f64::from(*n) + 0.2 * f64::from(x)).count();
+        assert_eq!(usize::from(model.region_at(Vec3::new(x, 2.0, z)).layer), 1000 - passed, "{x}, {z}");
+    }
+    let plane = section::SectionPlane::crossline(2.5, DVec3::ZERO, DVec3::new(5.0, 5.0, 60.0));
+    let section = section::Section::new(&model, &plane);
+    assert_eq!(section.layers.len(), 1001);
+    let area = |rings: &[Vec<DVec2>]| {
+        let ring = &rings[0];
+        let twice: f64 = (0..ring.len()).map(|n| ring[n].perp_dot(ring[(n + 1) % ring.len()])).sum();
+        0.5 * twice.abs()
+    };
+    let between = section.layers.iter().filter(|layer| (1..1000).contains(&layer.layer));
+    assert!(between.clone().count() == 999 && between.into_iter().all(|layer| (area(&layer.rings) - 0.25).abs() < 1e-3));
+    assert!(matches!(built(1025), Err(ModelError::TooMany { found: 1025, limit: 1024, .. })));
+}

@@ -72,7 +72,7 @@ impl Painter {
         self.renderer.as_ref().map_or("processor", Renderer::adapter_name)
     }
 
-    /// Draws a scene, with raw data in the project's colours if the scene states none. If the adapter cannot hold a
+    /// Draws a scene, with raw data in the project's colours if the scene states none. If the adapter cannot draw a
     /// picture or is lost, the processor draws from then on, with a warning, unless the adapter was asked for.
     ///
     /// # Errors
@@ -90,9 +90,11 @@ impl Painter {
         let inputs = loaded.inputs(&volumes, &wells);
         let drawn = self.renderer.as_mut().map(|renderer| renderer.render(scene, &inputs, progress));
         let mut image = match drawn {
-            Some(Err(error @ (RenderError::OutOfMemory { .. } | RenderError::DeviceLost { .. })))
-                if self.device == Device::Auto =>
-            {
+            Some(Err(
+                error @ (RenderError::OutOfMemory { .. }
+                | RenderError::DeviceLost { .. }
+                | RenderError::Unsuitable { .. }),
+            )) if self.device == Device::Auto => {
                 progress.warn(format!("drawing on the processor, which is slower: {error}"));
                 self.renderer = None;
                 self.processor.render(scene, &inputs, progress)?

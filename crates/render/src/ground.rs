@@ -19,7 +19,7 @@
 use crate::scene::{Ground, Scene};
 use crate::visible::Ray;
 use glam::{DVec3, Mat3, Vec2, Vec3};
-use model::{Region, StructuralModel};
+use model::{Below, Region, StructuralModel};
 use rayon::prelude::*;
 use survey::SurveyGeometry;
 
@@ -85,8 +85,8 @@ struct Probe {
     /// of any shape, the distance.
     gap: f32,
     horizon: usize,
-    /// Bit h is set at or below horizon h.
-    below: u64,
+    /// The horizons at or below which it lies.
+    below: Below,
     /// Distance from the nearest fault, m, and that fault.
     fault_m: f32,
     fault: usize,
@@ -95,7 +95,7 @@ struct Probe {
 impl Probe {
     /// Whether between here and there lies only the horizon that is the nearest of both.
     fn crosses_only_the_nearest(&self, there: &Self) -> bool {
-        let nearest = self.horizon == there.horizon && self.below ^ there.below == 1 << there.horizon;
+        let nearest = self.horizon == there.horizon && self.below.differs_only_at(there.horizon, &there.below);
         self.block == there.block && nearest
     }
 }
@@ -272,19 +272,19 @@ impl Relief {
     /// What the march needs to know about a point.
     fn probe(&self, model: &StructuralModel, p: Vec3) -> Probe {
         let (block, fault, fault_m) = block_and_fault(model, p);
-        let mut below = 0u64;
+        let mut below = Below::default();
         let (mut horizon, mut gap) = (0, f32::MAX);
         for &h in &self.horizons {
             let offset = match model.level(h, block) {
                 Some(level) => level.offset_m(p) / self.longest_m,
                 None => p.z - model.sheet(h, block).z_at(p.x, p.y),
             };
-            below |= u64::from(offset >= 0.0) << h;
+            below = below.with(h, offset >= 0.0);
             if offset.abs() < gap {
                 (horizon, gap) = (h, offset.abs());
             }
         }
-        let is_rock = model.rules().layer(below) != air_layer(model);
+        let is_rock = model.rules().layer(&below) != air_layer(model);
         Probe { is_rock, block, gap, horizon, below, fault_m, fault }
     }
 

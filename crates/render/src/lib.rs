@@ -52,7 +52,7 @@ pub use leaves::FaceData;
 pub use media::{
     Faces, Interleaved, Isosurface, IsosurfaceSource, Media, Medium, Occlusion, Phong, PickedHorizon, Scope, Shading,
 };
-pub use outline::{Outlines, Stroke, Unpicked};
+pub use outline::{NOMINAL_SIDE_PX, Outlines, Stroke, Unpicked};
 pub use pick::{PickedObject, PickedPoint, pick};
 pub use scene::{Background, Ground, LabelChange, Lookup, PatternSize, Scene, Water};
 pub use survey::block::{Corner, CutShape, Side, VoxelBox};

@@ -15,6 +15,7 @@ use crate::wells::Tubes;
 use glam::{DMat3, DVec3, Vec2, Vec3};
 use model::StructuralModel;
 use param::{PackedVolume, Parameterization};
+use survey::Contact;
 use survey::block::BodyPlane;
 use survey::block::VoxelBox;
 use ttf::tables::{LayerEntry, NONE, StopEntry, TtfGlobals};
@@ -122,6 +123,12 @@ impl<'a> ResolvedScene<'a> {
 }
 
 impl ResolvedScene<'_> {
+    /// Whether a line is that of an unconformity.
+    pub fn is_unconformity(&self, horizon: Option<usize>) -> bool {
+        let contacts = self.interpretation.map(|interpretation| interpretation.model.rules().contacts());
+        contacts.zip(horizon).and_then(|(contacts, horizon)| contacts.get(horizon)) == Some(&Contact::Erosional)
+    }
+
     /// How patterns lie on a plane of the block.
     pub fn frame(&self, plane: &BodyPlane) -> FaceFrame {
         let normal = (plane.normal / self.voxel_m).to_array();

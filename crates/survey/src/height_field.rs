@@ -123,6 +123,16 @@ impl HeightField {
         (patch, fx, fy)
     }
 
+    /// Whether nodes surround voxel (x, y): its height is a mean of these, in which some weights are below 0.
+    #[inline]
+    pub fn surrounds(&self, x: f32, y: f32) -> bool {
+        let is_within = |at: f32, axis: usize| {
+            let at = at - self.origin[axis] as f32;
+            at >= 1.0 && at < self.size[axis] as f32 - 2.0
+        };
+        is_within(x, 0) && is_within(y, 1)
+    }
+
     /// Height at voxel (x, y), voxel z.
     #[inline]
     pub fn z_at(&self, x: f32, y: f32) -> f32 {

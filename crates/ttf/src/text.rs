@@ -9,9 +9,11 @@
 
 mod face;
 mod line;
+mod pieces;
 
 pub use face::{Face, Faces};
 pub use line::{Glyph, Line, set};
+pub use pieces::{Piece, pieces};
 
 pub(crate) use face::OpenFace;
 #[cfg(test)]

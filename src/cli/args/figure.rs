@@ -19,6 +19,10 @@ pub(in crate::cli) struct FigureArgs {
     /// Proportions of sections along inlines and crosslines, vertical to horizontal [default: they fill their room]
     #[arg(long, value_name = "FACTOR")]
     pub(in crate::cli) proportions: Option<f64>,
+    /// What sections and fences show: 0 the rock with its patterns, 1 measured data, or a mixture [default: measured data
+    /// where there are some]
+    #[arg(long, value_name = "BLEND")]
+    pub(in crate::cli) section_blend: Option<f32>,
     /// Section along a line with these corners, two or more
     #[arg(long, value_name = "INLINE,CROSSLINE", num_args = 2..)]
     pub(in crate::cli) fence: Vec<String>,
@@ -62,10 +66,11 @@ pub(in crate::cli) struct FigureArgs {
     /// Draw a north arrow below the block, as it lies in the block's middle
     #[arg(long)]
     pub(in crate::cli) north_arrow: bool,
-    /// Write on the blocks: axes (inlines, crosslines, depth or time along the edges), layers (names along the
-    /// layers), faults (names, measured throw, half-arrows), wells (names of wells and tops), colours (a bar of the raw data's values), provenance
-    /// (program, project, --credit); all adds the legend, the scale bar and the north arrow
-    #[arg(long, value_name = "all|axes,layers,faults,wells,colours,provenance", value_delimiter = ',')]
+    /// Write on blocks and sections: axes (inlines, crosslines, depth or time along the edges), layers (names along the
+    /// layers), faults (names, measured throw, half-arrows), wells (names of wells and tops), quality (horizons dashed
+    /// where they were filled, dotted with question marks where they were only continued), colours (a bar of the raw data's
+    /// values), provenance (program, project, --credit); all adds the legend, the scale bars and the north arrow
+    #[arg(long, value_name = "all|axes,layers,faults,wells,quality,colours,provenance", value_delimiter = ',')]
     pub(in crate::cli) annotate: Vec<String>,
     /// Whose data the figure shows, for the line of provenance
     #[arg(long, value_name = "TEXT")]
@@ -88,7 +93,7 @@ pub(in crate::cli) struct FigureArgs {
         long,
         value_name = "FILE.toml",
         conflicts_with_all = [
-            "inline", "crossline", "slice", "fence", "map", "correlation", "block", "compare", "size_cm", "interpretation", "legend",
+            "inline", "crossline", "slice", "section_blend", "fence", "map", "correlation", "block", "compare", "size_cm", "interpretation", "legend",
             "scale_bar", "north_arrow", "annotate", "credit", "title", "caption",
         ]
     )]

@@ -17,11 +17,12 @@ use widgets::theme;
 const LARGEST: u32 = 16_000;
 
 /// What is written on blocks, and what it is called.
-const WRITTEN: [(Annotation, &str); 6] = [
+const WRITTEN: [(Annotation, &str); 7] = [
     (Annotation::Axes, "Axes along the block's edges"),
     (Annotation::Layers, "Names along the layers"),
     (Annotation::Faults, "Names and throws of faults"),
     (Annotation::Wells, "Names of wells and tops"),
+    (Annotation::Quality, "Dashes and question marks where not picked"),
     (Annotation::Colours, "Colour bar of raw data"),
     (Annotation::Provenance, "Program, project and data credit"),
 ];

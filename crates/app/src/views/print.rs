@@ -138,7 +138,8 @@ fn parts(
     let show = if view.panel == Panel::Interpret { view.picking.show } else { FaceData::Rock };
     let section = |kind: SectionKind| {
         let at = value_at(geometry, kind.axis(), view.slices[kind.axis()]);
-        Part::Section(SectionPart { kind, at, show, zoom: sections.zoom(kind), proportions: view.proportions })
+        let (zoom, proportions) = (sections.zoom(kind), view.proportions);
+        Part::Section(SectionPart { kind, at, show, blend: None, zoom, proportions })
     };
     let block = || Part::from(block_part(session, overlay));
     match view.layout {
@@ -157,7 +158,7 @@ fn parts(
                 [inline, crossline]
             };
             let corners: Vec<[f64; 2]> = view.fence.iter().map(corner).collect();
-            let fence = (corners.len() > 1).then_some(Part::Fence(FencePart { corners, show }));
+            let fence = (corners.len() > 1).then_some(Part::Fence(FencePart { corners, show, blend: None }));
             std::iter::once(section(SectionKind::Slice)).chain(fence).collect()
         }
     }

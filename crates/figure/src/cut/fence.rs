@@ -36,18 +36,11 @@ impl FenceCut {
             place(corners, f64::from(column) * step).extend(f64::from(row)).as_vec3()
         });
         let mut lines = Vec::new();
-        for (leg, pair) in corners.windows(2).enumerate() {
-            let length = pair[0].distance(pair[1]);
-            if length < SHORTEST {
+        for (plane, station) in legs(corners, depth).into_iter().zip(stations) {
+            if plane.extent[0] < SHORTEST {
                 continue;
             }
-            let plane = SectionPlane {
-                origin: pair[0].extend(0.0),
-                s_axis: ((pair[1] - pair[0]) / length).extend(0.0),
-                t_axis: DVec3::Z,
-                extent: [length, depth],
-            };
-            let shift = DVec2::new(stations[leg], 0.0);
+            let shift = DVec2::new(station, 0.0);
             lines.extend(lines_of(source, &plane).into_iter().map(|mut line| {
                 line.points.iter_mut().for_each(|point| *point += shift);
                 line
@@ -55,6 +48,20 @@ impl FenceCut {
         }
         Self { corners: corners.to_vec(), image, lines }
     }
+}
+
+/// The planes of the legs of a line.
+pub fn legs(corners: &[DVec2], depth: f64) -> Vec<SectionPlane> {
+    let leg = |pair: &[DVec2]| {
+        let length = pair[0].distance(pair[1]);
+        SectionPlane {
+            origin: pair[0].extend(0.0),
+            s_axis: (pair[1] - pair[0]).normalize_or_zero().extend(0.0),
+            t_axis: DVec3::Z,
+            extent: [length, depth],
+        }
+    };
+    corners.windows(2).map(leg).collect()
 }
 
 /// Where each corner lies along the line, voxels.

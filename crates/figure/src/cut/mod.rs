@@ -10,7 +10,7 @@ mod kind;
 mod pixels;
 pub mod traces;
 
-pub use fence::{FenceCut, length_m, place, station_of, stations};
+pub use fence::{FenceCut, legs, length_m, place, station_of, stations};
 pub use kind::{SectionKind, value_at};
 
 use glam::{DVec2, DVec3};

@@ -144,8 +144,32 @@ pub struct DrawnBlock {
     pub group: Group,
     /// The scale on paper in the block's middle, points a metre.
     pub points_per_m: f64,
+    /// The same down, points a unit of depth or time.
+    pub points_down: f64,
     /// East and north in the block's middle ([`north::compass`]).
     pub compass: [DVec2; 2],
+}
+
+/// A scene in its place on the page, as paths where the painter has them and as a picture otherwise; and the picture
+/// that was needed.
+pub(crate) fn painted(
+    scene: &Scene,
+    pane: Rect,
+    dpi: f64,
+    names: &BlockNames,
+    painter: &mut dyn BlockPainter,
+) -> Result<(Vec<Item>, Option<Arc<RgbaImage>>), FigureError> {
+    let size_px = DVec2::new(f64::from(scene.size_px[0]), f64::from(scene.size_px[1]));
+    let page = |px: DVec2| pane.min + px / size_px * pane.size();
+    let Some(traced) = painter.trace(scene, STRAIGHT_PT * dpi / POINTS_PER_INCH)? else {
+        let picture = Arc::new(painter.paint(scene)?);
+        return Ok((vec![Picture::in_rect(Arc::clone(&picture), pane).into()], Some(picture)));
+    };
+    let picture = match vector_block::needs_picture(&traced) {
+        true => Some(Arc::new(painter.paint(&Scene { outlines: Outlines::none(), ..scene.clone() })?)),
+        false => None,
+    };
+    Ok((vector_block::items(&traced, picture.as_ref(), pane, names, &page), picture))
 }
 
 impl BlockPanel<'_> {
@@ -155,7 +179,7 @@ impl BlockPanel<'_> {
     /// What the painter says.
     pub fn drawn(&self, room: Rect, painter: &mut dyn BlockPainter) -> Result<DrawnBlock, FigureError> {
         let mut group = Group::new(GroupKind::Panel, BLOCK);
-        let (mut points_per_m, mut compass) = (0.0, [DVec2::ZERO; 2]);
+        let (mut points_per_m, mut points_down, mut compass) = (0.0, 0.0, [DVec2::ZERO; 2]);
         let blends = self.comparison.blends();
         let beside = |room: Rect| self.annotation.map_or(room, |annotation| annotation.pane(room, self.scene));
         let is_wipe = matches!(self.comparison, Comparison::Wipe(..));
@@ -170,23 +194,8 @@ impl BlockPanel<'_> {
             let scene = Scene { size_px, blend, ..self.scene.clone() };
             let seen = self.on_pixels(self.comparison.seen(index, pane));
             let mut shown = Group::new(GroupKind::Data, blend_name(blend)).clipped(Path::rect(seen));
-            let tolerance_px = STRAIGHT_PT * self.dpi / POINTS_PER_INCH;
-            let picture = match painter.trace(&scene, tolerance_px)? {
-                Some(traced) => {
-                    let page = |px: DVec2| pane.min + px * POINTS_PER_INCH / self.dpi;
-                    let picture = match vector_block::needs_picture(&traced) {
-                        true => Some(Arc::new(painter.paint(&Scene { outlines: Outlines::none(), ..scene.clone() })?)),
-                        false => None,
-                    };
-                    shown.items.extend(vector_block::items(&traced, picture.as_ref(), pane, &self.names, &page));
-                    picture
-                }
-                None => {
-                    let picture = Arc::new(painter.paint(&scene)?);
-                    shown.push(Picture::in_rect(Arc::clone(&picture), pane));
-                    Some(picture)
-                }
-            };
+            let (items, picture) = painted(&scene, pane, self.dpi, &self.names, painter)?;
+            shown.items.extend(items);
             let view = scene.view(self.geometry);
             let on_page = |px: DVec2| pane.min + px * POINTS_PER_INCH / self.dpi;
             if let Some((model, water)) =
@@ -206,13 +215,15 @@ impl BlockPanel<'_> {
             }
             let middle = scene.box_in(self.geometry).centre();
             points_per_m = pixels_per_metre(&view, middle) * POINTS_PER_INCH / self.dpi;
+            let sample = view.project(middle + 0.5 * DVec3::Z).distance(view.project(middle - 0.5 * DVec3::Z));
+            points_down = sample / self.geometry.vertical.interval.abs() * POINTS_PER_INCH / self.dpi;
             compass = north::compass(&view, self.geometry, middle);
         }
         if let Some(blends) = blends {
             group.push(self.rule(room, blends));
         }
         group.items.extend(written.into_iter().filter(|group| !group.items.is_empty()).map(Item::from));
-        Ok(DrawnBlock { group, points_per_m, compass })
+        Ok(DrawnBlock { group, points_per_m, points_down, compass })
     }
 
     /// The rectangle with its sides on pixels, so that a picture is not sampled again.

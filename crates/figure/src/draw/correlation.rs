@@ -10,7 +10,7 @@ use crate::correlation::{Column, LogCurve, Marker, place_of_layer, place_of_surf
 use crate::error::FigureError;
 use crate::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright};
 use crate::style::{
-    FRAME_PT, HORIZON_PT, INK, LEAST_TEXT_PT, NUMBER_PT, QUIET_INK, RIM_OPACITY, RULE_INK, TEXT_PT, TITLE_PT,
+    FRAME_PT, HORIZON_PT, INK, NUMBER_PT, QUIET_INK, RIM_OPACITY, RULE_INK, TEXT_PT, TITLE_PT,
     horizon_colour,
 };
 use glam::DVec2;
@@ -22,7 +22,7 @@ const LOG_PT: [f64; 2] = [9.0, 34.0];
 /// Share of the width that columns and curves may take; the rest lies between wells.
 const TRACKS_SHARE: f64 = 0.6;
 /// Height of the rows above the columns: the wells' names, their datums, names and ranges of curves, points.
-const ROWS_PT: [f64; 3] = [13.0, 9.0, 17.0];
+const ROWS_PT: [f64; 3] = [13.0, 9.5, 19.0];
 /// Opacity of layers between wells.
 const BETWEEN: f32 = 0.4;
 /// Dashes of what is not known from tops, points.
@@ -334,8 +334,8 @@ impl CorrelationPanel<'_> {
             let name = Text::new(DVec2::ZERO, &column.name).sized(TITLE_PT).inked(INK);
             group.push(centred(name, room.min.y + TITLE_PT, 0.72 * step));
             let datum = format!("KB {} m", (10.0 * column.datum_m).round() / 10.0);
-            let small = |text: String| Text::new(DVec2::ZERO, text).sized(NUMBER_PT - 0.5).inked(QUIET_INK);
-            let second = room.min.y + ROWS_PT[0] + NUMBER_PT - 0.5;
+            let small = |text: String| Text::new(DVec2::ZERO, text).sized(NUMBER_PT).inked(QUIET_INK);
+            let second = room.min.y + ROWS_PT[0] + NUMBER_PT;
             let datum = centred(small(datum), second, 0.5 * step);
             if let Some(next) = self.columns.get(well + 1) {
                 let distance = super::scale::length_text((column.head.distance(next.head) / 10.0).round() * 10.0);
@@ -366,25 +366,23 @@ impl CorrelationPanel<'_> {
 
 /// The name of a curve over its scale's ends.
 fn scale_items(log: &LogCurve, scale: [f64; 2], x: [f64; 2], bottom: f64, colour: Colour) -> Vec<Item> {
-    let size = NUMBER_PT - 1.0;
     let width = x[1] - x[0];
     let named = |text: &str| {
-        let text = Text::new(DVec2::new(0.5 * (x[0] + x[1]), bottom - 9.5), text).sized(size).inked(colour);
+        let text = Text::new(DVec2::new(0.5 * (x[0] + x[1]), bottom - 10.5), text).sized(NUMBER_PT).inked(colour);
         text.anchored(Across::Middle, Upright::Baseline)
     };
     let whole = named(&format!("{} ({})", log.name, log.unit));
     let name = if log.unit.is_empty() || whole.width() > width - 1.0 { named(&log.name) } else { whole };
     let mut items = vec![name.fitted(width - 1.0).into()];
-    let ends = |size: f64| {
-        let number = |value: f64, at: f64, across: Across| {
-            let said = format!("{}", (1000.0 * value).round() / 1000.0);
-            let text = Text::new(DVec2::new(at, bottom - 2.5), said).sized(size);
-            text.inked(QUIET_INK).anchored(across, Upright::Baseline)
-        };
-        [number(scale[0], x[0] + 0.5, Across::Start), number(scale[1], x[1] - 0.5, Across::End)]
+    let number = |value: f64, at: f64, across: Across| {
+        let said = format!("{}", (1000.0 * value).round() / 1000.0);
+        let text = Text::new(DVec2::new(at, bottom - 2.5), said).sized(NUMBER_PT);
+        text.inked(QUIET_INK).anchored(across, Upright::Baseline)
     };
-    let fits = |ends: &[Text; 2]| ends.iter().map(Text::width).sum::<f64>() + 2.5 <= width;
-    items.extend([size, LEAST_TEXT_PT].map(ends).into_iter().find(fits).into_iter().flatten().map(Item::from));
+    let ends = [number(scale[0], x[0] + 0.5, Across::Start), number(scale[1], x[1] - 0.5, Across::End)];
+    if ends.iter().map(Text::width).sum::<f64>() + 2.5 <= width {
+        items.extend(ends.map(Item::from));
+    }
     items
 }
 

@@ -4,7 +4,7 @@ use super::{NamedColour, swatch};
 use crate::Rect;
 use crate::error::FigureError;
 use crate::list::{Across, Group, GroupKind, Path, PathItem, Stroke, Text, Upright, width_of};
-use crate::style::{FRAME_PT, HORIZON_PT, INK, TEXT_PT};
+use crate::style::{FRAME_PT, HORIZON_PT, INK, LEAST_TEXT_PT, TEXT_PT};
 use glam::DVec2;
 use ttf::{LayerStyle, TextureLibrary};
 
@@ -14,8 +14,17 @@ const SWATCH_PT: [f64; 2] = [30.0, 17.0];
 const PITCH_PT: [f64; 2] = [22.5, 14.0];
 /// Between a swatch and its name, points.
 const GAP_PT: f64 = 6.0;
-/// Least room for names, points.
+/// Least room for names, points, and for names in several columns, where they may be shortened.
 const LEAST_NAME_PT: f64 = 36.0;
+const SHORT_NAME_PT: f64 = 64.0;
+/// Between columns, points.
+const COLUMN_GAP_PT: f64 = 10.0;
+/// Size of letters as a share of the height of an entry.
+const LETTERS: f64 = 0.9;
+/// In so many steps entries are set closer.
+const SHARES: u32 = 12;
+/// Heights that differ by less are the same, points.
+const ROUNDING_PT: f64 = 1e-6;
 
 /// Between layers and horizons, points.
 const PARAGRAPH_PT: f64 = 9.0;
@@ -31,6 +40,13 @@ pub struct LegendLine {
     pub stroke: Stroke,
 }
 
+impl LegendLine {
+    /// A line with its name.
+    pub fn new(name: &str, kind: GroupKind, stroke: Stroke) -> Self {
+        Self { name: name.to_owned(), kind, stroke }
+    }
+}
+
 /// What a legend lists.
 #[derive(Clone, Copy)]
 pub struct Legend<'a> {
@@ -44,6 +60,15 @@ pub struct Legend<'a> {
     pub dpi: f64,
 }
 
+/// Where the entries of a legend stand.
+struct Arranged {
+    /// Column and top of each entry that is listed.
+    places: Vec<(usize, f64)>,
+    columns: usize,
+    /// Their heights as a share of what they are in ample room.
+    share: f64,
+}
+
 impl Legend<'_> {
     fn styles(&self) -> &[LayerStyle] {
         self.layers.map_or(&[], |(styles, _)| styles)
@@ -54,59 +79,118 @@ impl Legend<'_> {
         self.styles().is_empty() && self.horizons.is_empty() && self.lines.is_empty()
     }
 
-    /// The width that shows all names, but no more than `most`, points.
-    pub fn width(&self, most: f64) -> f64 {
-        let longest = self.names().map(|name| width_of(name, TEXT_PT)).fold(LEAST_NAME_PT, f64::max);
-        (SWATCH_PT[0] + GAP_PT + longest + 1.0).min(most)
-    }
-
     fn names(&self) -> impl Iterator<Item = &str> {
         let layers = self.styles().iter().map(|style| style.layer.as_str());
         let horizons = self.horizons.iter().map(|horizon| horizon.name.as_str());
         layers.chain(horizons).chain(self.lines.iter().map(|line| line.name.as_str()))
     }
 
-    /// Size of all names in a legend of a width, points: that of the one which needs the smallest.
-    fn size_pt(&self, width: f64, share: f64) -> f64 {
-        let pitch = if self.horizons.is_empty() && self.lines.is_empty() { PITCH_PT[0] } else { PITCH_PT[1] };
-        let largest = TEXT_PT.min(0.9 * share * pitch);
-        let room = width - SWATCH_PT[0] - GAP_PT;
-        let fitted = |name: &str| Text::new(DVec2::ZERO, name).sized(largest).fitted(room).size;
-        self.names().map(fitted).fold(largest, f64::min)
+    /// Width of a column that shows all names in letters of a size.
+    fn column(&self, size_pt: f64) -> f64 {
+        let longest = self.names().map(|name| width_of(name, size_pt)).fold(LEAST_NAME_PT, f64::max);
+        SWATCH_PT[0] + GAP_PT + longest + 1.0
     }
 
-    /// The legend in its room; entries that do not fit stand closer.
+    /// What is free above each entry, and its height, in ample room.
+    fn heights(&self) -> Vec<[f64; 2]> {
+        let layers = self.styles().len();
+        let lines = self.horizons.len() + self.lines.len();
+        let height = |n: usize| {
+            let above = if n == layers && n > 0 { PARAGRAPH_PT } else { 0.0 };
+            [above, PITCH_PT[usize::from(n >= layers)]]
+        };
+        (0..layers + lines).map(height).collect()
+    }
+
+    /// The entries one below the other in so many columns of a height, as far as they fit.
+    fn packed(&self, height: f64, columns: usize, share: f64) -> Arranged {
+        let (mut column, mut top) = (0, 0.0);
+        let mut places = Vec::new();
+        for [above, own] in self.heights().into_iter().map(|heights| heights.map(|height| share * height)) {
+            if top > 0.0 && top + above + own > height + ROUNDING_PT {
+                (column, top) = (column + 1, 0.0);
+            }
+            if column >= columns || own > height + ROUNDING_PT {
+                break;
+            }
+            let above = if top > 0.0 { above } else { 0.0 };
+            places.push((column, top + above));
+            top += above + own;
+        }
+        Arranged { places, columns, share }
+    }
+
+    /// In as few columns as hold all entries in letters that can be read; otherwise as many entries as fit.
+    fn arranged(&self, size: DVec2) -> Arranged {
+        let count = self.heights().len();
+        let least = LEAST_TEXT_PT / (LETTERS * self.tightest());
+        let shares = || (0..=SHARES).map(|n| 1.0 - (1.0 - least) * f64::from(n) / f64::from(SHARES));
+        let narrowest = self.column(LEAST_TEXT_PT).min(SWATCH_PT[0] + GAP_PT + SHORT_NAME_PT);
+        let most = ((size.x + COLUMN_GAP_PT) / (narrowest + COLUMN_GAP_PT)).floor().max(1.0) as usize;
+        let all = (1..=most).flat_map(|columns| shares().map(move |share| (columns, share)));
+        let mut all = all.map(|(columns, share)| self.packed(size.y, columns, share));
+        all.find(|arranged| arranged.places.len() == count).unwrap_or_else(|| self.packed(size.y, most, least))
+    }
+
+    /// The height of the lowest entries in ample room.
+    fn tightest(&self) -> f64 {
+        PITCH_PT[usize::from(!(self.horizons.is_empty() && self.lines.is_empty()))]
+    }
+
+    /// The width that shows all names in a room of this size: for one column no more than `most`, for several no more than
+    /// half of the room.
+    pub fn width(&self, room: DVec2, most: f64) -> f64 {
+        let widest = 0.5 * room.x;
+        let columns = self.arranged(DVec2::new(widest, room.y)).columns as f64;
+        let wanted = self.column(TEXT_PT) * columns + COLUMN_GAP_PT * (columns - 1.0);
+        wanted.min(if columns > 1.0 { widest } else { most })
+    }
+
+    /// The legend in its room; entries that do not fit stand closer, then in several columns. What has no room then is
+    /// counted in the last line.
     ///
     /// # Errors
     /// A pattern that does not draw.
     pub fn drawn(&self, room: Rect) -> Result<Group, FigureError> {
         let mut group = Group::new(GroupKind::Annotation, "legend");
-        let counts = [self.styles().len(), self.horizons.len() + self.lines.len()];
-        let between = if counts.contains(&0) { 0.0 } else { PARAGRAPH_PT };
-        let needed = counts[0] as f64 * PITCH_PT[0] + counts[1] as f64 * PITCH_PT[1] + between;
-        let share = (room.height() / needed.max(1.0)).min(1.0);
-        let place = |top: f64, pitch: f64| {
-            Rect::sized(room.min + DVec2::new(0.0, share * top), DVec2::new(room.width(), share * pitch))
+        let mut arranged = self.arranged(room.size());
+        let left_out = self.heights().len() - arranged.places.len();
+        let width = (room.width() + COLUMN_GAP_PT) / arranged.columns as f64 - COLUMN_GAP_PT;
+        let share = arranged.share;
+        let place = |(column, top): (usize, f64), pitch: f64| {
+            let left = column as f64 * (width + COLUMN_GAP_PT);
+            Rect::sized(room.min + DVec2::new(left, top), DVec2::new(width, share * pitch))
         };
-        let size = self.size_pt(room.width(), share);
-        let mut top = 0.0;
-        if let Some((styles, library)) = self.layers {
-            for style in styles {
-                group.push(layer(style, library, place(top, PITCH_PT[0]), size, self.dpi)?);
-                top += PITCH_PT[0];
+        let size = self.size_pt(width, share);
+        let more = if left_out > 0 { arranged.places.pop() } else { None };
+        let horizons = self.horizons.iter().map(|named| {
+            LegendLine::new(&named.name, GroupKind::Horizon, Stroke::new(1.5 * HORIZON_PT, named.colour))
+        });
+        let lines: Vec<LegendLine> = horizons.chain(self.lines.iter().cloned()).collect();
+        let layers = self.styles().len();
+        for (n, at) in arranged.places.iter().enumerate() {
+            match self.layers.and_then(|(styles, library)| Some((styles.get(n)?, library))) {
+                Some((style, library)) => group.push(layer(style, library, place(*at, PITCH_PT[0]), size, self.dpi)?),
+                None => {
+                    let entry = lines.get(n - layers).cloned();
+                    group.items.extend(entry.map(|entry| line(entry, place(*at, PITCH_PT[1]), size).into()));
+                }
             }
         }
-        top += between;
-        let horizons = self.horizons.iter().map(|named| LegendLine {
-            name: named.name.clone(),
-            kind: GroupKind::Horizon,
-            stroke: Stroke::new(1.5 * HORIZON_PT, named.colour),
-        });
-        for entry in horizons.chain(self.lines.iter().cloned()) {
-            group.push(line(entry, place(top, PITCH_PT[1]), size));
-            top += PITCH_PT[1];
+        if let Some(at) = more {
+            let place = place(at, self.tightest());
+            let said = format!("and {} more", left_out + 1);
+            group.push(name(&said, DVec2::new(place.min.x + SWATCH_PT[0], place.centre().y), place, size));
         }
         Ok(group)
+    }
+
+    /// Size of all names in a column of a width, points: that of the one which needs the smallest.
+    fn size_pt(&self, width: f64, share: f64) -> f64 {
+        let largest = (LETTERS * share * self.tightest()).clamp(LEAST_TEXT_PT, TEXT_PT);
+        let room = width - SWATCH_PT[0] - GAP_PT;
+        let fitted = |name: &str| Text::new(DVec2::ZERO, name).sized(largest).fitted(room).size;
+        self.names().map(fitted).fold(largest, f64::min)
     }
 }
 
@@ -160,24 +244,37 @@ mod tests {
     }
 
     #[test]
-    fn names_stay_in_the_room_and_apart_however_many_there_are() {
+    fn names_stay_in_the_room_and_apart_and_large_enough_however_many_there_are() {
         let library = TextureLibrary::builtin().unwrap();
-        for count in [1, 5, 60] {
+        for (count, height) in [(1, 200.0), (5, 200.0), (60, 200.0), (60, 330.0), (1000, 300.0)] {
             let style = |n: usize| {
                 let name = if n == 0 { "Top".to_owned() } else { format!("layer {n} of a long and winding name") };
-                LayerStyle::textured(&name, Colour::WHITE, "shale")
+                LayerStyle::plain(&name, Colour::WHITE)
             };
             let styles: Vec<LayerStyle> = (0..count).map(style).collect();
-            let legend = Legend { layers: Some((&styles, &library)), horizons: &[], lines: &[], dpi: 100.0 };
-            let room = Rect::sized(DVec2::new(300.0, 10.0), DVec2::new(legend.width(110.0), 200.0));
+            let lines = [LegendLine::new("Fault", GroupKind::Fault, Stroke::new(1.0, INK))];
+            let legend = Legend { layers: Some((&styles, &library)), horizons: &[], lines: &lines, dpi: 100.0 };
+            let page = DVec2::new(480.0, height);
+            let width = legend.width(page, 170.0);
+            let room = Rect::sized(DVec2::new(480.0 - width, 10.0), DVec2::new(width, height));
             let mut found = Vec::new();
             texts(&legend.drawn(room).unwrap(), &mut found);
-            assert_eq!(found.len(), count);
-            for pair in found.windows(2) {
-                assert!(pair[1].at.y - pair[0].at.y >= pair[0].size, "{count}");
+            match found.last().unwrap().text.strip_prefix("and ") {
+                // What has no room is counted.
+                Some(more) => {
+                    let more: usize = more.strip_suffix(" more").unwrap().parse().unwrap();
+                    assert!(found.len() - 1 + more == count + 1 && found.len() > 40, "{} and {more}", found.len());
+                }
+                None => assert_eq!(found.len(), count + 1),
             }
-            assert!(found.iter().all(|text| text.size == found[0].size), "one size for all, also beside short names");
-            assert!(found.iter().all(|text| text.bounds().max.x <= room.max.x + 0.1));
+            assert!(count < 1000 || found.len() < count);
+            for (n, text) in found.iter().enumerate() {
+                assert!(text.size >= LEAST_TEXT_PT && text.size == found[0].size, "{} of {count}", text.size);
+                let bounds = text.bounds();
+                assert!(bounds.max.x <= room.max.x + 0.1 && bounds.max.y <= room.max.y + 2.0, "{count}: {bounds:?}");
+                let inner = |text: &Text| text.outline().bounds().unwrap();
+                assert!(found[..n].iter().all(|other| !inner(other).meets(&inner(text))), "{count}: {}", text.text);
+            }
         }
     }
 }

@@ -165,7 +165,7 @@ impl MapPanel<'_> {
         explained(self.map, self.geometry, column).into_iter().for_each(|part| group.push(part));
         let strip = Rect::new(DVec2::new(room.min.x + 2.0, body.max.y + 6.0), room.max);
         let scale = self.has_scale_bar.then(|| frame.points_per_m());
-        group.push(scale::drawn(strip, scale, &caption(self.map, self.geometry)));
+        group.push(scale::drawn(strip, scale, None, &caption(self.map, self.geometry)));
         group
     }
 }

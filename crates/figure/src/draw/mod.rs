@@ -13,6 +13,7 @@ pub mod map;
 pub mod moved;
 pub mod north;
 pub mod overlay;
+pub mod rock_section;
 pub mod scale;
 pub mod section;
 pub mod section_wells;

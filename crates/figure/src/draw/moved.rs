@@ -171,7 +171,8 @@ fn is_label(group: &Group) -> bool {
 /// Whether a group in a map, section or correlation panel explains it in words.
 fn is_explanation(group: &Group) -> bool {
     let has_words = |item: &Item| as_text(item).is_some() || as_group(item).is_some_and(is_explanation);
-    matches!(group.kind, GroupKind::Annotation | GroupKind::Well) && group.items.iter().any(has_words)
+    let is_label = !matches!(group.kind, GroupKind::Panel | GroupKind::Data | GroupKind::Part);
+    is_label && group.items.iter().any(has_words)
 }
 
 /// Whether only the letters of a group move.

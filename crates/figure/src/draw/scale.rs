@@ -21,14 +21,18 @@ pub fn round_length(longest: f64) -> f64 {
     lengths.into_iter().find(|length| *length <= longest).unwrap_or(decade)
 }
 
+/// Longest upright bar, and the shortest that is drawn, points.
+const UPRIGHT_PT: [f64; 2] = [26.0, 5.0];
+
 /// A length in the unit that it is read in.
 pub fn length_text(length_m: f64) -> String {
     if length_m >= 1000.0 { format!("{} km", length_m / 1000.0) } else { format!("{length_m} m") }
 }
 
-/// A bar of a round length at the left of a strip that is wide enough for its numbers, and a caption beside it.
-/// `points_per_m` is the scale on paper; without one there is the caption alone.
-pub fn drawn(strip: Rect, points_per_m: Option<f64>, caption: &str) -> Group {
+/// A bar of a round length at the left of a strip that is wide enough for its numbers, an upright one for depths or times,
+/// and a caption beside them. `points_per_m` is the scale across on paper, and `down` the points of a unit of depth or
+/// time with the unit's symbol; without them there is the caption alone.
+pub fn drawn(strip: Rect, points_per_m: Option<f64>, down: Option<(f64, &str)>, caption: &str) -> Group {
     let mut group = Group::new(GroupKind::Annotation, "scale bar");
     let mut left = strip.min.x;
     let y = strip.min.y + 7.0;
@@ -50,11 +54,28 @@ pub fn drawn(strip: Rect, points_per_m: Option<f64>, caption: &str) -> Group {
         group.push(end.anchored(Across::End, Upright::Top));
         left += room + 14.0;
     }
+    if let Some((bar, text)) = down.and_then(|down| upright(DVec2::new(left, strip.min.y), strip, down)) {
+        left = text.at.x + text.width() + 14.0;
+        group.push(PathItem::filled(Path::rect(bar), ttf::Colour::WHITE).outlined(Stroke::new(0.5, INK)));
+        group.push(PathItem::filled(Path::rect(bar.split_down(0.5)[0]), INK));
+        group.push(text);
+    }
     if !caption.is_empty() {
         let text = Text::new(DVec2::new(left, y), caption).sized(TEXT_PT - 0.5).inked(QUIET_INK);
         group.push(text.anchored(Across::Start, Upright::Middle).fitted(strip.max.x - left));
     }
     group
+}
+
+/// An upright bar of a round length in a strip, and its number.
+fn upright(at: DVec2, strip: Rect, (points, symbol): (f64, &str)) -> Option<(Rect, Text)> {
+    let longest = (strip.height() - 3.0).min(UPRIGHT_PT[0]) / points;
+    let length = if longest > 0.0 && longest.is_finite() { round_length(longest) } else { return None };
+    let bar = Rect::sized(at + DVec2::new(0.5, 1.5), DVec2::new(BAR_PT, length * points));
+    let said = if symbol == "m" { length_text(length) } else { format!("{length} {symbol}") };
+    let text = Text::new(DVec2::new(bar.max.x + 4.0, bar.centre().y), said).sized(NUMBER_PT).inked(INK);
+    let text = text.anchored(Across::Start, Upright::Middle);
+    (bar.height() >= UPRIGHT_PT[1] && text.bounds().max.x <= strip.max.x).then_some((bar, text))
 }
 
 /// "vertical exaggeration 2.5 at 2000 m/s": the velocity where time stands for depth.
@@ -91,12 +112,23 @@ mod tests {
     #[test]
     fn a_bar_is_as_long_on_paper_as_it_says() {
         let strip = Rect::sized(DVec2::ZERO, DVec2::new(400.0, STRIP_PT));
-        let group = drawn(strip, Some(0.1), "");
+        let group = drawn(strip, Some(0.1), None, "");
         let crate::list::Item::Path(bar) = &group.items[0] else { panic!("no bar") };
         // 120 points are 1200 m: 1 km is 100 points.
         assert!((bar.path.bounds().unwrap().width() - 100.0).abs() < 1e-9);
         let texts: Vec<_> = group.items.iter().filter(|item| matches!(item, crate::list::Item::Text(_))).collect();
         assert_eq!(texts.len(), 2);
+        // Of 21 points, 20 are 200 ms at a tenth of a point each.
+        let both = drawn(strip, Some(0.1), Some((0.1, "ms")), "vertical exaggeration 2");
+        let bars: Vec<Rect> = both.items.iter().filter_map(|item| match item {
+            crate::list::Item::Path(bar) => bar.path.bounds(),
+            _ => None,
+        }).collect();
+        assert!(bars.len() == 4 && (bars[2].height() - 20.0).abs() < 1e-9 && strip.contains(bars[2].max));
+        let said = |text: &str| both.items.iter().any(|item| matches!(item, crate::list::Item::Text(own) if own.text == text));
+        assert!(said("200 ms") && said("1 km"));
+        // Seen from straight above a block has no height.
+        assert_eq!(drawn(strip, Some(0.1), Some((0.0, "m")), "").items.len(), group.items.len());
     }
 
     #[test]

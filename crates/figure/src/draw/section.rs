@@ -4,13 +4,15 @@
 //! seen on any amplitude.
 
 use super::axes::{self, Axis};
+use super::annotation::room::LabelRoom;
 use super::overlay::{self, OverlayLines, SeenOn};
 use super::section_wells::WellOnSection;
 use super::{NamedColour, scale};
 use crate::Rect;
 use crate::cut::CutLine;
 use crate::interpretation::DrawnInterpretation;
-use crate::list::{Across, Group, GroupKind, Ink, Path, PathItem, Picture, Stroke, Text, Upright};
+use crate::error::FigureError;
+use crate::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Stroke, Text, Upright};
 use crate::style::{ACCENT, FAULT_PT, HORIZON_PT, INK, NUMBER_PT, QUIET_INK, RIM_OPACITY, RIM_PT, TITLE_PT};
 use glam::DVec2;
 use image::RgbaImage;
@@ -56,12 +58,20 @@ impl SectionContents<'_> {
     /// Everything within `body`; the whole section, from its first sample to its last, lies on `image`,
     /// which may be larger.
     pub fn drawn(&self, body: Rect, image: Rect) -> Group {
-        let page = |st: DVec2| image.min + st / self.extent * image.size();
-        let mut group = Group::new(GroupKind::Data, "section").clipped(Path::rect(body));
         let [right, down] = [DVec2::new(image.width(), 0.0), DVec2::new(0.0, image.height())];
-        group.push(Picture::of_samples(self.image.clone(), image.min, right, down));
+        let picture = Picture::of_samples(self.image.clone(), image.min, right, down);
+        self.drawn_over(body, image, vec![picture.into()], None)
+    }
+
+    /// The same over other items than the picture; `ink` is the colour of all horizons, absent: each has its own.
+    fn drawn_over(&self, body: Rect, image: Rect, below: Vec<Item>, ink: Option<Colour>) -> Group {
+        let page = |st: DVec2| image.min + st / self.extent * image.size();
+        let mut group = Group::new(GroupKind::Data, "section").clipped(Path::rect(body)).with(below);
         match self.interpretation {
-            None => model_lines(self.lines, self.horizons, self.faults, page).into_iter().for_each(|g| group.push(g)),
+            None => {
+                let lines = model_lines(self.lines, (self.horizons, ink), self.faults, page);
+                lines.into_iter().for_each(|line| group.push(line));
+            }
             Some((shown, lines, on)) => {
                 lines.drawn(page).into_iter().for_each(|lines| group.push(lines));
                 overlay::sticks(shown, on, page).into_iter().for_each(|stick| group.push(stick));
@@ -75,7 +85,7 @@ impl SectionContents<'_> {
 /// Lines of the model on a page, a group for each horizon and fault, rims under all of them.
 fn model_lines(
     lines: &[CutLine],
-    horizons: &[NamedColour],
+    (horizons, ink): (&[NamedColour], Option<Colour>),
     faults: &[String],
     page: impl Fn(DVec2) -> DVec2,
 ) -> Vec<Group> {
@@ -89,8 +99,10 @@ fn model_lines(
             LineKind::Frame => continue,
             LineKind::Horizon { horizon } => {
                 let known = horizons.get(horizon);
-                let colour = crate::style::horizon_colour(known.map(|known| known.colour), horizon);
-                (Group::new(GroupKind::Horizon, known.map_or("", |known| &known.name)), colour, HORIZON_PT)
+                let own = || crate::style::horizon_colour(known.map(|known| known.colour), horizon);
+                // Lines between patterns are as thin as on blocks.
+                let width = if ink.is_some() { 0.7 * HORIZON_PT } else { HORIZON_PT };
+                (Group::new(GroupKind::Horizon, known.map_or("", |known| &known.name)), ink.unwrap_or_else(own), width)
             }
             LineKind::Fault { fault, .. } => {
                 let name = faults.get(fault).map_or("", String::as_str);
@@ -101,13 +113,18 @@ fn model_lines(
         let mut group = group;
         for line in own {
             let path = Path::line(&line.points.iter().map(|st| page(*st)).collect::<Vec<_>>());
-            let ink = Ink::glass(Colour::WHITE, RIM_OPACITY);
-            rims.push(PathItem::stroked(path.clone(), Stroke::new(width + RIM_PT, ink).round()));
+            // Light rims are for lines on amplitudes.
+            if ink.is_none() {
+                let light = Ink::glass(Colour::WHITE, RIM_OPACITY);
+                rims.push(PathItem::stroked(path.clone(), Stroke::new(width + RIM_PT, light).round()));
+            }
             group.push(PathItem::stroked(path, quality_stroke(Stroke::new(width, colour), line.quality)));
         }
         groups.push(group);
     }
-    groups.insert(0, rims);
+    if !rims.items.is_empty() {
+        groups.insert(0, rims);
+    }
     groups
 }
 
@@ -141,7 +158,7 @@ impl Marks {
 }
 
 /// Where a fence runs, seen from above.
-pub(crate) fn fence_line(places: &[DVec2]) -> Vec<crate::list::Item> {
+pub(crate) fn fence_line(places: &[DVec2]) -> Vec<Item> {
     let path = Path::line(places);
     let rim = Stroke::new(2.8, Ink::glass(Colour::WHITE, 0.7)).round();
     let mut items = vec![
@@ -200,17 +217,37 @@ pub struct SectionPanel<'a> {
     pub is_plan: bool,
     /// Whether scale bar and caption stand below; the caption's words.
     pub caption: Option<Box<dyn Fn(f64) -> String + 'a>>,
+    /// Length of a unit of the vertical axis down the section, with its symbol; of a section from above there is none.
+    pub down: Option<(f64, &'a str)>,
+    /// The ink of horizons between patterns; absent: each has its own colour.
+    pub ink: Option<Colour>,
+}
+
+/// What is drawn of rock below the lines of a section, and written on it: from where the section is seen, and where the
+/// whole of it lies.
+pub(crate) trait SectionPainter {
+    /// What lies below the lines; `None`: the picture of samples.
+    ///
+    /// # Errors
+    /// What a painter of blocks says.
+    fn below(&mut self, body: Rect, image: Rect) -> Result<Option<Vec<Item>>, FigureError>;
+
+    /// The names on it.
+    fn names(&mut self, body: Rect, image: Rect, room: &mut LabelRoom) -> Vec<Item>;
 }
 
 impl SectionPanel<'_> {
     /// The panel in its room.
-    pub fn drawn(mut self, room: Rect) -> Group {
+    ///
+    /// # Errors
+    /// What the painter says.
+    pub(crate) fn drawn(mut self, room: Rect, painter: &mut dyn SectionPainter) -> Result<Group, FigureError> {
         let below = if self.caption.is_some() { scale::STRIP_PT } else { 3.0 };
         let margins = [axes::left_margin(&self.axes[1]), TITLE_ROW_PT + axes::top_margin(), RIGHT_PT, below];
         let mut body = room.inside(margins);
         let mut group = Group::new(GroupKind::Panel, &self.title);
         if !body.is_proper() {
-            return group;
+            return Ok(group);
         }
         let proportions = self.proportions.filter(|factor| factor.is_finite() && *factor > 0.0 && !self.is_plan);
         if proportions.is_some() || self.is_plan && self.zoom == Zoom::default() {
@@ -221,10 +258,15 @@ impl SectionPanel<'_> {
         let image = self.zoom.image_in(body);
         self.axes[0].at = [image.min.x, image.max.x];
         self.axes[1].at = [image.min.y, image.max.y];
-        group.push(self.contents.drawn(body, image));
+        group.push(match painter.below(body, image)? {
+            Some(below) => self.contents.drawn_over(body, image, below, self.ink),
+            None => self.contents.drawn(body, image),
+        });
         let page = |st: DVec2| image.min + st / self.contents.extent * image.size();
-        let wells = self.wells.iter().filter_map(|well| well.drawn(body, self.is_plan, page));
+        let mut free = LabelRoom::new(body.grown(-1.0));
+        let wells = self.wells.iter().filter_map(|well| well.drawn(body, self.is_plan, &page, &mut free));
         wells.for_each(|well| group.push(well));
+        group.items.extend(painter.names(body, image, &mut free));
         let whole = Rect::new(room.min, DVec2::new(room.max.x.min(body.max.x + RIGHT_PT), room.max.y));
         group.push(axes::drawn(whole, body, [&self.axes[0], &self.axes[1]]));
         let baseline = room.min.y + TITLE_PT;
@@ -242,8 +284,9 @@ impl SectionPanel<'_> {
             let points_per_m = image.size() / self.extent_m;
             let strip = Rect::new(DVec2::new(body.min.x, body.max.y + 3.0), DVec2::new(body.max.x, room.max.y));
             let text = if self.is_plan { String::new() } else { caption(points_per_m.y / points_per_m.x) };
-            group.push(scale::drawn(strip, Some(points_per_m.x), &text));
+            let down = self.down.map(|(unit_m, symbol)| (points_per_m.y * unit_m, symbol));
+            group.push(scale::drawn(strip, Some(points_per_m.x), down, &text));
         }
-        group
+        Ok(group)
     }
 }

@@ -1,9 +1,10 @@
 //! Wells on a section: the parts of their paths that lie near it, with their names and tops. A slice shows where they
 //! pass through it.
 
+use super::annotation::room::LabelRoom;
 use crate::Rect;
 use crate::cut::{SectionKind, station_of};
-use crate::list::{Across, Group, GroupKind, Ink, Path, PathItem, Stroke, Text, Upright};
+use crate::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright};
 use crate::style::{HORIZON_PT, INK, NUMBER_PT, RIM_OPACITY, RIM_PT, TEXT_PT};
 use glam::{DVec2, DVec3};
 use survey::{SurveyGeometry, Well};
@@ -16,6 +17,8 @@ const THROUGH: f64 = 1.0;
 const PARTS: u32 = 8;
 /// Half the length of the mark of a top, and from there to its name, points.
 const TOP_PT: [f64; 2] = [2.6, 1.6];
+/// How many heights of its letters a well's name may stand lower.
+const STEPS: u32 = 4;
 /// Radius of the place where a well passes through a slice, points.
 const SIGN_PT: f64 = 1.8;
 
@@ -88,8 +91,14 @@ impl WellOnSection {
         (!parts.is_empty()).then(|| Self { name: well.name.clone(), parts, tops })
     }
 
-    /// The well within `body`; `page` takes (s, t) to the page.
-    pub(super) fn drawn(&self, body: Rect, is_plan: bool, page: impl Fn(DVec2) -> DVec2) -> Option<Group> {
+    /// The well within `body`, its names where `room` has room for them; `page` takes (s, t) to the page.
+    pub(super) fn drawn(
+        &self,
+        body: Rect,
+        is_plan: bool,
+        page: &dyn Fn(DVec2) -> DVec2,
+        room: &mut LabelRoom,
+    ) -> Option<Group> {
         let head = self.parts.iter().flatten().map(|st| page(*st)).find(|at| body.contains(*at))?;
         let mut group = Group::new(GroupKind::Well, &self.name).clipped(Path::rect(body));
         let rim = Ink::glass(Colour::WHITE, RIM_OPACITY);
@@ -106,18 +115,25 @@ impl WellOnSection {
             let at = page(*st);
             let off = DVec2::new(TOP_PT[0], 0.0);
             group.push(PathItem::stroked(Path::line(&[at - off, at + off]), Stroke::new(HORIZON_PT, INK)));
-            // To the side with more room.
+            // To the side with more room, or else to the other.
+            let side = |is_left: bool| {
+                let side = if is_left { -TOP_PT[0] - TOP_PT[1] } else { TOP_PT[0] + TOP_PT[1] };
+                let across = if is_left { Across::End } else { Across::Start };
+                let text = Text::new(at + DVec2::new(side, 0.0), name).sized(NUMBER_PT).inked(INK);
+                text.haloed(RIM_PT, rim).anchored(across, Upright::Middle)
+            };
             let is_left = at.x > body.centre().x;
-            let side = if is_left { -TOP_PT[0] - TOP_PT[1] } else { TOP_PT[0] + TOP_PT[1] };
-            let across = if is_left { Across::End } else { Across::Start };
-            let text = Text::new(at + DVec2::new(side, 0.0), name).sized(NUMBER_PT).inked(INK);
-            group.push(text.haloed(RIM_PT, rim).anchored(across, Upright::Middle));
+            group.items.extend([side(is_left), side(!is_left)].into_iter().find(|text| room.try_take(text)).map(Item::from));
         }
         let name = Text::new(head, &self.name).sized(TEXT_PT).inked(INK).haloed(RIM_PT, rim);
         let half = 0.5 * name.width() + RIM_PT;
         let low = body.min + DVec2::new(half, TEXT_PT + 2.0);
-        let at = DVec2::new(head.x, head.y - 2.0).clamp(low, (body.max - DVec2::new(half, 0.0)).max(low));
-        group.push(Text { at, ..name }.anchored(Across::Middle, Upright::Baseline));
+        let mut placed = (0..STEPS).map(|step| {
+            let down = 1.2 * TEXT_PT * f64::from(step);
+            let at = DVec2::new(head.x, head.y - 2.0).clamp(low, (body.max - DVec2::new(half, 0.0)).max(low));
+            Text { at: at + DVec2::new(0.0, down), ..name.clone() }.anchored(Across::Middle, Upright::Baseline)
+        });
+        group.items.extend(placed.find(|text| room.try_take(text)).map(Item::from));
         Some(group)
     }
 }

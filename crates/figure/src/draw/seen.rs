@@ -7,7 +7,7 @@
 use crate::convex::{area, holds};
 use glam::{DVec2, DVec3, Vec3};
 use model::StructuralModel;
-use model::section::LineKind;
+use model::section::{LineKind, LineQuality};
 use rayon::prelude::*;
 use render::ground::Relief;
 use render::vector::seen_sections;
@@ -36,6 +36,8 @@ pub(crate) struct Seen {
     pub layers: BTreeSet<u16>,
     /// Horizons whose lines are seen on faces.
     pub horizons: BTreeSet<usize>,
+    /// How certain these lines are.
+    pub qualities: BTreeSet<LineQuality>,
     /// Faults whose lines are seen on faces.
     pub faults: BTreeSet<usize>,
     /// Wells by their place among the wells.
@@ -227,8 +229,13 @@ impl<'a> Sight<'a> {
             }
             for line in &face.section.lines {
                 match line.kind {
-                    LineKind::Horizon { horizon } if !seen.horizons.contains(&horizon) => {
-                        seen.horizons.extend(line.points.iter().any(is_seen).then_some(horizon));
+                    LineKind::Horizon { horizon }
+                        if !(seen.horizons.contains(&horizon) && seen.qualities.contains(&line.quality)) =>
+                    {
+                        if line.points.iter().any(is_seen) {
+                            seen.horizons.insert(horizon);
+                            seen.qualities.insert(line.quality);
+                        }
                     }
                     LineKind::Fault { fault, real: true } if !seen.faults.contains(&fault) => {
                         seen.faults.extend(line.points.iter().any(is_seen).then_some(fault));

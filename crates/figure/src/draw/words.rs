@@ -2,13 +2,13 @@
 
 use crate::Rect;
 use crate::list::{Across, Group, GroupKind, Text, Upright, width_of};
-use crate::style::{INK, QUIET_INK, TEXT_PT};
+use crate::style::{INK, LEAST_TEXT_PT, QUIET_INK, TEXT_PT};
 use glam::DVec2;
 
 /// Size of a title, points.
 const TITLE_PT: f64 = 11.0;
 /// Size of the line of provenance, points.
-const PROVENANCE_PT: f64 = 6.0;
+const PROVENANCE_PT: f64 = LEAST_TEXT_PT;
 /// From one line to the next, as a share of the size of the letters.
 const LEADING: f64 = 1.35;
 /// Most lines of a caption; what does not fit ends in "…".

@@ -5,7 +5,7 @@ use crate::Rect;
 use crate::style::INK;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
-use ttf::text::{TextCurve, measure_text, outline_text, set};
+use ttf::text::{TextCurve, measure_text, outline_text, pieces};
 
 /// Share of the font size that capital letters are high: what is centred upright is centred on them.
 const CAPITALS: f64 = 0.69;
@@ -31,18 +31,20 @@ pub struct Text {
     /// A rim, so that it is read on any ground.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub halo: Option<Halo>,
-    /// Where each of its characters stands; empty: side by side on a straight line.
+    /// Where each of its letters stands, as they are written; empty: side by side on a straight line.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub letters: Vec<Letter>,
 }
 
-/// Where a character of a bent line stands.
+/// Where a letter of a bent line stands, or letters that are joined.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Letter {
     /// The left end of its baseline.
     pub at: DVec2,
     /// Its turn about that place, degrees clockwise as seen on the page.
     pub turn_deg: f64,
+    /// How many bytes of the text it says.
+    pub bytes: usize,
 }
 
 /// Which place of a text stands at its position.
@@ -155,43 +157,44 @@ impl Text {
     }
 
     /// The same bent along a curve from left to right: half of the capitals' height lies on it, and the text's middle
-    /// this far along it. Before and after the curve it goes on straight. Scripts whose letters join, or run from right
-    /// to left, are not bent: such a line stands straight where its middle is.
+    /// this far along it. Before and after the curve it goes on straight. Letters that are joined stay on one line.
     #[must_use]
     pub fn along(mut self, curve: &[DVec2], middle: f64) -> Self {
-        if !set(&self.text).is_plain {
+        let begin = middle - 0.5 * self.width();
+        let pieces = pieces(&self.text);
+        if pieces.len() < 2 {
             let (at, along) = on_curve(curve, middle);
             (self.at, self.turn_deg) = (at, along.to_angle().to_degrees());
             return self.anchored(Across::Middle, Upright::Middle);
         }
-        let begin = middle - 0.5 * self.width();
-        let mut said = String::new();
-        let mut before = 0.0;
-        for character in self.text.chars() {
-            said.push(character);
-            let after = width_of(&said, self.size);
-            let (place, along) = on_curve(curve, begin + 0.5 * (before + after));
-            let at = place - 0.5 * (after - before) * along + 0.5 * CAPITALS * self.size * along.perp();
-            self.letters.push(Letter { at, turn_deg: along.to_angle().to_degrees() });
-            before = after;
+        for piece in pieces {
+            let [left, width] = [piece.left, piece.width].map(|share| f64::from(share) * self.size);
+            let (place, along) = on_curve(curve, begin + left + 0.5 * width);
+            let at = place - 0.5 * width * along + 0.5 * CAPITALS * self.size * along.perp();
+            self.letters.push(Letter { at, turn_deg: along.to_angle().to_degrees(), bytes: piece.said.len() });
         }
         self
     }
 
-    /// The straight lines of text that it is made of: itself, or one for each character of a bent line.
+    /// The straight lines of text that it is made of: itself, or one for each letter of a bent line.
     pub fn straight(&self) -> Vec<Self> {
         if self.letters.is_empty() {
             return vec![self.clone()];
         }
-        let letter = |(character, letter): (char, &Letter)| Self {
-            text: character.into(),
-            at: letter.at,
-            anchor: Anchor::default(),
-            turn_deg: letter.turn_deg,
-            letters: Vec::new(),
-            ..self.clone()
+        let mut begin = 0;
+        let letter = |letter: &Letter| {
+            let said = begin..begin + letter.bytes;
+            begin = said.end;
+            Self {
+                text: self.text.get(said).unwrap_or_default().to_owned(),
+                at: letter.at,
+                anchor: Anchor::default(),
+                turn_deg: letter.turn_deg,
+                letters: Vec::new(),
+                ..self.clone()
+            }
         };
-        self.text.chars().zip(&self.letters).map(letter).collect()
+        self.letters.iter().map(letter).collect()
     }
 
     /// The same no wider than `room`, in a smaller size where that is enough and shortened to end in "…"

@@ -1,25 +1,28 @@
 //! What a figure's legend lists: what is seen on it, and nothing else.
 
 use super::Maker;
-use super::prepared::Prepared;
+use super::prepared::{Prepared, PreparedSection};
 use crate::annotation::Annotation;
 use crate::cut::CutLine;
 use crate::draw::NamedColour;
 use crate::draw::block::Comparison;
 use crate::draw::legend::{Legend, LegendLine};
-use crate::draw::section::Zoom;
+use crate::draw::section::{Zoom, quality_stroke};
 use crate::draw::seen::{Seen, seen};
 use crate::draw::water::colour_on_paper;
 use crate::list::{GroupKind, Stroke};
 use crate::spec::{BlockPart, Part};
-use crate::style::{FAULT_PT, HORIZON_PT};
+use crate::style::{FAULT_PT, HORIZON_PT, INK};
 use glam::DVec2;
-use model::section::LineKind;
+use model::section::{LineKind, LineQuality};
 use render::distortion::{self, Stretch};
-use render::{FaceData, Faces, Scene};
+use render::{FaceData, Faces, Scene, Unpicked};
 use std::collections::BTreeSet;
 use survey::Contact;
 use ttf::{Colour, LayerStyle};
+
+/// No line of a legend is finer, points.
+const FINEST_PT: f64 = 0.35;
 
 /// What a legend lists.
 #[derive(Debug, Default)]
@@ -55,19 +58,41 @@ fn is_illustrated(block: &BlockPart) -> bool {
     has_blend && block.scene.media.faces != Faces::None
 }
 
-/// The horizons whose lines lie in the part of a section that is seen.
-fn horizons_on(lines: &[CutLine], extent: DVec2, zoom: Zoom) -> BTreeSet<usize> {
-    let middle = DVec2::from_array(zoom.middle);
+/// Whether a place lies in the part of a section that is seen.
+fn is_seen(st: DVec2, extent: DVec2, zoom: Zoom) -> bool {
     let reach = 0.5 / zoom.factor.max(1.0) + 1e-9;
-    let is_seen = |st: &DVec2| (*st / extent - middle).abs().max_element() <= reach;
-    let seen = lines.iter().filter_map(|line| match line.kind {
-        LineKind::Horizon { horizon } => line.points.iter().any(is_seen).then_some(horizon),
-        _ => None,
-    });
-    seen.collect()
+    (st / extent - DVec2::from_array(zoom.middle)).abs().max_element() <= reach
+}
+
+/// The lines of a section that lie in the part of it that is seen.
+fn seen_lines(section: &PreparedSection) -> Seen {
+    let mut seen = Seen::default();
+    let in_sight = |line: &&CutLine| line.points.iter().any(|st| is_seen(*st, section.extent, section.zoom));
+    for line in section.lines.iter().filter(in_sight) {
+        match line.kind {
+            LineKind::Horizon { horizon } => {
+                seen.horizons.insert(horizon);
+                seen.qualities.insert(line.quality);
+            }
+            LineKind::Fault { fault, .. } => {
+                seen.faults.insert(fault);
+            }
+            LineKind::Frame => {}
+        }
+    }
+    seen
 }
 
 impl Listed {
+    /// Adds lines that are not listed yet.
+    fn add_lines(&mut self, lines: Vec<LegendLine>) {
+        for line in lines {
+            if !self.lines.contains(&line) {
+                self.lines.push(line);
+            }
+        }
+    }
+
     /// The legend; `None` where there is nothing to list.
     pub(super) fn legend<'a>(&'a self, maker: &Maker<'a>) -> Option<Legend<'a>> {
         let layers = maker.inputs.library.map(|library| (&self.layers[..], library));
@@ -92,7 +117,7 @@ impl Maker<'_> {
                 (Part::Block(block), _) => self.list_block(block, size, &mut listed, &mut layers),
                 (_, Prepared::Section(section)) => match &section.overlay {
                     Some(overlay) => horizons.extend(overlay.seen_horizons().filter_map(|name| self.horizon(name))),
-                    None => horizons.extend(horizons_on(&section.lines, section.extent, section.zoom)),
+                    None => self.list_section(section, &mut listed, &mut layers, &mut horizons),
                 },
                 (_, Prepared::Wells(columns, range)) => {
                     let own = columns.iter().flat_map(|column| column.intervals.iter().map(move |i| (column.shift, i)));
@@ -140,7 +165,44 @@ impl Maker<'_> {
         self.inputs.horizons.iter().position(|horizon| horizon.name == name)
     }
 
-    /// What is seen of a block.
+    /// What is seen of a section: its layers where it shows rock, and horizons by the colours of their lines, or contacts
+    /// where all lines are of one ink.
+    fn list_section(
+        &self,
+        section: &PreparedSection,
+        listed: &mut Listed,
+        layers: &mut BTreeSet<usize>,
+        horizons: &mut BTreeSet<usize>,
+    ) {
+        let seen = seen_lines(section);
+        if let (Some(model), true) = (self.inputs.source.data.model, section.blend < 1.0) {
+            let youngest = model.layer_count() - 1;
+            for ((station, _), cut) in section.planes.iter().zip(self.cuts(section)) {
+                let place = |st: &DVec2| is_seen(*st + DVec2::new(*station, 0.0), section.extent, section.zoom);
+                let own = cut.polygons.iter().filter(|polygon| polygon.rings.iter().flatten().any(place));
+                layers.extend(own.map(|polygon| youngest - usize::from(polygon.region.layer)));
+            }
+        }
+        let is_inked = section.blend <= 0.0;
+        let pen = |width: f64, colour: Colour| Stroke::new(width, colour);
+        let (contact, fault) = (pen(0.7 * HORIZON_PT, INK), pen(FAULT_PT, Colour::BLACK));
+        if is_inked {
+            listed.add_lines(self.contacts(&seen, &contact, &contact));
+        } else {
+            horizons.extend(&seen.horizons);
+        }
+        if self.wants(Annotation::Quality) {
+            listed.add_lines(qualities(&seen, &contact));
+        }
+        if !seen.faults.is_empty() {
+            listed.add_lines(vec![LegendLine::new("Fault", GroupKind::Fault, fault)]);
+        }
+        if section.has_wells() {
+            listed.add_lines(vec![LegendLine::new("Well", GroupKind::Well, pen(HORIZON_PT, INK))]);
+        }
+    }
+
+    /// What is seen of a block that is about so large, points.
     fn list_block(&self, block: &BlockPart, size: DVec2, listed: &mut Listed, layers: &mut BTreeSet<usize>) {
         let data = &self.inputs.source.data;
         for horizon in &block.scene.media.horizons {
@@ -157,47 +219,64 @@ impl Maker<'_> {
             let youngest = model.layer_count() - 1;
             layers.extend(seen.layers.iter().map(|layer| youngest - usize::from(*layer)));
         }
-        for line in self.lines_of(&block.scene, &seen) {
-            if !listed.lines.contains(&line) {
-                listed.lines.push(line);
-            }
-        }
+        let points_per_px = size.min_element() / f64::from(render::NOMINAL_SIDE_PX);
+        listed.add_lines(self.lines_of(&block.scene, &seen, points_per_px));
     }
 
-    /// The contacts, faults and wells that are seen.
-    fn lines_of(&self, scene: &Scene, seen: &Seen) -> Vec<LegendLine> {
+    /// The contacts of horizons that are seen, unconformities by their names.
+    fn contacts(&self, seen: &Seen, plain: &Stroke, unconformity: &Stroke) -> Vec<LegendLine> {
+        let strata = || seen.horizons.iter().filter_map(|index| self.inputs.strata.get(*index));
+        let has_plain = strata().any(|horizon| horizon.contact == Contact::Conformable);
         let mut lines = Vec::new();
-        let mut add = |name: String, kind: GroupKind, width: f64, colour: Colour| {
-            lines.push(LegendLine { name, kind, stroke: Stroke::new(width, colour) });
-        };
-        let outlines = scene.outlines;
-        if outlines.horizons.width_px > 0.0 {
-            let strata = || seen.horizons.iter().filter_map(|index| self.inputs.strata.get(*index));
-            if strata().any(|horizon| horizon.contact == Contact::Conformable) {
-                add("Contact".into(), GroupKind::Horizon, 0.7 * HORIZON_PT, outlines.horizons.colour);
-            }
-            for horizon in strata() {
-                let contact = match horizon.contact {
-                    Contact::Conformable => continue,
-                    // That it is cut off can be seen.
-                    Contact::Truncated => Contact::Intrusive,
-                    other => other,
-                };
-                let name = format!("{} ({})", horizon.name, contact.word());
-                add(name, GroupKind::Horizon, 0.7 * HORIZON_PT, outlines.horizons.colour);
-            }
-        }
-        if outlines.faults.width_px > 0.0 && !seen.faults.is_empty() {
-            add("Fault".into(), GroupKind::Fault, FAULT_PT, outlines.faults.colour);
-        }
-        if self.wants(Annotation::Wells) && !seen.wells.is_empty() {
-            // Each has its name beside it.
-            add("Well".into(), GroupKind::Well, 2.0 * HORIZON_PT, scene.wells.colour);
-            return lines;
-        }
-        for well in seen.wells.iter().filter_map(|index| self.inputs.source.data.wells.get(*index)) {
-            add(well.name.to_owned(), GroupKind::Well, 2.0 * HORIZON_PT, scene.wells.colour);
+        lines.extend(has_plain.then(|| LegendLine::new("Contact", GroupKind::Horizon, plain.clone())));
+        for horizon in strata() {
+            let (contact, stroke) = match horizon.contact {
+                Contact::Conformable => continue,
+                // That it is cut off can be seen.
+                Contact::Truncated => (Contact::Intrusive, plain),
+                Contact::Erosional => (Contact::Erosional, unconformity),
+                other => (other, plain),
+            };
+            let name = format!("{} ({})", horizon.name, contact.word());
+            lines.push(LegendLine::new(&name, GroupKind::Horizon, stroke.clone()));
         }
         lines
     }
+
+    /// The contacts, faults and wells that are seen of a block, drawn as they are on it.
+    fn lines_of(&self, scene: &Scene, seen: &Seen, points_per_px: f64) -> Vec<LegendLine> {
+        let outlines = scene.outlines;
+        let pen = |stroke: render::Stroke| {
+            Stroke::new((f64::from(stroke.width_px) * points_per_px).max(FINEST_PT), stroke.colour)
+        };
+        let mut lines = Vec::new();
+        if outlines.horizons.width_px > 0.0 {
+            let [plain, unconformity] = [false, true].map(|is_heavy| pen(outlines.of_horizon(is_heavy)));
+            lines.extend(self.contacts(seen, &plain, &unconformity));
+            if self.wants(Annotation::Quality) || outlines.unpicked == Unpicked::Dashed {
+                lines.extend(qualities(seen, &plain));
+            }
+        }
+        if outlines.faults.width_px > 0.0 && !seen.faults.is_empty() {
+            lines.push(LegendLine::new("Fault", GroupKind::Fault, pen(outlines.faults)));
+        }
+        let well = Stroke::new(2.0 * HORIZON_PT, scene.wells.colour);
+        if self.wants(Annotation::Wells) && !seen.wells.is_empty() {
+            // Each has its name beside it.
+            lines.push(LegendLine::new("Well", GroupKind::Well, well));
+            return lines;
+        }
+        let wells = seen.wells.iter().filter_map(|index| self.inputs.source.data.wells.get(*index));
+        lines.extend(wells.map(|named| LegendLine::new(named.name, GroupKind::Well, well.clone())));
+        lines
+    }
+}
+
+/// What dashes of horizons mean, where they are seen.
+fn qualities(seen: &Seen, stroke: &Stroke) -> Vec<LegendLine> {
+    let kinds = [(LineQuality::Approximate, "Contact, approximate"), (LineQuality::Inferred, "Contact, inferred (?)")];
+    let line = |(quality, name): &(LineQuality, &str)| {
+        LegendLine::new(name, GroupKind::Horizon, quality_stroke(stroke.clone(), *quality))
+    };
+    kinds.iter().filter(|(quality, _)| seen.qualities.contains(quality)).map(line).collect()
 }

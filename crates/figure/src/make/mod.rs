@@ -2,6 +2,7 @@
 
 mod legend;
 mod prepared;
+mod rock;
 
 use crate::Rect;
 use crate::annotation::Annotation;
@@ -13,16 +14,15 @@ use crate::draw::block::{BlockPainter, BlockPanel, Comparison};
 use crate::draw::correlation::CorrelationPanel;
 use crate::draw::map::{MapPanel, title};
 use crate::draw::section::Marks;
-use crate::draw::vector_block::BlockNames;
 use crate::draw::{NamedColour, colour_bar, moved, north, scale, words};
 use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
 use crate::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH};
 use crate::map::{HorizonMap, MapSource, Mapped};
-use crate::spec::{BlockPart, CorrelationPart, FencePart, Figure, MapPart, Part};
+use crate::spec::{BlockPart, CorrelationPart, FencePart, Figure, MapPart, Part, SectionPart};
 use glam::DVec2;
 use prepared::Prepared;
-use render::{Background, FaceData, Faces, Scene};
+use render::{Background, FaceData, Faces, Scene, Unpicked};
 use survey::{StratigraphicHorizon, SurveyGeometry, VerticalUnit, Well};
 use ttf::{Colour, LayerStyle, RawColour, TextureLibrary};
 
@@ -119,7 +119,7 @@ pub fn make(
         return Err(maker.no_room());
     }
     if let Some(legend) = &legend {
-        let width = legend.width(LEGEND_SHARE * room.width());
+        let width = legend.width(room.size(), LEGEND_SHARE * room.width());
         let [left, right] = room.split_across(1.0 - width / room.width());
         list.items.push(legend.drawn(right.inside([0.0, 2.0, 0.0, 0.0]))?.into());
         room = left.inside([0.0, 0.0, GAP_PT, 0.0]);
@@ -229,7 +229,9 @@ impl<'a> Maker<'a> {
                 let own = block.scene.raw.as_ref().or(self.inputs.source.raw);
                 own.filter(|_| is_raw && block.scene.face_data == FaceData::Rock)
             }
-            Part::Section(_) | Part::Fence(_) => self.inputs.source.raw,
+            Part::Section(SectionPart { blend, .. }) | Part::Fence(FencePart { blend, .. }) => {
+                self.inputs.source.raw.filter(|_| *blend != Some(0.0))
+            }
             Part::Map(_) | Part::Correlation(_) => None,
         };
         self.figure.parts.iter().find_map(shows).filter(|_| self.wants(Annotation::Colours))
@@ -245,7 +247,7 @@ impl<'a> Maker<'a> {
         match (part, prepared) {
             (Part::Block(part), _) => self.block(part, room, painter),
             (Part::Map(part), _) => self.map(part, room),
-            (_, Prepared::Section(section)) => self.panel(*section, room),
+            (_, Prepared::Section(section)) => self.panel(*section, room, painter),
             (Part::Correlation(part), Prepared::Wells(columns, range)) => self.correlation(part, &columns, range, room),
             // Every other part is prepared.
             _ => Err(self.no_room()),
@@ -263,12 +265,16 @@ impl<'a> Maker<'a> {
         if body.size().min_element() < if is_plain { f64::MIN_POSITIVE } else { LEAST_BLOCK_PT } {
             return Err(self.no_room());
         }
-        let names =
-            BlockNames { layers: self.inputs.layers, horizons: self.inputs.horizons, faults: self.inputs.faults };
+        let names = self.block_names();
         let shown = |well: &&Well| !part.scene.hides_well(&well.name);
         let wells: Vec<Well> = self.inputs.wells.iter().filter(shown).cloned().collect();
+        // Lines that were not picked say so.
+        let mut scene = part.scene.clone();
+        if self.wants(Annotation::Quality) {
+            scene.outlines.unpicked = Unpicked::Dashed;
+        }
         let panel = BlockPanel {
-            scene: &part.scene,
+            scene: &scene,
             geometry: self.geometry,
             comparison: part.comparison,
             interpretation: self.interpretation()?,
@@ -295,7 +301,8 @@ impl<'a> Maker<'a> {
         }
         if self.figure.scale_bar {
             let caption = scale::block_caption(&part.scene, self.geometry);
-            drawn.group.push(scale::drawn(below, Some(drawn.points_per_m), &caption));
+            let down = (drawn.points_down, self.geometry.vertical.unit.symbol());
+            drawn.group.push(scale::drawn(below, Some(drawn.points_per_m), Some(down), &caption));
         }
         moved::change(&mut drawn.group.items, &part.scene.labels);
         Ok(drawn.group)

@@ -1,11 +1,13 @@
 //! What parts show, found before the page is laid out: the legend lists what is on them.
 
 use super::Maker;
+use super::rock::RockOnSection;
 use crate::Rect;
 use crate::annotation::Annotation;
 use crate::correlation::{self, Column, ColumnSource};
-use crate::cut::{CutLine, FenceCut, SectionCut, SectionKind, length_m, stations};
+use crate::cut::{CutLine, FenceCut, SectionCut, SectionKind, legs, length_m, stations};
 use crate::draw::axes::Axis;
+use crate::draw::block::BlockPainter;
 use crate::draw::overlay::{OverlayLines, SeenOn};
 use crate::draw::scale;
 use crate::draw::section::{Marks, SectionContents, SectionPanel, Zoom};
@@ -13,9 +15,10 @@ use crate::draw::section_wells::WellOnSection;
 use crate::error::FigureError;
 use crate::list::Group;
 use crate::spec::{FencePart, Part, SectionPart};
+use crate::style::INK;
 use glam::DVec2;
 use image::RgbaImage;
-use model::section::LineKind;
+use model::section::{LineKind, SectionPlane};
 use std::sync::Arc;
 
 /// What a part shows.
@@ -48,10 +51,21 @@ pub(super) struct PreparedSection {
     pub lines: Vec<CutLine>,
     /// What an interpreter sees over it.
     pub overlay: Option<OverlayLines>,
+    /// From 0, the rock with its patterns, to 1, the picture of samples.
+    pub blend: f32,
+    /// Its planes, and where each begins along it.
+    pub planes: Vec<(f64, SectionPlane)>,
+}
+
+impl PreparedSection {
+    /// Whether wells are drawn on it.
+    pub(super) fn has_wells(&self) -> bool {
+        !self.wells.is_empty()
+    }
 }
 
 /// Where a section lies.
-enum Place {
+pub(super) enum Place {
     Section(SectionKind, f64),
     Fence(Vec<DVec2>),
 }
@@ -83,6 +97,9 @@ impl Maker<'_> {
         };
         let [nx, ny, _] = self.geometry.size();
         let shown = self.interpretation()?;
+        if shown.is_some() || self.inputs.source.data.model.is_none() {
+            section.blend = 1.0;
+        }
         section.overlay = shown.map(|shown| OverlayLines::new(shown, [nx, ny], section.on.seen_on()));
         Ok(Prepared::Section(Box::new(section)))
     }
@@ -110,6 +127,8 @@ impl Maker<'_> {
             image: Arc::new(cut.image),
             lines: self.shown_lines(cut.lines),
             overlay: None,
+            blend: part.blend.unwrap_or(1.0),
+            planes: vec![(0.0, kind.plane(at, self.geometry.size()))],
         })
     }
 
@@ -158,16 +177,39 @@ impl Maker<'_> {
             is_plan: false,
             // Where it turns.
             marks: Marks { down: along[1..along.len() - 1].to_vec(), ..Marks::default() },
+            planes: legs(&corners, depth).into_iter().zip(along).map(|(plane, along)| (along, plane)).collect(),
             on: Place::Fence(corners),
             image: Arc::new(cut.image),
             lines: self.shown_lines(cut.lines),
             overlay: None,
+            blend: part.blend.unwrap_or(1.0),
         })
     }
 
     /// The panel of a section or a fence.
-    pub(super) fn panel(&self, section: PreparedSection, room: Rect) -> Result<Group, FigureError> {
+    pub(super) fn panel(
+        &self,
+        section: PreparedSection,
+        room: Rect,
+        painter: &mut dyn BlockPainter,
+    ) -> Result<Group, FigureError> {
         let shown = self.interpretation()?;
+        let cuts = self.cuts(&section);
+        let on = match &section.on {
+            Place::Section(kind, at) => Place::Section(*kind, *at),
+            Place::Fence(corners) => Place::Fence(corners.clone()),
+        };
+        let mut rock = RockOnSection {
+            maker: self,
+            cuts: &cuts,
+            planes: section.planes.clone(),
+            extent: section.extent,
+            blend: section.blend,
+            on,
+            painter,
+        };
+        let vertical = &self.geometry.vertical;
+        let unit_m = self.geometry.sample_m() / vertical.interval.abs();
         let caption: Box<dyn Fn(f64) -> String> = Box::new(|factor| scale::exaggeration(factor, self.geometry));
         let drawn = SectionPanel {
             title: section.title,
@@ -189,8 +231,10 @@ impl Maker<'_> {
             extent_m: section.extent_m,
             is_plan: section.is_plan,
             caption: self.figure.scale_bar.then_some(caption),
+            down: (!section.is_plan).then(|| (unit_m, vertical.unit.symbol())),
+            ink: (section.blend <= 0.0).then_some(INK),
         }
-        .drawn(room);
+        .drawn(room, &mut rock)?;
         if drawn.items.is_empty() {
             return Err(self.no_room());
         }

@@ -44,7 +44,23 @@ pub(super) fn faces(into: &mut String, list: &DisplayList) -> String {
 }
 
 /// Adds a line of text: its left end on its baseline, at the length that the page gives it.
+///
+/// A place and a turn for each character would part letters that are joined, and scripts that run from right to left:
+/// a bent line of such is a text for each of its pieces, in a group that says the whole.
 pub(super) fn text(into: &mut String, line: &Text, families: &str) {
+    let is_plain = line.letters.is_empty() || set(&line.text).is_plain;
+    if is_plain {
+        return whole(into, line, families);
+    }
+    let _ = writeln!(into, "<g aria-label=\"{}\">", escaped(&line.text));
+    for piece in line.straight().iter().filter(|piece| !piece.text.trim().is_empty()) {
+        whole(into, piece, families);
+    }
+    let _ = writeln!(into, "</g>");
+}
+
+/// A straight line, or a bent one whose characters each have a letter.
+fn whole(into: &mut String, line: &Text, families: &str) {
     let start = line.baseline_start();
     // A bent line is written as turned altogether, so that programs that place the first letter alone set it along its
     // chord.

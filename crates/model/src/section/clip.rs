@@ -1,7 +1,7 @@
 //! From cells to pieces: triangles are clipped by faults and sheets.
 
 use super::plane::SectionPlane;
-use crate::{Region, StructuralModel};
+use crate::{Below, Region, StructuralModel};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -16,7 +16,7 @@ pub(super) enum Tag {
     /// On a fault; the chord it is part of.
     Fault { fault: u8, chord: u32 },
     /// On a sheet.
-    Horizon { horizon: u8 },
+    Horizon { horizon: u16 },
 }
 
 /// A directed edge with a region on its left (turning from s to t).
@@ -44,7 +44,7 @@ const WELD: f64 = 2e-3;
 struct CornerState {
     bits: u64,
     block: u16,
-    below: u64,
+    below: Below,
 }
 
 #[derive(Clone, Copy)]
@@ -53,14 +53,17 @@ struct Piece {
     /// Tag of the edge from v\[i\] to v\[i + 1\].
     tag: [Tag; 3],
     bits: u64,
-    below: u64,
+    /// For horizons before `next`: those that it lies below.
+    below: Below,
+    /// The next horizon to be clipped by; all between the last and this one lie on one side of it.
+    next: Option<usize>,
 }
 
 /// A surface to clip by.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Cut {
     Fault(u8),
-    Sheet { horizon: u8, block: u16 },
+    Sheet { horizon: u16, block: u16 },
 }
 
 struct Clipper<'a> {
@@ -72,7 +75,7 @@ struct Clipper<'a> {
     /// Fault sides of vertices after the corners.
     cut_bits: Vec<u64>,
     /// Below which sheets of a block a vertex after the corners lies.
-    cut_below: HashMap<(u32, u16), u64>,
+    cut_below: HashMap<(u32, u16), Below>,
     /// The vertex where an edge (lower vertex first) meets a surface.
     cuts: HashMap<(u32, u32, Cut), u32>,
     /// The chord between two vertices on a fault.
@@ -96,7 +99,7 @@ pub(super) fn arrange(model: &StructuralModel, plane: &SectionPlane) -> Arrangem
             let n = c / nt * (nt + 1) + c % nt;
             let first = corners[n];
             let same = [n + 1, n + nt + 1, n + nt + 2].iter().all(|&m| corners[m] == first);
-            same.then(|| Region { layer: model.rules().layer(first.below), block: first.block })
+            same.then(|| Region { layer: model.rules().layer(&first.below), block: first.block })
         })
         .collect();
     let mut clipper = Clipper {
@@ -133,7 +136,7 @@ impl Clipper<'_> {
         let id = |i: usize, j: usize| (i * (nt + 1) + j) as u32;
         let (a, b, c, d) = (id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1));
         let frame = |on: bool| if on { Tag::Frame } else { Tag::Inner };
-        let whole = |v, tag| Piece { v, tag, bits: 0, below: 0 };
+        let whole = |v, tag| Piece { v, tag, bits: 0, below: Below::default(), next: None };
         let mut pieces = vec![
             whole([a, b, c], [frame(j == 0), frame(i + 1 == ns), Tag::Inner]),
             whole([a, c, d], [Tag::Inner, frame(j + 1 == nt), frame(i == 0)]),
@@ -145,20 +148,36 @@ impl Clipper<'_> {
             }
             pieces = next;
         }
-        let horizons = self.model.layer_count() as u8 - 1;
         for piece in pieces {
             let block = self.model.faults().block_of(piece.bits);
-            let mut parts = vec![piece];
-            for horizon in 0..horizons {
-                let mut next = Vec::with_capacity(parts.len());
+            let mut parts = vec![self.up_to_next(piece, 0, block)];
+            // Horizons in order, each through all parts that it divides.
+            while let Some(horizon) = parts.iter().filter_map(|part| part.next).min() {
+                let mut divided = Vec::with_capacity(parts.len() + 2);
                 for part in parts {
-                    self.clip(part, Cut::Sheet { horizon, block }, &mut next);
+                    if part.next == Some(horizon) {
+                        let first = divided.len();
+                        self.clip(part, Cut::Sheet { horizon: horizon as u16, block }, &mut divided);
+                        for new in &mut divided[first..] {
+                            *new = self.up_to_next(*new, horizon + 1, block);
+                        }
+                    } else {
+                        divided.push(part);
+                    }
                 }
-                parts = next;
+                parts = divided;
             }
             let rules = self.model.rules();
-            self.pieces.extend(parts.into_iter().map(|p| (p, Region { layer: rules.layer(p.below), block })));
+            self.pieces.extend(parts.into_iter().map(|p| (p, Region { layer: rules.layer(&p.below), block })));
         }
+    }
+
+    /// Finds the next horizon from `first` on that divides a piece; the piece lies on one side of those before it.
+    fn up_to_next(&mut self, mut piece: Piece, first: usize, block: u16) -> Piece {
+        let below = piece.v.map(|v| self.below(v, block));
+        piece.below.take_from(first, &below[0]);
+        piece.next = Below::first_between(below.each_ref(), first);
+        piece
     }
 
     /// Appends the parts of `piece` on both sides of `cut`.
@@ -167,7 +186,7 @@ impl Clipper<'_> {
         let marked = |mut piece: Piece, positive: bool| {
             match cut {
                 Cut::Fault(f) => piece.bits |= u64::from(positive) << f,
-                Cut::Sheet { horizon, .. } => piece.below |= u64::from(positive) << horizon,
+                Cut::Sheet { horizon, .. } => piece.below = piece.below.with(usize::from(horizon), positive),
             }
             piece
         };
@@ -236,13 +255,17 @@ impl Clipper<'_> {
         match (cut, corner) {
             (Cut::Fault(f), Some(corner)) => corner.bits >> f & 1 == 1,
             (Cut::Fault(f), None) => self.cut_bits[v as usize - self.corners.len()] >> f & 1 == 1,
-            (Cut::Sheet { horizon, block }, Some(corner)) if corner.block == block => corner.below >> horizon & 1 == 1,
-            (Cut::Sheet { horizon, block }, _) => {
-                let p = self.plane.voxel(self.positions[v as usize]).as_vec3();
-                let below = *self.cut_below.entry((v, block)).or_insert_with(|| self.model.below_at(p, block));
-                below >> horizon & 1 == 1
-            }
+            (Cut::Sheet { horizon, block }, _) => self.below(v, block).has(usize::from(horizon)),
         }
+    }
+
+    /// Below which sheets of a block a vertex lies.
+    fn below(&mut self, v: u32, block: u16) -> Below {
+        if let Some(corner) = self.corners.get(v as usize).filter(|corner| corner.block == block) {
+            return corner.below;
+        }
+        let p = self.plane.voxel(self.positions[v as usize]).as_vec3();
+        *self.cut_below.entry((v, block)).or_insert_with(|| self.model.below_at(p, block))
     }
 
     /// Collects the edges of all pieces, with the crossings of a chord inserted on both of its sides.

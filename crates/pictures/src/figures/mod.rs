@@ -23,7 +23,7 @@ use figure::cut::SectionSource;
 use figure::draw::NamedColour;
 use figure::draw::block::BlockPainter;
 use figure::list::DisplayList;
-use figure::{Annotation, Figure, FigureInputs, Part};
+use figure::{Annotation, FencePart, Figure, FigureInputs, Part, SectionPart};
 use image::RgbaImage;
 use interpreter::InterpreterPicks;
 use model::StructuralModel;
@@ -95,6 +95,7 @@ fn lettered(
     progress: &Progress,
 ) -> Result<MadeFigure, ProjectError> {
     let document = project.document();
+    let figure = &settled(figure, document);
     memory::check("the page", &figure.size_px().map(|side| side.min(LONGEST_SIDE) as usize), PIXEL_BYTES)?;
     let (loaded, model, stages) = load(project, figure, settings, progress)?;
     let picks = if figure.interpretation { Some(InterpreterPicks::read(project, view, progress)?) } else { None };
@@ -139,6 +140,19 @@ fn lettered(
     let scene = Scene { preset, ..needs(figure) };
     let confusions = confusions(project.root(), document, loaded.rock.as_ref(), &scene)?;
     Ok(MadeFigure { page, device, stages, confusions })
+}
+
+/// The figure with what its sections show: measured data where there are some, and the rock otherwise.
+fn settled(figure: &Figure, document: &Document) -> Figure {
+    let mut figure = figure.clone();
+    let raw = styles::transfer_functions(document).raw;
+    let has_data = raw.is_some_and(|raw| document.volumes.iter().any(|entry| entry.name == raw.volume));
+    for part in &mut figure.parts {
+        if let Part::Section(SectionPart { blend, .. }) | Part::Fence(FencePart { blend, .. }) = part {
+            blend.get_or_insert(if has_data { 1.0 } else { 0.0 });
+        }
+    }
+    figure
 }
 
 /// Says which texts have letters that the face lacks.
@@ -215,7 +229,7 @@ fn load(
 ) -> Result<(Loaded, Option<StructuralModel>, Vec<Stage>), ProjectError> {
     let scene = Scene { preset: figure.printed_in(), ..needs(figure) };
     let has_block = figure.parts.iter().any(|part| matches!(part, Part::Block(_)));
-    if has_block && !figure.interpretation {
+    if (has_block || figure.has_rock_sections()) && !figure.interpretation {
         let mut loaded = load::load_within(project, &scene, settings.volume_bytes, progress)?;
         let stages = loaded.rock.as_mut().map(|rock| std::mem::take(&mut rock.stages)).unwrap_or_default();
         return Ok((loaded, None, stages));
@@ -240,8 +254,8 @@ fn needs(figure: &Figure) -> Scene {
                 is_raw |= block.comparison != figure::draw::block::Comparison::None;
                 scene = block.scene.clone();
             }
-            Part::Section(section) => (is_raw, shown) = (true, section.show),
-            Part::Fence(fence) => (is_raw, shown) = (true, fence.show),
+            Part::Section(section) => (is_raw, shown) = (is_raw || section.blend != Some(0.0), section.show),
+            Part::Fence(fence) => (is_raw, shown) = (is_raw || fence.blend != Some(0.0), fence.show),
             Part::Map(_) | Part::Correlation(_) => {}
         }
     }

@@ -14,6 +14,10 @@ use survey::stratigraphy::Contact;
 use survey::{HeightField, LevelField};
 use ttf::tables::NONE;
 
+/// Largest number of horizons: shaders hold the sides of a place in two words. Models of more are drawn by the
+/// processor.
+const MOST_HORIZONS: usize = 64;
+
 /// Number of buffers over which the pool may be split.
 pub const POOL_BUFFERS: usize = 2;
 
@@ -108,6 +112,12 @@ impl ModelBuffers {
     pub fn new(gpu: &Gpu, model: &StructuralModel, param: Option<&Parameterization>) -> Result<Self, RenderError> {
         let mut pool = Pool::default();
         let horizons = model.stratigraphy().horizons.len();
+        if horizons > MOST_HORIZONS {
+            return Err(RenderError::Unsuitable {
+                adapter: gpu.adapter_name.clone(),
+                reason: format!("its shaders tell at most {MOST_HORIZONS} horizons apart, and there are {horizons}"),
+            });
+        }
         let blocks = model.block_count();
         let size = model.size();
         let last = size.map(|n| n.saturating_sub(1) as f32);

@@ -187,7 +187,11 @@ pub(crate) fn draw_lines(resolved: &ResolvedScene, lines: &OutlineLines, image: 
         underlay(resolved, image);
     }
     let points = |lines: &[OutlineLine]| lines.iter().map(|line| line.points.clone()).collect::<Vec<_>>();
-    stroke_lines(image, &outlines.horizons, &points(&lines.horizons));
+    for is_unconformity in [false, true] {
+        let own = lines.horizons.iter().filter(|line| resolved.is_unconformity(line.of) == is_unconformity);
+        let own: Vec<Vec<DVec2>> = own.map(|line| line.points.clone()).collect();
+        stroke_lines(image, &outlines.of_horizon(is_unconformity), &own);
+    }
     stroke_lines(image, &outlines.faults, &points(&lines.faults));
     stroke_lines(image, &outlines.edges, &lines.edges);
 }

@@ -79,7 +79,16 @@ impl Default for Outlines {
     }
 }
 
+/// How much heavier unconformities are drawn than other horizons.
+const UNCONFORMITY: f32 = 1.7;
+
 impl Outlines {
+    /// How a horizon is drawn; erosional ones are heavier.
+    pub fn of_horizon(&self, is_unconformity: bool) -> Stroke {
+        let factor = if is_unconformity { UNCONFORMITY } else { 1.0 };
+        Stroke { width_px: factor * self.horizons.width_px, ..self.horizons }
+    }
+
     /// No lines at all.
     pub fn none() -> Self {
         let off = Stroke { width_px: 0.0, colour: INK };

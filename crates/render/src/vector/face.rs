@@ -1,5 +1,6 @@
 //! The faces of a scene as areas: one for each connected piece of a layer.
 
+use super::cut::Outline;
 use super::pattern::{FacePattern, Tile};
 use super::visible::{seen_faces, seen_pieces};
 use super::{AreaFill, PatternPart, VectorArea};
@@ -144,13 +145,15 @@ impl FacePainter<'_> {
 
     fn drawn(&self, pattern: &FacePattern, interval: &IntervalEntry, rings: &[Vec<DVec2>], tile: &Tile) -> AreaFill {
         let ink = |[r, g, b]: [f32; 3]| self.toned(if interval.ink[3] > 0.5 { interval.ink } else { [r, g, b, 1.0] });
+        let rings_px = self.outline(rings);
+        let outline = Outline::new(&rings_px);
         let parts = pattern.drawn(rings, tile).into_iter().map(|part| PatternPart {
+            lines: outline.cut(&part.paint, part.lines),
             paint: part.paint,
             colour: ink(part.colour),
             opacity: part.opacity * interval.colour[3],
-            lines: part.lines,
         });
-        AreaFill::Pattern(parts.collect())
+        AreaFill::Pattern(parts.filter(|part| !part.lines.is_empty()).collect())
     }
 }
 

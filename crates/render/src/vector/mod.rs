@@ -14,6 +14,7 @@
 //!
 //! Space: pixels of the scene, x right and y down.
 
+mod cut;
 mod face;
 mod join;
 mod pattern;
@@ -76,7 +77,7 @@ pub struct VectorArea {
 pub enum AreaFill {
     /// A colour.
     Colour(Colour),
-    /// Parts of a pattern, back to front, to be clipped at the area's rings; the colour lies below.
+    /// Parts of a pattern, back to front, which end at the area's rings but for their width; the colour lies below.
     Pattern(Vec<PatternPart>),
     /// The painted picture, to be clipped at the area's rings.
     Picture,
@@ -209,7 +210,7 @@ fn lines(resolved: &ResolvedScene) -> Vec<VectorLine> {
         }
     };
     for line in drawn.horizons {
-        add(VectorLineKind::Horizon(line.of), outlines.horizons, line.points);
+        add(VectorLineKind::Horizon(line.of), outlines.of_horizon(resolved.is_unconformity(line.of)), line.points);
     }
     for line in drawn.faults {
         add(line.of.map_or(VectorLineKind::Horizon(None), VectorLineKind::Fault), outlines.faults, line.points);

@@ -7,4 +7,5 @@ pub mod voxel_box;
 
 pub use body::{Body, BodyPlane, Crossing, Ray, Wall, part_behind};
 pub use cut_shape::{CutShape, CutShapeError, Leaves, MAX_BODIES, MAX_PLANES, Side};
+pub use polygon::convex_parts;
 pub use voxel_box::{Corner, VoxelBox};

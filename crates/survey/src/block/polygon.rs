@@ -30,7 +30,13 @@ fn overlap(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
 }
 
 /// A polygon that turns counter-clockwise, in convex parts: corners by their index.
-pub(super) fn convex_parts(points: &[DVec2]) -> Vec<Vec<usize>> {
+///
+/// ```
+/// use glam::DVec2;
+/// let ell = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]].map(DVec2::from_array);
+/// assert_eq!(survey::block::convex_parts(&ell).len(), 2);
+/// ```
+pub fn convex_parts(points: &[DVec2]) -> Vec<Vec<usize>> {
     let turn = |a: usize, b: usize, c: usize| (points[b] - points[a]).perp_dot(points[c] - points[a]);
     let mut rest: Vec<usize> = (0..points.len()).collect();
     let mut parts: Vec<Vec<usize>> = Vec::new();

@@ -6,26 +6,27 @@
 //! place on their layer.
 
 mod edges;
+mod faces;
 mod faults;
 mod names;
-mod room;
+mod queries;
+pub(crate) mod room;
 mod wells;
+
+pub(crate) use faces::{FaceLabels, FaceWriter};
 
 use super::moved::ON_BLOCK;
 use super::seen::Sight;
 use super::vector_block::BlockNames;
 use crate::Rect;
 use crate::annotation::Annotation;
-use crate::convex::meet;
-use crate::list::{Across, Group, GroupKind, Ink, Item, POINTS_PER_INCH, Path, PathItem, Stroke, Text, Upright};
-use crate::style::{FRAME_PT, INK, QUIET_INK, TEXT_PT};
+use crate::list::{Group, GroupKind, Item, POINTS_PER_INCH, Text};
 use glam::{DVec2, DVec3};
 use model::StructuralModel;
-use render::vector::{SeenSection, seen_sections};
-use render::{FaceData, Faces, Scene, View};
+use render::vector::seen_sections;
+use render::{FaceData, Faces, Scene, Unpicked, View};
 use room::LabelRoom;
 use survey::{SurveyGeometry, Well};
-use ttf::Colour;
 
 /// Most of its width and height that a picture gives up for labels beside it.
 const MOST_SHRUNK: f64 = 0.55;
@@ -35,16 +36,6 @@ const SLACK_PT: f64 = 2.5;
 const ROUNDS: usize = 16;
 /// Pixels a point at which room is made.
 const PROBE_PX: f64 = 8.0;
-/// From one ring of places that are tried for a name beside the block to the next, points; how many rings there are, and
-/// places on each.
-const LEADER_STEP_PT: f64 = 6.0;
-const LEADER_RINGS: u32 = 26;
-const LEADER_TURNS: u32 = 36;
-/// The length that a leader may be longer to cross no axis, points.
-const CROSSED_PT: f64 = 60.0;
-/// The rim of names on faces, points, and its opacity.
-const RIM_PT: f64 = 1.2;
-const RIM_OPACITY: f32 = 0.9;
 
 /// What is to be written on a block.
 #[derive(Clone, Copy)]
@@ -60,9 +51,6 @@ pub struct BlockAnnotation<'a> {
     /// The wells of the project.
     pub wells: &'a [Well],
 }
-
-/// A name that found no place on the block: where its leader may end, the best place first, and what it says.
-type Beside = (Vec<DVec2>, String);
 
 /// A picture of a block in its place on the page.
 struct Placed<'a> {
@@ -131,28 +119,29 @@ impl BlockAnnotation<'_> {
         }
         let is_rock = scene.media.faces == Faces::All && scene.face_data == FaceData::Rock;
         if let Some(model) = self.model.filter(|_| is_rock) {
-            let has_names = self.wants(Annotation::Layers) && scene.blend < 1.0;
-            let has_faults = self.wants(Annotation::Faults);
-            let faces = if has_names || has_faults { seen_sections(scene, self.geometry, model) } else { Vec::new() };
-            let (mut on_faces, mut beside) = (Vec::new(), Vec::new());
+            let wanted = FaceLabels {
+                layers: self.wants(Annotation::Layers) && scene.blend < 1.0,
+                faults: self.wants(Annotation::Faults),
+                queries: scene.outlines.unpicked == Unpicked::Dashed,
+            };
+            let faces = if wanted.any() { seen_sections(scene, self.geometry, model) } else { Vec::new() };
             if self.wants(Annotation::Wells) && scene.wells.radius > 0.0 {
                 let sight = Sight::new(scene, self.geometry, model);
                 let frame = (self.geometry, &model.stratigraphy().horizons[..]);
                 let named = wells::drawn(self.wells, frame, &sight, &placed, &mut free);
-                on_faces.extend(named.into_iter().map(Item::from));
+                group.items.extend(named.into_iter().map(Item::from));
             }
-            if has_faults {
-                self.faults(model, &placed, &faces, &mut free, &mut on_faces, &mut beside);
-            }
-            if has_names {
-                self.layers(model, &placed, &faces, &mut free, &mut on_faces, &mut beside);
-            }
-            group.items.extend(on_faces);
             let covered = |piece: &Vec<DVec2>| piece.iter().map(|px| placed.page(*px)).collect();
-            let covered: Vec<Vec<DVec2>> = faces.iter().flat_map(|face| &face.pieces).map(covered).collect();
-            for (anchors, name) in beside {
-                group.items.extend(leader(&anchors, &name, &covered, &mut free).map(Item::from));
-            }
+            let writer = FaceWriter {
+                model,
+                geometry: self.geometry,
+                names: self.names,
+                air: scene.ground.map(|_| render::ground::air_layer(model)),
+                page_from_voxel: &|voxel| placed.page_from_voxel(voxel),
+                page: &|px| placed.page(px),
+                covered: faces.iter().flat_map(|face| &face.pieces).map(covered).collect(),
+            };
+            group.items.extend(writer.written(&faces, wanted, &mut free));
         }
         group
     }
@@ -161,83 +150,6 @@ impl BlockAnnotation<'_> {
         let block = placed.scene.box_in(self.geometry);
         let page = |voxel: DVec3| placed.page_from_voxel(voxel);
         edges::drawn(self.geometry, &placed.view, &block, placed.pane, &page, room)
-    }
-
-    /// The layer that is left out where the ground is shown.
-    fn air(&self, scene: &Scene, model: &StructuralModel) -> Option<u16> {
-        scene.ground.map(|_| render::ground::air_layer(model))
-    }
-
-    fn faults(
-        &self,
-        model: &StructuralModel,
-        placed: &Placed,
-        faces: &[SeenSection],
-        room: &mut LabelRoom,
-        on_faces: &mut Vec<Item>,
-        beside: &mut Vec<Beside>,
-    ) {
-        let page_from_voxel = |voxel: DVec3| placed.page_from_voxel(voxel);
-        let page = |px: DVec2| placed.page(px);
-        let air = self.air(placed.scene, model);
-        let runs = faults::runs(model, faces, &page_from_voxel, &page, air);
-        let lines: Vec<Vec<DVec2>> = runs.iter().map(faults::FaultRun::line).collect();
-        let mut named = Vec::new();
-        for run in &runs {
-            let throw = run.throw(model, self.geometry);
-            let name = self.names.fault(run.fault);
-            let mut group = Group::new(GroupKind::Fault, name.clone());
-            let arrows = throw.and_then(|throw| run.arrows(throw, &page_from_voxel, room));
-            group.items.extend(arrows.map(Item::from));
-            named.push((run, faults::said(&name, throw, self.geometry), group));
-        }
-        // Names yield to the arrows of all faults.
-        for (run, said, mut group) in named {
-            match run.named(&said, &lines, room) {
-                Some(text) => {
-                    room.take(&text);
-                    group.push(text);
-                }
-                None => beside.push((run.anchors(), said)),
-            }
-            if !group.items.is_empty() {
-                on_faces.push(group.into());
-            }
-        }
-    }
-
-    fn layers(
-        &self,
-        model: &StructuralModel,
-        placed: &Placed,
-        faces: &[SeenSection],
-        room: &mut LabelRoom,
-        on_faces: &mut Vec<Item>,
-        beside: &mut Vec<Beside>,
-    ) {
-        let page_from_voxel = |voxel: DVec3| placed.page_from_voxel(voxel);
-        let page = |px: DVec2| placed.page(px);
-        let pieces = names::pieces(faces, &page_from_voxel, &page, self.air(placed.scene, model));
-        for layer in (0..model.layer_count() as u16).rev() {
-            let name = self.names.layer(layer);
-            let ground = self.names.style(layer).map_or(Colour::WHITE, |style| {
-                style.interval_at(0.5).and_then(|interval| interval.colour).unwrap_or(style.colour)
-            });
-            let rim = if ground.luminance() < 0.3 { Colour::WHITE } else { ground };
-            let text = Text::new(DVec2::ZERO, name.clone()).inked(INK).haloed(RIM_PT, Ink::glass(rim, RIM_OPACITY));
-            let own = || pieces.iter().filter(|piece| piece.layer == layer);
-            let best = own().filter_map(|piece| piece.named(&text, room)).max_by(|a, b| a.1.total_cmp(&b.1));
-            if let Some((text, _)) = best {
-                room.take(&text);
-                on_faces.push(Group::new(GroupKind::Layer, name).with([text.into()]).into());
-                continue;
-            }
-            let mut anchors: Vec<(DVec2, f64)> = own().filter_map(names::LayerPiece::thickest).collect();
-            anchors.sort_by(|a, b| b.1.total_cmp(&a.1));
-            if !anchors.is_empty() {
-                beside.push((anchors.into_iter().map(|(anchor, _)| anchor).collect(), name));
-            }
-        }
     }
 }
 
@@ -251,50 +163,4 @@ fn texts(group: &Group) -> impl Iterator<Item = &Text> {
         Item::Text(text) => Some(text),
         _ => None,
     })
-}
-
-/// A name beside the block with a line from what it names; `None` where it finds no place. `faces` are the parts of the
-/// page that the block covers.
-///
-/// Places in rings around each anchor are tried; short leaders are best, and those that run across rather than up.
-fn leader(anchors: &[DVec2], name: &str, faces: &[Vec<DVec2>], room: &mut LabelRoom) -> Option<Group> {
-    // The name right and left of (0, 0), and its outline there.
-    let sides = [(Across::Start, 2.0), (Across::End, -2.0)].map(|(across, aside)| {
-        let text = Text::new(DVec2::new(aside, 0.0), name).sized(TEXT_PT - 0.5).anchored(across, Upright::Middle);
-        let outline: Vec<DVec2> = room::outlines(&text).flatten().collect();
-        (text, outline)
-    });
-    let mut best: Option<(f64, &Text, [DVec2; 2])> = None;
-    for (rank, anchor) in anchors.iter().enumerate() {
-        for ring in 1..=LEADER_RINGS {
-            let length = f64::from(ring) * LEADER_STEP_PT;
-            for turn in 0..LEADER_TURNS {
-                let direction = DVec2::from_angle(f64::from(turn) / f64::from(LEADER_TURNS) * std::f64::consts::TAU);
-                let end = *anchor + direction * length;
-                let crossed = CROSSED_PT * room.crossings(*anchor, end) as f64;
-                let cost = length * (1.0 + 0.35 * direction.y.abs()) + crossed + 4.0 * rank as f64;
-                if best.as_ref().is_some_and(|(known, ..)| *known <= cost) {
-                    continue;
-                }
-                let (text, outline) = &sides[usize::from(direction.x < 0.0)];
-                let outline: Vec<DVec2> = outline.iter().map(|corner| *corner + end).collect();
-                let is_outside = || !faces.iter().any(|face| meet(&outline, face));
-                if room.is_area_free(&outline) && room.is_clear(*anchor, end) && is_outside() {
-                    best = Some((cost, text, [*anchor, end]));
-                }
-            }
-        }
-    }
-    let (_, text, [anchor, end]) = best?;
-    let text = Text { at: text.at + end, ..text.clone() };
-    room.take(&text);
-    room.take_area(&[anchor, end]);
-    let line = Path::line(&[anchor, end]);
-    let rim = Stroke::new(FRAME_PT + 1.4, Ink::glass(Colour::WHITE, RIM_OPACITY));
-    Some(Group::new(GroupKind::Annotation, format!("leader to {name}")).with([
-        PathItem::stroked(line.clone(), rim).into(),
-        PathItem::stroked(line, Stroke::new(FRAME_PT, QUIET_INK)).into(),
-        PathItem::filled(Path::circle(anchor, 1.3), INK).outlined(Stroke::new(0.6, Colour::WHITE)).into(),
-        text.into(),
-    ]))
 }

@@ -8,11 +8,12 @@
 use super::room::LabelRoom;
 use crate::convex::{holds, meet};
 use crate::list::Text;
+use crate::style::LEAST_TEXT_PT;
 use glam::DVec2;
 use render::vector::SeenSection;
 
 /// Sizes that are tried, points: the first one that fits is taken.
-const SIZES_PT: [f64; 4] = [8.5, 7.5, 6.75, 6.0];
+const SIZES_PT: [f64; 4] = [8.5, 8.0, 7.5, LEAST_TEXT_PT];
 /// Samples of a middle line.
 const SAMPLES: usize = 240;
 /// Distance of points of a smoothed line, and of the places that are tried, points.

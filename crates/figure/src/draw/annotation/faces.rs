@@ -1,0 +1,195 @@
+//! What is written on faces of rock, of a block or of a section: names of layers along the layers, names and throws of
+//! faults, question marks on lines that are only continued, and leaders to names that found no place.
+
+use super::room::LabelRoom;
+use super::{faults, names, queries, room};
+use crate::convex::meet;
+use crate::draw::vector_block::BlockNames;
+use crate::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright};
+use crate::style::{FRAME_PT, INK, QUIET_INK, TEXT_PT};
+use glam::{DVec2, DVec3};
+use model::StructuralModel;
+use render::vector::SeenSection;
+use survey::SurveyGeometry;
+use ttf::Colour;
+
+/// From one ring of places that are tried for a name beside the block to the next, points; how many rings there are, and
+/// places on each.
+const LEADER_STEP_PT: f64 = 6.0;
+const LEADER_RINGS: u32 = 26;
+const LEADER_TURNS: u32 = 36;
+/// The length that a leader may be longer to cross no axis, points.
+const CROSSED_PT: f64 = 60.0;
+/// The rim of names on faces, points, and its opacity.
+const RIM_PT: f64 = 1.2;
+const RIM_OPACITY: f32 = 0.9;
+
+/// What is written on faces.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FaceLabels {
+    /// Names along layers.
+    pub layers: bool,
+    /// Names, throws and half-arrows of faults.
+    pub faults: bool,
+    /// Question marks on lines of horizons that are only continued.
+    pub queries: bool,
+}
+
+impl FaceLabels {
+    /// Whether there is anything to write.
+    pub(crate) fn any(self) -> bool {
+        self.layers || self.faults || self.queries
+    }
+}
+
+/// Writes on faces of a model.
+pub(crate) struct FaceWriter<'a> {
+    /// Its layers and faults.
+    pub model: &'a StructuralModel,
+    /// Where its samples are.
+    pub geometry: &'a SurveyGeometry,
+    /// What they are called.
+    pub names: BlockNames<'a>,
+    /// The layer that is left out, where the ground is shown.
+    pub air: Option<u16>,
+    /// Takes voxels to the page.
+    pub page_from_voxel: &'a dyn Fn(DVec3) -> DVec2,
+    /// Takes places of the faces' seen pieces to the page.
+    pub page: &'a dyn Fn(DVec2) -> DVec2,
+    /// The parts of the page on which no leader ends.
+    pub covered: Vec<Vec<DVec2>>,
+}
+
+/// A name that found no place on the faces: where its leader may end, the best place first, and what it says.
+type Beside = (Vec<DVec2>, String);
+
+impl FaceWriter<'_> {
+    /// Everything that is written on faces.
+    pub(crate) fn written(&self, faces: &[SeenSection], wanted: FaceLabels, room: &mut LabelRoom) -> Vec<Item> {
+        let (mut written, mut beside) = (Vec::new(), Vec::new());
+        if wanted.faults {
+            self.faults(faces, room, &mut written, &mut beside);
+        }
+        if wanted.layers {
+            self.layers(faces, room, &mut written, &mut beside);
+        }
+        for (anchors, name) in beside {
+            written.extend(leader(&anchors, &name, &self.covered, room).map(Item::from));
+        }
+        if wanted.queries {
+            let horizons = &self.model.stratigraphy().horizons;
+            written.extend(queries::drawn(faces, horizons, self, room).into_iter().map(Item::from));
+        }
+        written
+    }
+
+    fn faults(
+        &self,
+        faces: &[SeenSection],
+        room: &mut LabelRoom,
+        written: &mut Vec<Item>,
+        beside: &mut Vec<Beside>,
+    ) {
+        let runs = faults::runs(self.model, faces, self.page_from_voxel, self.page, self.air);
+        let lines: Vec<Vec<DVec2>> = runs.iter().map(faults::FaultRun::line).collect();
+        let mut named = Vec::new();
+        for run in &runs {
+            let throw = run.throw(self.model, self.geometry);
+            let name = self.names.fault(run.fault);
+            let mut group = Group::new(GroupKind::Fault, name.clone());
+            let arrows = throw.and_then(|throw| run.arrows(throw, self.page_from_voxel, room));
+            group.items.extend(arrows.map(Item::from));
+            named.push((run, faults::said(&name, throw, self.geometry), group));
+        }
+        // Names yield to the arrows of all faults.
+        for (run, said, mut group) in named {
+            match run.named(&said, &lines, room) {
+                Some(text) => {
+                    room.take(&text);
+                    group.push(text);
+                }
+                None => beside.push((run.anchors(), said)),
+            }
+            if !group.items.is_empty() {
+                written.push(group.into());
+            }
+        }
+    }
+
+    fn layers(
+        &self,
+        faces: &[SeenSection],
+        room: &mut LabelRoom,
+        written: &mut Vec<Item>,
+        beside: &mut Vec<Beside>,
+    ) {
+        let pieces = names::pieces(faces, self.page_from_voxel, self.page, self.air);
+        for layer in (0..self.model.layer_count() as u16).rev() {
+            let name = self.names.layer(layer);
+            let ground = self.names.style(layer).map_or(Colour::WHITE, |style| {
+                style.interval_at(0.5).and_then(|interval| interval.colour).unwrap_or(style.colour)
+            });
+            let rim = if ground.luminance() < 0.3 { Colour::WHITE } else { ground };
+            let text = Text::new(DVec2::ZERO, name.clone()).inked(INK).haloed(RIM_PT, Ink::glass(rim, RIM_OPACITY));
+            let own = || pieces.iter().filter(|piece| piece.layer == layer);
+            let best = own().filter_map(|piece| piece.named(&text, room)).max_by(|a, b| a.1.total_cmp(&b.1));
+            if let Some((text, _)) = best {
+                room.take(&text);
+                written.push(Group::new(GroupKind::Layer, name).with([text.into()]).into());
+                continue;
+            }
+            let mut anchors: Vec<(DVec2, f64)> = own().filter_map(names::LayerPiece::thickest).collect();
+            anchors.sort_by(|a, b| b.1.total_cmp(&a.1));
+            if !anchors.is_empty() {
+                beside.push((anchors.into_iter().map(|(anchor, _)| anchor).collect(), name));
+            }
+        }
+    }
+}
+
+/// A name beside the block with a line from what it names; `None` where it finds no place. `faces` are the parts of the
+/// page that the block covers.
+///
+/// Places in rings around each anchor are tried; short leaders are best, and those that run across rather than up.
+fn leader(anchors: &[DVec2], name: &str, faces: &[Vec<DVec2>], room: &mut LabelRoom) -> Option<Group> {
+    // The name right and left of (0, 0), and its outline there.
+    let sides = [(Across::Start, 2.0), (Across::End, -2.0)].map(|(across, aside)| {
+        let text = Text::new(DVec2::new(aside, 0.0), name).sized(TEXT_PT - 0.5).anchored(across, Upright::Middle);
+        let text = text.haloed(RIM_PT, Ink::glass(Colour::WHITE, RIM_OPACITY));
+        let outline: Vec<DVec2> = room::outlines(&text).flatten().collect();
+        (text, outline)
+    });
+    let mut best: Option<(f64, &Text, [DVec2; 2])> = None;
+    for (rank, anchor) in anchors.iter().enumerate() {
+        for ring in 1..=LEADER_RINGS {
+            let length = f64::from(ring) * LEADER_STEP_PT;
+            for turn in 0..LEADER_TURNS {
+                let direction = DVec2::from_angle(f64::from(turn) / f64::from(LEADER_TURNS) * std::f64::consts::TAU);
+                let end = *anchor + direction * length;
+                let crossed = CROSSED_PT * room.crossings(*anchor, end) as f64;
+                let cost = length * (1.0 + 0.35 * direction.y.abs()) + crossed + 4.0 * rank as f64;
+                if best.as_ref().is_some_and(|(known, ..)| *known <= cost) {
+                    continue;
+                }
+                let (text, outline) = &sides[usize::from(direction.x < 0.0)];
+                let outline: Vec<DVec2> = outline.iter().map(|corner| *corner + end).collect();
+                let is_outside = || !faces.iter().any(|face| meet(&outline, face));
+                if room.is_area_free(&outline) && room.is_clear(*anchor, end) && is_outside() {
+                    best = Some((cost, text, [*anchor, end]));
+                }
+            }
+        }
+    }
+    let (_, text, [anchor, end]) = best?;
+    let text = Text { at: text.at + end, ..text.clone() };
+    room.take(&text);
+    room.take_area(&[anchor, end]);
+    let line = Path::line(&[anchor, end]);
+    let rim = Stroke::new(FRAME_PT + 1.4, Ink::glass(Colour::WHITE, RIM_OPACITY));
+    Some(Group::new(GroupKind::Annotation, format!("leader to {name}")).with([
+        PathItem::stroked(line.clone(), rim).into(),
+        PathItem::stroked(line, Stroke::new(FRAME_PT, QUIET_INK)).into(),
+        PathItem::filled(Path::circle(anchor, 1.3), INK).outlined(Stroke::new(0.6, Colour::WHITE)).into(),
+        text.into(),
+    ]))
+}

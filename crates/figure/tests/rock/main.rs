@@ -1,0 +1,6 @@
+//! Rock on pages: paths beside pictures, what the written SVG measures, and rock on sections.
+
+mod fold;
+mod measures;
+mod sections;
+mod vectors;

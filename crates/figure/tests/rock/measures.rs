@@ -1,0 +1,188 @@
+//! What is measured in the written SVG: bricks along a fold, and patterns that end at their layers and faults.
+
+use crate::fold::Fold;
+use figure::svg;
+use glam::{DVec2, DVec3};
+use render::{Background, Camera, Outlines, Scene, VoxelBox};
+use survey::{SurveyGeometry, VerticalUnit};
+use synth::closed_form::ClosedForm;
+
+/// The subpaths of a path's description: their points, and whether they are closed.
+fn subpaths(d: &str) -> Vec<(Vec<DVec2>, bool)> {
+    let mut paths: Vec<(Vec<DVec2>, bool)> = Vec::new();
+    let (mut at, mut begin) = (DVec2::ZERO, DVec2::ZERO);
+    let starts: Vec<usize> = d.char_indices().filter(|(_, c)| c.is_ascii_alphabetic()).map(|(n, _)| n).collect();
+    for (n, &start) in starts.iter().enumerate() {
+        let end = starts.get(n + 1).copied().unwrap_or(d.len());
+        let command = d.as_bytes()[start] as char;
+        let numbers = numbers(&d[start + 1..end]);
+        let base = |at: DVec2| if command.is_ascii_lowercase() { at } else { DVec2::ZERO };
+        match command.to_ascii_lowercase() {
+            'm' | 'l' => {
+                for (k, pair) in numbers.chunks_exact(2).enumerate() {
+                    at = base(at) + DVec2::new(pair[0], pair[1]);
+                    if command.eq_ignore_ascii_case(&'m') && k == 0 {
+                        begin = at;
+                        paths.push((Vec::new(), false));
+                    }
+                    paths.last_mut().unwrap().0.push(at);
+                }
+            }
+            'h' | 'v' => {
+                let axis = usize::from(command.eq_ignore_ascii_case(&'v'));
+                for number in numbers {
+                    at[axis] = base(at)[axis] + number;
+                    paths.last_mut().unwrap().0.push(at);
+                }
+            }
+            'c' => {
+                for six in numbers.chunks_exact(6) {
+                    at = base(at) + DVec2::new(six[4], six[5]);
+                    paths.last_mut().unwrap().0.push(at);
+                }
+            }
+            'z' => {
+                at = begin;
+                paths.last_mut().unwrap().1 = true;
+            }
+            other => panic!("{other} in a path"),
+        }
+    }
+    paths
+}
+
+fn numbers(text: &str) -> Vec<f64> {
+    let mut found: Vec<String> = Vec::new();
+    for c in text.chars() {
+        match c {
+            ' ' | ',' => found.push(String::new()),
+            '-' => found.push("-".into()),
+            '.' if found.last().is_some_and(|last| last.contains('.')) => found.push(".".into()),
+            _ => match found.last_mut() {
+                Some(last) => last.push(c),
+                None => found.push(c.into()),
+            },
+        }
+    }
+    found.iter().filter(|number| !number.is_empty()).map(|number| number.parse().unwrap()).collect()
+}
+
+fn attribute<'a>(line: &'a str, name: &str) -> Option<&'a str> {
+    let begin = line.find(&format!("{name}=\""))? + name.len() + 2;
+    line[begin..].split('"').next()
+}
+
+/// The patterns of a document: the rings that each is clipped to, and its paths with their stroke, if they have one.
+type Pattern = (Vec<Vec<DVec2>>, Vec<(String, bool)>);
+
+fn patterns(svg: &str) -> Vec<Pattern> {
+    let clip = |id: &str| {
+        let line = svg.lines().find(|line| line.contains(&format!("<clipPath id=\"{id}\""))).unwrap();
+        subpaths(attribute(line, " d").unwrap()).into_iter().map(|(points, _)| points).collect::<Vec<_>>()
+    };
+    let mut patterns: Vec<Pattern> = Vec::new();
+    let mut is_open = false;
+    for line in svg.lines() {
+        if line.starts_with("<g") {
+            // Groups of parts have no name.
+            let id = attribute(line, "clip-path").filter(|_| attribute(line, "inkscape:label").is_none());
+            is_open = id.is_some();
+            if let Some(id) = id.and_then(|id| id.strip_prefix("url(#")).and_then(|id| id.strip_suffix(')')) {
+                patterns.push((clip(id), Vec::new()));
+            }
+        } else if line.starts_with("</g") {
+            is_open = false;
+        } else if line.starts_with("<path") && is_open {
+            let is_stroked = attribute(line, "fill") == Some("none");
+            patterns.last_mut().unwrap().1.push((attribute(line, " d").unwrap().to_owned(), is_stroked));
+        }
+    }
+    patterns.retain(|(_, paths)| !paths.is_empty());
+    patterns
+}
+
+/// How far a place lies beyond an outline, points; 0 within, by the even-odd rule.
+fn beyond(rings: &[Vec<DVec2>], p: DVec2) -> f64 {
+    let sides = || rings.iter().flat_map(|ring| (0..ring.len()).map(|n| (ring[n], ring[(n + 1) % ring.len()])));
+    let crossed = sides().filter(|(a, b)| {
+        (a.y <= p.y) != (b.y <= p.y) && a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) > p.x
+    });
+    if crossed.count() % 2 == 1 {
+        return 0.0;
+    }
+    let off = |(a, b): (DVec2, DVec2)| {
+        let along = ((p - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);
+        p.distance(a.lerp(b, along))
+    };
+    sides().map(off).fold(f64::INFINITY, f64::min)
+}
+
+/// Layers cut by a fault, in lines, filled dots and bricks: of each pattern's path no place lies more than a tenth of a
+/// point beyond the outline of its layer in its fault block.
+#[test]
+fn no_pattern_leaves_its_layer_or_crosses_a_fault() {
+    let geometry = SurveyGeometry::regular([61, 41, 51], 12.5, 12.5, VerticalUnit::Metres);
+    let closed = ClosedForm::dome(&geometry, &[10.0, 22.0, 34.0], 30.0).with_fault(65.0, 6.0);
+    let fold = Fold::of(geometry, &closed, &["conglomerate", "sandstone", "limestone", "shale"]);
+    let whole = VoxelBox::of_size([61, 41, 51]);
+    let scene = Scene {
+        size_px: [1100, 800],
+        camera: Camera { azimuth_deg: Some(35.0), ..Camera::default() },
+        cut_outs: vec![whole.corner_cut(render::Corner::MinMin, [0.4, 0.4])],
+        ground: None,
+        ..Scene::default()
+    };
+    let svg = svg(&fold.page(&scene, true), "t").unwrap();
+    let (mut places, mut cut, mut worst) = (0, 0, 0.0f64);
+    for (rings, paths) in patterns(&svg) {
+        for (d, _) in &paths {
+            for p in subpaths(d).into_iter().flat_map(|(points, _)| points) {
+                let off = beyond(&rings, p);
+                places += 1;
+                cut += usize::from(off > 0.0);
+                worst = worst.max(off);
+            }
+        }
+    }
+    assert!(worst <= 0.1, "{worst} points beyond");
+    // Many end at the outline, some on its far side by rounding.
+    assert!(places > 5000 && cut > 50, "{places} places, {cut} at the outline");
+}
+
+/// Bricks on a cylindrical fold, one metre down as long as one across: joints stand on bedding within three degrees.
+#[test]
+fn joints_of_bricks_stand_across_the_bedding_of_a_fold() {
+    let geometry = SurveyGeometry::regular([81, 9, 61], 10.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::dome(&geometry, &[12.0, 36.0], 35.0);
+    let view = |scene: &Scene| scene.view(&geometry);
+    let camera = Camera { azimuth_deg: Some(0.0), elevation_deg: 0.0, margin: 0.0, ..Camera::default() };
+    let background = Background::Colour(ttf::Colour::WHITE);
+    let outlines = Outlines::none();
+    let size_px = [1600, 1200];
+    let scene = Scene { size_px, camera, background, exaggeration: 1.0, ground: None, outlines, ..Scene::default() };
+    let view = view(&scene);
+    let fold = Fold::of(geometry.clone(), &closed, &["shale", "limestone", "shale"]);
+    let svg = svg(&fold.page(&scene, true), "t").unwrap();
+    let points = |voxel: DVec3| view.project(voxel) * 72.0 / 200.0;
+    let axis = points(DVec3::new(40.0, 0.0, 36.0 + 40.0 / 35f64.to_radians().sin()));
+    let crests = [12.0, 36.0].map(|sample| axis.distance(points(DVec3::new(40.0, 0.0, sample))));
+    let middle = 0.5 * (crests[0] + crests[1]);
+    let bricks = patterns(&svg).into_iter().filter(|(rings, _)| {
+        // The layer between the horizons is the one around the middle of the fold.
+        beyond(rings, axis - DVec2::new(0.0, middle)) == 0.0
+    });
+    let (mut joints, mut worst) = (0, 0.0f64);
+    for (points, _) in bricks.flat_map(|(_, paths)| paths).flat_map(|(d, _)| subpaths(&d)) {
+        let [a, b] = [points[0], points[points.len() - 1]];
+        let (step, radius) = (b - a, 0.5 * (a + b) - axis);
+        // Places are written to a hundredth of a point: shorter lines have no direction.
+        let from_radius = (step.dot(radius).abs() / (step.length() * radius.length())).min(1.0).acos().to_degrees();
+        if step.length() < 1.0 || from_radius > 45.0 {
+            continue;
+        }
+        joints += 1;
+        worst = worst.max(from_radius);
+    }
+    assert!(joints > 100, "{joints} joints");
+    assert!(worst < 3.0, "a joint is {worst} degrees askew");
+}
