@@ -183,7 +183,8 @@ fn case(side: usize, snr: f64, seed: u64, faults: Faults) -> Result<Case, Box<dy
         cuts = found;
     }
     let start = Instant::now();
-    let found = geologic_time(&survey.seismic, &surfaces, &cuts, &TimeSettings::default(), &progress)?;
+    let found =
+        geologic_time(&survey.seismic, &surfaces, &cuts.as_slice().into(), &TimeSettings::default(), &progress)?;
     let time_s = start.elapsed().as_secs_f64();
     let names = survey.truth.horizons.iter().map(|horizon| horizon.name.clone());
     let horizons: Vec<(String, Errors)> =

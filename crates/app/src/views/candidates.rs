@@ -140,7 +140,7 @@ fn without_picks(ui: &mut Ui, session: &Session, is_extracted: bool, has_volume:
                 false => TIME.to_owned(),
                 true => free_name(&session.document, Noun::Volume, TIME),
             };
-            let command = ComputeTime { name, settings: TimeSettings::default() };
+            let command = ComputeTime { name, settings: TimeSettings::default(), memory_bytes: None };
             actions.push(Action::Apply(Box::new(Command::Time(command))));
             actions.push(Action::Picking(PickingStep::Use(Tool::Time)));
         }

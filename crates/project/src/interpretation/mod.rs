@@ -10,3 +10,4 @@ pub mod extraction;
 pub(crate) mod order;
 pub mod proposals;
 pub mod solid;
+pub mod times;
