@@ -18,8 +18,10 @@ pub const FIRST: f32 = 1.5;
 const STACKED: usize = 5;
 /// Samples within which amplitudes are brought to one level.
 const LEVEL_WINDOW: usize = 24;
-/// Greatest throw that is looked for, as a share of the samples.
+/// Greatest throw that is looked for, as a share of the samples; in thin volumes up to [`THIN`] samples, as far as half of
+/// the volume.
 const GREATEST_SHARE: f32 = 0.16;
+const THIN: f32 = 20.0;
 /// Throws that differ by less are the same one in the margin, samples.
 const SAME_THROW: f32 = 3.0;
 /// What a throw that varies costs, for each squared sample.
@@ -203,7 +205,8 @@ pub fn throw_of(volume: &Volume<f32>, links: &Links, cut: &Cut) -> Option<Throw>
     let step = cut.size[0].div_ceil(LINES).max(1);
     // A part of the points tells which throws are worth all of them.
     let mut panels = Panels { size: cut.size, sides, step: [2 * step, SCANNED_SAMPLES] };
-    let greatest = (GREATEST_SHARE * cut.size[1] as f32).floor();
+    let samples = cut.size[1] as f32;
+    let greatest = (GREATEST_SHARE * samples).max(THIN.min(0.5 * samples)).floor();
     let steps = |most: f32, step: f32| {
         let count = (most / step).floor() as i32;
         (-count..=count).map(move |n| n as f32 * step)
