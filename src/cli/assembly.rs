@@ -4,6 +4,7 @@ use super::args::{
     ClimbArgs, DescendArgs, DrawArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs, SmoothArgs,
     TimeArgs, TrackArgs,
 };
+use super::interpretation::bytes;
 use super::report::Report;
 use super::request::{Request, Usage};
 use ::time::TimeSettings;
@@ -36,9 +37,10 @@ pub(super) fn place(option: &str, text: &str) -> Result<[f64; 3], Usage> {
     if text.split(',').count() == 3 && place.iter().all(|number| number.is_finite()) { Ok(place) } else { Err(wrong()) }
 }
 
-pub(super) fn time(typed: TimeArgs) -> Request {
-    let command = ComputeTime { name: typed.name, settings: TimeSettings::default() };
-    Request::Change { project: typed.project, command: Command::Time(command) }
+pub(super) fn time(typed: TimeArgs) -> Result<Request, Usage> {
+    let memory_bytes = bytes("--memory", typed.memory.as_deref())?;
+    let command = ComputeTime { name: typed.name, settings: TimeSettings::default(), memory_bytes };
+    Ok(Request::Change { project: typed.project, command: Command::Time(command) })
 }
 
 pub(super) fn pick(typed: PickArgs) -> Result<Request, Usage> {

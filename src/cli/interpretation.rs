@@ -2,6 +2,7 @@
 
 use super::args::{
     AttributeArgs, ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs,
+    StackArgs,
 };
 use super::assembly;
 use super::request::{Listing, Request, Usage};
@@ -14,6 +15,7 @@ use formats::{
 use project::command::{
     AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, MoveStickPoint, RemoveFault,
     RemoveHorizon, RemovePick, RenameFault, RenameHorizon, SetContact, SetFaultExtent, SetHorizonColour, SetTruncation,
+    Spacing, StackHorizons,
 };
 use project::document::Polarity;
 use project::memory_budget;
@@ -49,8 +51,7 @@ pub(super) fn bytes(option: &str, typed: Option<&str>) -> Result<Option<u64>, Us
 }
 
 pub(super) fn attribute(typed: AttributeArgs) -> Result<Request, Usage> {
-    let kinds = [AttributeKind::Semblance, AttributeKind::Envelope, AttributeKind::Dip, AttributeKind::Flattened]
-        .map(|kind| (kind.name(), kind));
+    let kinds = AttributeKind::ALL.map(|kind| (kind.name(), kind));
     let mut dip = DipSettings::default();
     dip.max_dip = typed.max_dip.unwrap_or(dip.max_dip);
     let command = ComputeAttribute {
@@ -141,6 +142,7 @@ pub(super) fn horizon(action: HorizonAction) -> Result<Request, Usage> {
         HorizonAction::Track(typed) => assembly::track(typed)?,
         HorizonAction::Fill(typed) => assembly::fill(typed),
         HorizonAction::Smooth(typed) => assembly::smooth(typed),
+        HorizonAction::Stack(typed) => stack(typed)?,
         HorizonAction::Replay(typed) => assembly::replay(typed),
         HorizonAction::Unpick { project, id } => {
             Request::Change { project, command: Command::RemovePick(RemovePick { id }) }
@@ -158,6 +160,17 @@ pub(super) fn horizon(action: HorizonAction) -> Result<Request, Usage> {
             Request::Change { project, command: Command::RemoveHorizon(RemoveHorizon { name }) }
         }
     })
+}
+
+fn stack(typed: StackArgs) -> Result<Request, Usage> {
+    let spacings = [("isochrons", Spacing::Isochrons), ("proportional", Spacing::Proportional)];
+    let command = StackHorizons {
+        count: typed.count,
+        between: <[String; 2]>::try_from(typed.between).ok(),
+        spacing: word("--spacing", &typed.spacing, &spacings)?,
+        name: typed.name,
+    };
+    Ok(Request::Change { project: typed.project, command: Command::StackHorizons(command) })
 }
 
 fn add_fault(typed: FaultAddArgs) -> Result<Request, Usage> {
@@ -231,6 +244,10 @@ pub(super) fn export(typed: ExportArgs) -> Result<Request, Usage> {
         });
         let format = format.transpose()?;
         return Ok(Request::ExportVolume { project: typed.project, out: typed.out, volume, format });
+    }
+    if let (Some(horizon), false) = (&typed.horizon, typed.values.is_empty()) {
+        let (horizon, values, window) = (horizon.clone(), typed.values, typed.window);
+        return Ok(Request::ExportValues { project: typed.project, out: typed.out, horizon, values, window });
     }
     let surface = match (typed.horizon, typed.fault) {
         (Some(name), _) => (SurfaceKind::Horizon, name),

@@ -74,6 +74,8 @@ pub(super) enum Request {
     ExportModel(ModelRequest),
     /// Write a page for browsers.
     Review(ReviewRequest),
+    /// Write the values of volumes along a horizon.
+    ExportValues { project: PathBuf, out: PathBuf, horizon: String, values: Vec<String>, window: usize },
     /// Compute i, j, k.
     Parameterize { project: PathBuf, size: Option<[usize; 3]>, change: Option<SetParameterization> },
     /// Draw a picture.
@@ -185,7 +187,7 @@ impl TryFrom<Action> for Request {
             Action::Well(action) => well::well(action)?,
             Action::Extract(typed) => extraction::extract(typed)?,
             Action::Illustrate(typed) => illustrate(typed)?,
-            Action::Time(typed) => assembly::time(typed),
+            Action::Time(typed) => assembly::time(typed)?,
             Action::Pick(typed) => assembly::pick(typed)?,
             Action::Climb(typed) => assembly::climb(typed),
             Action::Descend(typed) => assembly::descend(typed),
@@ -193,8 +195,8 @@ impl TryFrom<Action> for Request {
             Action::Export(typed) => interpretation::export(*typed)?,
             Action::Parameterize(typed) => {
                 let size = typed.size.as_deref().map(|size| counts::<3>("--size", size)).transpose()?;
-                let change =
-                    (typed.from.is_some() || typed.computed).then_some(SetParameterization { from: typed.from });
+                let changes = typed.from.is_some() || typed.computed || typed.by_time;
+                let change = changes.then_some(SetParameterization { from: typed.from, by_time: typed.by_time });
                 Self::Parameterize { project: typed.project, size, change }
             }
             Action::Render(typed) => Self::Render(render_request(*typed)?),

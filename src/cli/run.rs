@@ -93,6 +93,13 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
             report.field("file", &out).field("points", count);
             report
         }
+        Request::ExportValues { project, out, horizon, values, window } => {
+            let project = open(&project)?;
+            let done = surface_export::write_values(&project, &out, (&horizon, &values), window, &progress)?;
+            let mut report = Report::line(format!("{}: {} nodes of {horizon}", out.display(), done.nodes));
+            report.field("file", &out).field("nodes", done.nodes);
+            report
+        }
         Request::ExportVolume { project, out, volume, format } => {
             told(segy_export::write(&open(&project)?, &out, &volume, format, &progress)?)
         }

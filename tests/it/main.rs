@@ -38,6 +38,8 @@ mod sources;
 mod steps;
 mod store;
 mod time;
+mod time_unknown;
+mod time_uses;
 mod unpicked;
 mod volume_rendering;
 mod well;

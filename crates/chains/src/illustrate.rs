@@ -174,7 +174,7 @@ pub fn layers_by_time(project: &mut Project, layers: usize, progress: &Progress)
         accept_faults(project, progress)?;
     }
     if !has_time(project.document()) {
-        let time = ComputeTime { name: "time".to_owned(), settings: TimeSettings::default() };
+        let time = ComputeTime { name: "time".to_owned(), settings: TimeSettings::default(), memory_bytes: None };
         project.apply(&Command::Time(time), progress)?;
     }
     let (tau, volume) = read_time(project.root(), project.document(), progress)?;

@@ -350,6 +350,26 @@ pub enum ProjectError {
         /// Inline, crossline, vertical value.
         at: [f64; 3],
     },
+    /// A stack of that many horizons is none, or has no room.
+    #[error("a stack of {count} horizons: from 1 to {most} can be added to this project")]
+    StackCount {
+        /// Number that was asked for.
+        count: usize,
+        /// Largest number that can be added.
+        most: usize,
+    },
+    /// Shares of a thickness need two horizons.
+    #[error("shares of a thickness lie between two horizons, and none were named")]
+    StackBetween,
+    /// The two horizons of a stack have nothing between them.
+    #[error("{}", match between {
+        Some([top, base]) => format!("nothing lies below \"{top}\" and above \"{base}\" in one fault block"),
+        None => "geologic time is known nowhere".to_owned(),
+    })]
+    StackOrder {
+        /// The horizons, the upper one first.
+        between: Option<[String; 2]>,
+    },
     /// Nothing in geologic time can bound layers.
     #[error("no level of geologic time crosses half of the traces, so there are no layers to draw")]
     NoLevels,

@@ -1,6 +1,7 @@
-//! Writes a horizon or fault of a project as a file for other programs.
+//! Writes a horizon or fault of a project, or the values of volumes along a horizon, as a file for other programs.
 
 use crate::Project;
+use crate::command::values_table;
 use crate::content;
 use crate::error::{Noun, ProjectError};
 use crate::folder::refuse_inside_project;
@@ -36,4 +37,34 @@ pub fn write(
             ExportReport { nodes: fault.mesh.vertices.len(), notes: Vec::new() }
         }
     })
+}
+
+/// Writes the values of volumes at the nodes of a horizon as CSV; with `window` above 0 also the mean, the root mean square
+/// and the greatest magnitude over so many samples to both sides.
+///
+/// # Errors
+/// There is no such horizon or volume, a volume has a lattice of its own, data are damaged, or the file lies inside a
+/// project or cannot be written.
+pub fn write_values(
+    project: &Project,
+    out: &Path,
+    (name, volumes): (&str, &[String]),
+    window: usize,
+    progress: &Progress,
+) -> Result<ExportReport, ProjectError> {
+    refuse_inside_project(out)?;
+    let (document, root) = (project.document(), project.root());
+    let frame = document.frame()?;
+    let horizon = content::read_horizon(root, &document.horizons[document.position(Noun::Horizon, name)?], progress)?;
+    let mut read = Vec::new();
+    for volume in volumes {
+        let entry = &document.volumes[document.position(Noun::Volume, volume)?];
+        if entry.geometry.is_some() {
+            return Err(ProjectError::OtherLattice { volume: volume.clone() });
+        }
+        read.push((volume.clone(), content::read_volume(root, entry, frame, progress)?));
+    }
+    let table = values_table(&horizon, frame, &read, window);
+    store::replace_file(out, table.as_bytes())?;
+    Ok(ExportReport { nodes: table.lines().count() - 1, notes: Vec::new() })
 }

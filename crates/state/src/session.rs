@@ -1,7 +1,9 @@
 //! The open project as the window knows it: a copy of its document, its history, and its view.
 
+use super::picking::Tool;
 use super::view::{Panel, ViewState};
 use project::HistoryLine;
+use project::command::has_time;
 use project::document::Document;
 use std::path::PathBuf;
 
@@ -35,7 +37,12 @@ impl Session {
     /// A project that was just opened, with the given view or else its own first scene.
     pub fn new(snapshot: Snapshot, view: Option<ViewState>) -> Self {
         let Snapshot { root, document, history } = snapshot;
-        let mut view = view.unwrap_or_else(|| ViewState::of(&document));
+        let mut view = view.unwrap_or_else(|| {
+            let mut usual = ViewState::of(&document);
+            // With geologic time one click makes a horizon.
+            usual.picking.tool = if has_time(&document) { Tool::Time } else { usual.picking.tool };
+            usual
+        });
         view.fit(&document);
         Self { root, document, revision: 0, history, view }
     }
@@ -44,7 +51,14 @@ impl Session {
     pub fn renew(&mut self, snapshot: Snapshot) {
         let had_frame = self.document.geometry.is_some();
         let was_bare = self.document.horizons.is_empty();
-        self.view.picking.fit(&self.document, &snapshot.document);
+        let times = [&self.document, &snapshot.document].map(has_time);
+        let picking = &mut self.view.picking;
+        picking.tool = match (times, picking.tool) {
+            ([false, true], Tool::Pick) => Tool::Time,
+            ([true, false], Tool::Time) => Tool::Pick,
+            (_, tool) => tool,
+        };
+        picking.fit(&self.document, &snapshot.document);
         self.view.picking.accepted = None;
         self.view.picking.added.clear();
         self.document = snapshot.document;

@@ -1,11 +1,14 @@
 //! Measures isochrons for `docs/time.md`: `cargo run -p petroglyph-time --example isochrons [SIDE] [SNR SEED]`.
 //!
-//! With a signal-to-noise ratio and a seed, that survey alone, with its faults drawn and found.
+//! With a signal-to-noise ratio and a seed, that survey alone, with its faults drawn and found (`drawn` after it: only
+//! drawn); `--dump FILE` then writes
+//! its amplitudes for other programs (float32), and `--tau FILE` measures the τ that one of them wrote
+//! (`bench/time_peers.py`). `large` alone repeats the surveys of 256³ samples.
 //!
 //! An isochron from one trace of each horizon of synthetic surveys is compared with the truth on all traces.
 
 use glam::DVec3;
-use interp::{GrowSettings, grow_surfaces};
+use interp::{GrowSettings, Surfaces, grow_surfaces};
 use model::FaultNetwork;
 use std::error::Error;
 use std::time::Instant;
@@ -164,6 +167,15 @@ struct Case {
     coverage: Vec<[f64; 2]>,
     extraction_s: f64,
     time_s: f64,
+    /// Processor time of geologic time, microseconds a voxel.
+    processor_us: f64,
+}
+
+/// Processor time that this program has used, s; 0 where the system does not tell.
+fn processor_s() -> f64 {
+    let text = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let ticks = text.rsplit(')').next().unwrap_or_default().split_whitespace().skip(11).take(2);
+    ticks.filter_map(|field| field.parse::<f64>().ok()).sum::<f64>() / 100.0
 }
 
 fn case(side: usize, snr: f64, seed: u64, faults: Faults) -> Result<Case, Box<dyn Error>> {
@@ -183,8 +195,10 @@ fn case(side: usize, snr: f64, seed: u64, faults: Faults) -> Result<Case, Box<dy
         cuts = found;
     }
     let start = Instant::now();
-    let found = geologic_time(&survey.seismic, &surfaces, &cuts, &TimeSettings::default(), &progress)?;
+    let found =
+        geologic_time(&survey.seismic, &surfaces, &cuts.as_slice().into(), &TimeSettings::default(), &progress)?;
     let time_s = start.elapsed().as_secs_f64();
+    let processor_us = 1e6 * (processor_s() - processor) / (side * side * side) as f64;
     let names = survey.truth.horizons.iter().map(|horizon| horizon.name.clone());
     let horizons: Vec<(String, Errors)> =
         names.zip(measure(&survey, &found.tau, &Reflections::new(&surfaces, &cuts), &cuts)).collect();
@@ -195,17 +209,17 @@ fn case(side: usize, snr: f64, seed: u64, faults: Faults) -> Result<Case, Box<dy
         all.event[0].extend(&errors.event[0]);
         all.event[1].extend(&errors.event[1]);
     }
-    Ok(Case { snr, seed, all, horizons, not_monotone: found.not_monotone, coverage, extraction_s, time_s })
+    Ok(Case { snr, seed, all, horizons, not_monotone: found.not_monotone, coverage, extraction_s, time_s, processor_us })
 }
 
 /// Headings of the last columns.
-const MORE: &str = "not monotone before the last step | extraction + time, s";
+const MORE: &str = "not monotone before the last step | extraction + time, s | processor, µs a voxel";
 
 /// Prints one row of a table.
 fn row(case: &mut Case, note: &str) {
     let [same, other] = &mut case.all.event;
     println!(
-        "| {} | {}{note} | {} | {} | {} | {} | {:.1} % | {:.1} + {:.1} |",
+        "| {} | {}{note} | {} | {} | {} | {} | {:.1} % | {:.1} + {:.1} | {:.1} |",
         case.snr,
         case.seed,
         figures(same),
@@ -214,21 +228,45 @@ fn row(case: &mut Case, note: &str) {
         figures(&mut case.all.other),
         case.not_monotone * 100.0,
         case.extraction_s,
-        case.time_s
+        case.time_s,
+        case.processor_us
     );
 }
 
+/// Writes the amplitudes of a survey for other programs, or measures the levels of the τ that one of them wrote.
+fn exchange(side: usize, snr: f64, seed: u64, option: &str, file: &str) -> Result<(), Box<dyn Error>> {
+    let settings = SynthSettings { size: [side; 3], seed, snr: Some(snr), ..SynthSettings::default() };
+    let survey = Synthetic::generate(&settings, &Progress::silent())?;
+    if option == "--dump" {
+        let bytes: Vec<u8> = survey.seismic.samples().iter().flat_map(|sample| sample.to_le_bytes()).collect();
+        return Ok(std::fs::write(file, bytes)?);
+    }
+    let bytes = std::fs::read(file)?;
+    let samples = bytes.chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]]));
+    let tau = Volume::from_samples([side; 3], samples.collect())?;
+    let nothing = Surfaces { size: [side; 3], ..Surfaces::default() };
+    let mut all = Errors::default();
+    for errors in measure(&survey, &tau, &Reflections::new(&nothing, &[]), &[]) {
+        all.same.extend(errors.same);
+        all.other.extend(errors.other);
+    }
+    println!("same block {}, other blocks {}", figures(&mut all.same), figures(&mut all.other));
+    Ok(())
+}
+
 /// Prints the figures of one survey.
-fn one(side: usize, snr: f64, seed: u64) -> Result<(), Box<dyn Error>> {
-    for (faults, note) in [(Faults::Drawn, "drawn"), (Faults::Found, "found")] {
+fn one(side: usize, snr: f64, seed: u64, only_drawn: bool) -> Result<(), Box<dyn Error>> {
+    let both = [(Faults::Drawn, "drawn"), (Faults::Found, "found")];
+    for (faults, note) in both.into_iter().take(if only_drawn { 1 } else { 2 }) {
         let mut case = case(side, snr, seed, faults)?;
         println!(
-            "faults {note}: same block {}, other blocks {}; {:.1} % not monotone before the last step; {:.1} + {:.1} s",
+            "faults {note}: same block {}, other blocks {}; {:.1} % not monotone before the last step; {:.1} + {:.1} s, {:.1} us a voxel",
             figures(&mut case.all.same),
             figures(&mut case.all.other),
             case.not_monotone * 100.0,
             case.extraction_s,
-            case.time_s
+            case.time_s,
+            case.processor_us
         );
         let coverage = case.coverage.iter().map(|[found, beyond]| format!("{found:.2} (+{beyond:.2})"));
         println!("  coverage: {}", coverage.collect::<Vec<_>>().join(", "));
@@ -243,10 +281,31 @@ fn one(side: usize, snr: f64, seed: u64) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// The surveys of 256³ samples.
+fn large() -> Result<(), Box<dyn Error>> {
+    println!("\n## At {LARGE}³\n\nSNR 3, faults drawn.\n");
+    println!(
+        "| SNR | seed | event, same block | event, other blocks | level, same block | level, other blocks | {MORE} |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    let seen = SEEDS[..3].iter().map(|seed| (*seed, ""));
+    for (seed, note) in seen.chain(HELD_OUT.into_iter().map(|seed| (seed, ", held out"))) {
+        row(&mut case(LARGE, 3.0, seed, Faults::Drawn)?, note);
+    }
+    Ok(())
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
+    if std::env::args().nth(1).is_some_and(|word| word == "large") {
+        return large();
+    }
     let side: usize = std::env::args().nth(1).map_or(Ok(128), |side| side.parse())?;
+    if let [_, _, snr, seed, option, file] = &std::env::args().collect::<Vec<_>>()[..] {
+        return exchange(side, snr.parse()?, seed.parse()?, option, file);
+    }
     if let (Some(snr), Some(seed)) = (std::env::args().nth(2), std::env::args().nth(3)) {
-        return one(side, snr.parse()?, seed.parse()?);
+        let only_drawn = std::env::args().nth(4).is_some_and(|word| word == "drawn");
+        return one(side, snr.parse()?, seed.parse()?, only_drawn);
     }
     println!("# Geologic time\n");
     println!(
@@ -259,7 +318,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!(
         "| SNR | seed | event, same block | event, other blocks | level, same block | level, other blocks | {MORE} |"
     );
-    println!("|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|");
     let seen = RATIOS.into_iter().flat_map(|snr| SEEDS.into_iter().map(move |seed| (snr, seed, "")));
     let held_out = RATIOS.into_iter().flat_map(|snr| HELD_OUT.into_iter().map(move |seed| (snr, seed, ", held out")));
     let mut cases = Vec::new();
@@ -289,14 +348,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let coverage: Vec<String> = case.coverage.iter().map(|[found, _]| format!("{:.0} %", found * 100.0)).collect();
         println!("| {seed}{note} | {} | {} | {} |", figures(same), figures(other), coverage.join(", "));
     }
-    println!("\n## At {LARGE}³\n\nSNR 3, faults drawn.\n");
-    println!(
-        "| SNR | seed | event, same block | event, other blocks | level, same block | level, other blocks | {MORE} |"
-    );
-    println!("|---|---|---|---|---|---|---|---|");
-    for (seed, note) in [(SEEDS[0], ""), (SEEDS[1], ""), (HELD_OUT[0], ", held out"), (HELD_OUT[1], ", held out")] {
-        row(&mut case(LARGE, 3.0, seed, Faults::Drawn)?, note);
-    }
+    large()?;
     print!("{NOTES}");
     Ok(())
 }

@@ -2,8 +2,9 @@
 
 use crate::cut::Cut;
 use crate::error::TimeError;
-use crate::hubs::Hubs;
-use crate::known::{hide_unknown, make_monotone};
+use crate::hubs::{Hubs, KNOWN};
+use crate::interpretation::{Interpretation, KnownHorizon, Place};
+use crate::known::{hide_unknown, make_monotone, open_jumps, pin};
 use crate::links::Links;
 use crate::matches::Timed;
 use crate::merge::merge;
@@ -65,7 +66,9 @@ pub struct GeologicTime {
 /// Misfit, in samples, at which a vertex counts half in the second minimisation.
 const MISFIT: f32 = 1.5;
 
-/// Computes geologic time of a volume of amplitudes from its candidates and the faults that cut it.
+/// Computes geologic time of a volume of amplitudes from its candidates and from what was interpreted.
+///
+/// No link crosses a fault; a picked horizon has one τ, at which τ jumps where it is an unconformity.
 ///
 /// τ is not known, and NaN, on dead traces, farther than [`TimeSettings::reach`] from every patch, and in parts of the
 /// volume that no patch and no fault with a throw joins to the largest. Without candidates it is known nowhere.
@@ -80,7 +83,7 @@ const MISFIT: f32 = 1.5;
 /// ```
 /// use interp::{GrowSettings, grow_surfaces};
 /// use survey::{Progress, Volume};
-/// use time::{TimeSettings, geologic_time};
+/// use time::{Interpretation, TimeSettings, geologic_time};
 ///
 /// // Reflections that deepen by half a sample a trace.
 /// let mut volume = Volume::filled([24, 24, 48], 0.0f32);
@@ -89,7 +92,8 @@ const MISFIT: f32 = 1.5;
 ///     *sample = ((z - 0.5 * x) * 0.7).sin();
 /// }
 /// let surfaces = grow_surfaces(&volume, &GrowSettings::default(), &Progress::silent())?;
-/// let found = geologic_time(&volume, &surfaces, &[], &TimeSettings::default(), &Progress::silent())?;
+/// let nothing = Interpretation::default();
+/// let found = geologic_time(&volume, &surfaces, &nothing, &TimeSettings::default(), &Progress::silent())?;
 /// // Ten traces on, the same time lies five samples deeper.
 /// assert!((found.tau.at(15, 12, 29) - found.tau.at(5, 12, 24)).abs() < 0.05);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -97,7 +101,7 @@ const MISFIT: f32 = 1.5;
 pub fn geologic_time(
     volume: &Volume<f32>,
     surfaces: &Surfaces,
-    cuts: &[Cut],
+    interpretation: &Interpretation,
     settings: &TimeSettings,
     progress: &Progress,
 ) -> Result<GeologicTime, TimeError> {
@@ -106,13 +110,13 @@ pub fn geologic_time(
         return Err(TimeError::Size { candidates: surfaces.size, volume: size });
     }
     survey::memory::check("geologic time", &size, BYTES_A_VOXEL)?;
-    let mut solution = Solution::start(volume, surfaces, cuts, settings, progress)?;
+    let mut solution = Solution::start(volume, surfaces, interpretation, settings, progress)?;
     if solution.hubs.len() == 0 {
         return Ok(GeologicTime { tau: Volume::filled(size, f32::NAN), known: 0.0, not_monotone: 0.0, steps: 0 });
     }
     solution.minimise("solving for geologic time", progress)?;
     solution.weigh_vertices();
-    if !cuts.is_empty() {
+    if !interpretation.cuts.is_empty() {
         for round in ROUNDS {
             solution.match_faults(&round, progress)?;
             solution.merge(round.merge);
@@ -123,7 +127,7 @@ pub fn geologic_time(
 }
 
 /// Memory that is needed for each voxel beside the volume and its candidates.
-const BYTES_A_VOXEL: usize = 40;
+pub(crate) const BYTES_A_VOXEL: usize = 40;
 
 /// What one round of matching does.
 struct Round {
@@ -146,6 +150,9 @@ const ROUNDS: [Round; 3] = [
 struct Solution<'a> {
     volume: &'a Volume<f32>,
     cuts: &'a [Cut],
+    horizons: &'a [KnownHorizon],
+    /// Places of one time in two wells.
+    wells: Vec<Tie>,
     settings: &'a TimeSettings,
     hubs: Hubs,
     links: Links,
@@ -159,19 +166,29 @@ impl<'a> Solution<'a> {
     fn start(
         volume: &'a Volume<f32>,
         surfaces: &Surfaces,
-        cuts: &'a [Cut],
+        interpretation: &'a Interpretation,
         settings: &'a TimeSettings,
         progress: &Progress,
     ) -> Result<Self, TimeError> {
-        let hubs = Hubs::new(surfaces, cuts, settings.fewest_vertices, settings.hub_weight);
-        let links = Links::new(&hubs, cuts);
+        let Interpretation { cuts, horizons, same } = interpretation;
+        let hubs = Hubs::new(surfaces, cuts, settings.fewest_vertices, settings.hub_weight)
+            .with_horizons(horizons, settings.hub_weight);
+        let links = Links::new(&hubs, cuts, horizons);
+        let ny = surfaces.size[1];
+        let tie = |pair: &[Place; 2]| Tie {
+            trace: pair.map(|at| (at.trace[0] * ny + at.trace[1]) as u32),
+            z: pair.map(|at| at.z),
+            weight: WELL_WEIGHT,
+        };
+        let wells: Vec<Tie> = same.iter().map(tie).collect();
         let mut near = start::neighbours(&hubs, &links);
+        near.extend(start::tied(&hubs, &wells, None));
         let ties = spanning_ties(volume, &hubs, &links, cuts, &mut near);
         let times = start::hub_times(hubs.len(), &near);
         let mut s = vec![0.0f32; surfaces.size.iter().product()];
         let of_hub = |v: usize| times[hubs.hub[v] as usize] as f32 - hubs.z[v];
         start::add_between(&hubs, &links, of_hub, &mut s, progress)?;
-        Ok(Self { volume, cuts, settings, hubs, links, ties, s, steps: 0 })
+        Ok(Self { volume, cuts, horizons, wells, settings, hubs, links, ties, s, steps: 0 })
     }
 
     fn system(&self) -> System<'_> {
@@ -203,9 +220,12 @@ impl<'a> Solution<'a> {
     fn weigh_vertices(&mut self) {
         let times = self.vertex_times();
         let means = self.hubs.means(&times);
+        let is_known = self.settings.hub_weight * KNOWN;
         for (v, time) in times.iter().enumerate() {
             let off = (time - means[self.hubs.hub[v] as usize]) / MISFIT;
-            self.hubs.weight[v] = self.settings.hub_weight / (1.0 + off * off).powi(2);
+            if self.hubs.weight[v] < is_known {
+                self.hubs.weight[v] = self.settings.hub_weight / (1.0 + off * off).powi(2);
+            }
         }
     }
 
@@ -221,8 +241,17 @@ impl<'a> Solution<'a> {
     fn finish(mut self) -> Result<GeologicTime, TimeError> {
         let size = self.volume.size();
         let voxels = size.iter().product::<usize>().max(1) as f64;
+        open_jumps(&mut self.s, size, self.horizons);
         let changed = make_monotone(&mut self.s, &self.hubs, &self.links);
-        let known = hide_unknown(&mut self.s, &self.hubs, &self.links, &self.ties, self.volume, self.settings.reach);
+        pin(&mut self.s, &self.hubs, &self.links, self.settings.hub_weight * KNOWN);
+        let known = hide_unknown(
+            &mut self.s,
+            &self.hubs,
+            &self.links,
+            &[self.ties, self.wells].concat(),
+            self.volume,
+            self.settings.reach,
+        );
         let mut tau = Volume::filled(size, f32::NAN);
         tau.samples_mut().copy_from_slice(&self.s);
         let not_monotone = changed as f64 / voxels;
@@ -240,7 +269,8 @@ impl<'a> Solution<'a> {
         }
         self.ties = ties;
         let times = self.vertex_times();
-        let tied = start::tied(&self.hubs, &self.ties, Some(&times));
+        let mut tied = start::tied(&self.hubs, &self.ties, Some(&times));
+        tied.extend(start::tied(&self.hubs, &self.wells, Some(&times)));
         let near = start::neighbours(&self.hubs, &self.links);
         let more = start::corrections(self.hubs.len(), &near, &tied);
         let mut s = std::mem::take(&mut self.s);
@@ -251,6 +281,8 @@ impl<'a> Solution<'a> {
     }
 }
 
+/// Weight of a pair of tops: as many traces would speak against it.
+const WELL_WEIGHT: f32 = 200.0;
 /// Steps between ties along a fault, lines and samples.
 const TIE_STEP: [usize; 2] = [2, 4];
 /// Weight of a tie: one for eight links.

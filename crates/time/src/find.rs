@@ -37,6 +37,12 @@ const OWN: f32 = 4.0;
 /// Cells along and down over which the extent of a fault is decided.
 const EXTENT: [usize; 2] = [3, 4];
 
+/// Cells along the shorter side of a fault that are looked at in every plane.
+const SCANNED: usize = 20;
+/// Planes whose evidence is summed over all cells, and those that are bent.
+const MOST_SUMMED: usize = 400;
+const MOST_BENT: usize = 12;
+
 /// Evidence `[line cell][sample cell][across]`.
 struct Evidence {
     lines: usize,
@@ -89,9 +95,14 @@ impl Evidence {
     }
 
     fn sum(&self, terms: &[f32; 5]) -> f32 {
+        self.sum_of_every(1, terms)
+    }
+
+    /// The evidence of every so manieth cell along and down.
+    fn sum_of_every(&self, step: usize, terms: &[f32; 5]) -> f32 {
         let mut sum = 0.0;
-        for along in 0..self.cells[0] {
-            for down in 0..self.cells[1] {
+        for along in (0..self.cells[0]).step_by(step) {
+            for down in (0..self.cells[1]).step_by(step) {
                 let [u, v] = self.scaled(along, down);
                 sum += self.at(along, down, quadratic(terms, u, v)).max(-2.0);
             }
@@ -110,11 +121,16 @@ impl Evidence {
                 (0..self.width).step_by(2).map(move |a| [a as f32, b, c, 0.0, 0.0])
             })
             .collect();
-        let sums: Vec<f32> = planes.par_iter().map(|terms| self.sum(terms)).collect();
+        // Some of the cells tell which planes are worth all of them.
+        let step = (self.cells[0].min(self.cells[1]) / SCANNED).max(1);
+        let rough: Vec<f32> = planes.par_iter().map(|terms| self.sum_of_every(step, terms)).collect();
         let mut order: Vec<usize> = (0..planes.len()).collect();
-        order.sort_by(|&m, &n| sums[n].total_cmp(&sums[m]).then(m.cmp(&n)));
-        let bent: Vec<([f32; 5], f32)> =
-            order[..order.len().min(12)].par_iter().map(|&n| self.bend(planes[n], sums[n])).collect();
+        order.sort_by(|&m, &n| rough[n].total_cmp(&rough[m]).then(m.cmp(&n)));
+        order.truncate(MOST_SUMMED);
+        let mut summed: Vec<(usize, f32)> = order.into_par_iter().map(|n| (n, self.sum(&planes[n]))).collect();
+        summed.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        summed.truncate(MOST_BENT);
+        let bent: Vec<([f32; 5], f32)> = summed.into_par_iter().map(|(n, sum)| self.bend(planes[n], sum)).collect();
         bent.into_iter().fold(([0.0; 5], f32::NEG_INFINITY), |best, next| if next.1 > best.1 { next } else { best })
     }
 
@@ -239,7 +255,7 @@ pub fn find_faults(
         return Ok(Vec::new());
     }
     let hubs = Hubs::new(surfaces, &[], fewest, 1.0);
-    let links = Links::new(&hubs, &[]);
+    let links = Links::new(&hubs, &[], &[]);
     let mut found = Vec::new();
     for across in [Across::Inlines, Across::Crosslines] {
         let mut evidence = Evidence::new(&hubs, across);

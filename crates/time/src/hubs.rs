@@ -2,16 +2,32 @@
 //!
 //! A patch that was tracked across a fault would tie the wrong beds together, so patches are cut where an edge of
 //! a triangle crosses a fault, and vertices within a trace of a fault are left out. What stays connected is a hub.
+//! A picked horizon is a hub of its own, whose vertices weigh [`KNOWN`] times as much; patches along it follow.
 //! Vertices are kept in the order of the traces, top down. Memory: 20 bytes a vertex; there is about one for every four
 //! voxels of a well-reflecting volume, and fewer elsewhere.
 
 use crate::cut::Cut;
+use crate::interpretation::KnownHorizon;
 use interp::{Extremum, Surfaces, UnionFind};
 use rayon::prelude::*;
 use std::ops::Range;
 
 /// Marks a vertex that belongs to no hub.
 const NONE: u32 = u32::MAX;
+
+/// Weight of a vertex of a picked horizon, over that of a patch.
+pub const KNOWN: f32 = 16.0;
+/// Distance from a picked horizon within which a vertex of a patch tells what it follows, samples.
+const ON_HORIZON: f32 = 0.75;
+
+/// A vertex on its way into a hub.
+#[derive(Clone, Copy)]
+struct Entry {
+    trace: u32,
+    z: f32,
+    hub: u32,
+    weight: f32,
+}
 
 /// The vertices of all hubs, by trace, and the vertices of each hub.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -75,24 +91,49 @@ impl Hubs {
                 }
             }
         }
+        let ny = surfaces.size[1];
         let kept = set.into_iter().enumerate().filter_map(|(v, s)| {
             let hub = if s == NONE { NONE } else { hub_of_set[s as usize] };
-            (hub != NONE).then_some((v as u32, hub))
+            let vertex = &vertices[v];
+            let trace = (usize::from(vertex.x) * ny + usize::from(vertex.y)) as u32;
+            (hub != NONE).then_some(Entry { trace, z: vertex.z, hub, weight })
         });
-        Self::by_trace(surfaces, kept.collect(), kind, weight)
+        Self::by_trace(surfaces.size, kept.collect(), kind)
     }
 
-    /// Puts vertices with their hubs into the order of the traces.
-    fn by_trace(surfaces: &Surfaces, mut kept: Vec<(u32, u32)>, kind: Vec<Extremum>, weight: f32) -> Self {
-        let size = surfaces.size;
-        let of = |v: u32| &surfaces.vertices[v as usize];
-        let trace = |v: u32| usize::from(of(v).x) * size[1] + usize::from(of(v).y);
-        kept.par_sort_unstable_by(|a, b| {
-            trace(a.0).cmp(&trace(b.0)).then(of(a.0).z.total_cmp(&of(b.0).z)).then(a.0.cmp(&b.0))
-        });
+    /// The same with picked horizons as hubs of their own, each following what most of its nodes lie on.
+    pub fn with_horizons(self, horizons: &[KnownHorizon], weight: f32) -> Self {
+        if horizons.iter().all(|horizon| horizon.nodes.is_empty()) {
+            return self;
+        }
+        let [nx, ny, nz] = self.size;
+        let mut kind = self.kind.clone();
+        let traces = (0..nx * ny).flat_map(|trace| self.on_trace(trace).map(move |v| (trace as u32, v)));
+        let mut entries: Vec<Entry> =
+            traces.map(|(trace, v)| Entry { trace, z: self.z[v], hub: self.hub[v], weight: self.weight[v] }).collect();
+        for horizon in horizons.iter().filter(|horizon| !horizon.nodes.is_empty()) {
+            let mut counts = [(Extremum::Peak, 0), (Extremum::Trough, 0), (Extremum::Zero, 0)];
+            for node in &horizon.nodes {
+                let trace = node.trace[0] * ny + node.trace[1];
+                for v in self.on_trace(trace).filter(|&v| (self.z[v] - node.z).abs() <= ON_HORIZON) {
+                    let follows = self.kind[self.hub[v] as usize];
+                    counts.iter_mut().filter(|(kind, _)| *kind == follows).for_each(|(_, count)| *count += 1);
+                }
+                let z = horizon.sample_of(node).clamp(0.0, (nz - 1) as f32);
+                entries.push(Entry { trace: trace as u32, z, hub: kind.len() as u32, weight: KNOWN * weight });
+            }
+            kind.push(counts.into_iter().fold(counts[0], |best, next| if next.1 > best.1 { next } else { best }).0);
+        }
+        Self::by_trace(self.size, entries, kind)
+    }
+
+    /// Puts vertices into the order of the traces.
+    fn by_trace(size: [usize; 3], mut kept: Vec<Entry>, kind: Vec<Extremum>) -> Self {
+        // Stable, so that vertices of one place keep their order.
+        kept.par_sort_by(|a, b| a.trace.cmp(&b.trace).then(a.z.total_cmp(&b.z)));
         let mut starts = vec![0u32; size[0] * size[1] + 1];
-        for &(v, _) in &kept {
-            starts[trace(v) + 1] += 1;
+        for entry in &kept {
+            starts[entry.trace as usize + 1] += 1;
         }
         for n in 1..starts.len() {
             starts[n] += starts[n - 1];
@@ -100,9 +141,9 @@ impl Hubs {
         let mut hubs = Self {
             size,
             starts,
-            z: kept.iter().map(|&(v, _)| of(v).z).collect(),
-            hub: kept.iter().map(|&(_, hub)| hub).collect(),
-            weight: vec![weight; kept.len()],
+            z: kept.iter().map(|entry| entry.z).collect(),
+            hub: kept.iter().map(|entry| entry.hub).collect(),
+            weight: kept.iter().map(|entry| entry.weight).collect(),
             kind,
             ..Self::default()
         };

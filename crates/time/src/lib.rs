@@ -17,6 +17,7 @@
 //!
 //! | step | where |
 //! |---|---|
+//! | what the user interpreted | [`Interpretation`] |
 //! | faults as cuts, and finding them where none is drawn | [`Cut`], [`find_faults`], `extent`, [`proposals`] |
 //! | patches cut at faults: hubs | `hubs` |
 //! | links and dips | `links` |
@@ -26,6 +27,8 @@
 //! | throws, then what matches across faults | `throws`, `logs`, `matches` |
 //! | patches of one event become one | `merge` |
 //! | one level of τ, and the event that it is with the reflections along it | [`isochron()`], [`Reflections`] |
+//! | beds laid flat, and where beds are missing | [`flattened`], [`rates`] |
+//! | slabs of a survey that does not fit into memory | [`Slabs`], [`JoinedSlabs`] |
 //! | levels that stand out | [`strongest_levels`], [`characters`] |
 //!
 //! Space: voxels, x = inline index, y = crossline index, z = sample index, z down.
@@ -40,6 +43,7 @@ mod extent;
 mod find;
 mod flatten;
 mod hubs;
+mod interpretation;
 mod isochron;
 pub mod isotonic;
 mod known;
@@ -49,7 +53,9 @@ mod logs;
 mod matches;
 mod merge;
 mod proposal;
+mod rate;
 mod reflections;
+mod slabs;
 mod solve;
 mod start;
 mod throws;
@@ -63,8 +69,11 @@ pub use error::TimeError;
 pub use event::{Event, Node, Seed, Support};
 pub use find::{FoundFault, find_faults};
 pub use flatten::flattened;
+pub use interpretation::{Interpretation, Jump, KnownHorizon, Place};
 pub use isochron::{Crossing, Isochron, isochron};
 pub use levels::{Character, Level, characters, strongest_levels};
 pub use proposal::proposals;
+pub use rate::rates;
 pub use reflections::{Reflection, Reflections};
+pub use slabs::{JoinedSlabs, Slabs, surfaces_within};
 pub use throws::Throw;

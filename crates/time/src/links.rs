@@ -6,14 +6,19 @@
 
 use crate::cut::Cut;
 use crate::hubs::Hubs;
+use crate::interpretation::KnownHorizon;
 use rayon::prelude::*;
 
 /// Dips are stored in steps of this part of a sample.
 pub const DIP_STEP: f32 = 1.0 / 256.0;
 /// Weights are stored in steps of this part.
 pub const WEIGHT_STEP: f32 = 1.0 / 127.0;
-/// Bit of the weight along inlines that says that a fault lies between this sample and the next of its trace.
+/// Bit of the weight along inlines that says that a fault lies between this sample and the next of its trace; in the
+/// weight along crosslines, that a fault or an unconformity does.
 pub const CUT_BELOW: u8 = 1 << 7;
+/// What is left of the weight of a link through an unconformity: without any the beds that it leaves as islands would
+/// have no time.
+pub const THROUGH: f32 = 0.05;
 
 /// Widest gap between two hubs across which the dip is interpolated with full weight, samples.
 const FULL_GAP: f32 = 16.0;
@@ -31,7 +36,7 @@ const NEAR_FAULT: f32 = 6.0;
 pub struct Links {
     /// Dip to the next inline and to the next crossline, in [`DIP_STEP`].
     pub dip: [Vec<i16>; 2],
-    /// Weight of the same links in [`WEIGHT_STEP`]; 0 on the last lines. That to the next inline has [`CUT_BELOW`] too.
+    /// Weight of the same links in [`WEIGHT_STEP`]; 0 on the last lines. Both have [`CUT_BELOW`] too.
     pub weight: [Vec<u8>; 2],
 }
 
@@ -72,9 +77,10 @@ fn dip_at(shared: &[(f32, f32)], below: usize, z: f32) -> (f32, f32) {
 }
 
 impl Links {
-    /// Links along the dips of the hubs, cut at faults.
-    pub fn new(hubs: &Hubs, cuts: &[Cut]) -> Self {
+    /// Links along the dips of the hubs, cut at faults, and weak through unconformities.
+    pub fn new(hubs: &Hubs, cuts: &[Cut], horizons: &[KnownHorizon]) -> Self {
         let [nx, ny, nz] = hubs.size;
+        let jumps: Vec<Vec<f32>> = horizons.iter().filter_map(|horizon| jumps(horizon, hubs.size)).collect();
         let line = |axis: usize| -> (Vec<i16>, Vec<u8>) {
             let (mut dips, mut weights) = (vec![0i16; nx * ny * nz], vec![0u8; nx * ny * nz]);
             let lines = dips.par_chunks_mut(ny * nz).zip(weights.par_chunks_mut(ny * nz)).enumerate();
@@ -88,9 +94,12 @@ impl Links {
                         shared(hubs, x * ny + y, next[0] * ny + next[1], &mut by_hub, &mut depths);
                         fill(&depths, dips, weights);
                         cuts.iter().for_each(|cut| cut_links(cut, [x, y], next, dips, weights));
+                        let traces = [x * ny + y, next[0] * ny + next[1]];
+                        jumps.iter().for_each(|jump| weaken(traces.map(|trace| jump[trace]), dips, weights));
                     }
-                    if axis == 0 {
-                        cuts.iter().for_each(|cut| mark_below(cut, [x, y], weights));
+                    cuts.iter().for_each(|cut| mark_below(cut, [x, y], weights));
+                    if axis == 1 {
+                        jumps.iter().for_each(|jump| mark_jump(jump[x * ny + y], weights));
                     }
                 }
             });
@@ -104,6 +113,46 @@ impl Links {
     #[inline]
     pub fn is_cut_below(&self, voxel: usize) -> bool {
         self.weight[0][voxel] & CUT_BELOW != 0
+    }
+
+    /// Whether a fault or an unconformity lies between the voxel of this index and the next of its trace.
+    #[inline]
+    pub fn is_broken_below(&self, voxel: usize) -> bool {
+        self.weight[1][voxel] & CUT_BELOW != 0
+    }
+}
+
+/// On every trace, between which samples τ jumps at a horizon, as the middle between them; NaN where it does not. `None`
+/// where it jumps nowhere. Where a trace has it twice, the upper one counts.
+pub(crate) fn jumps(horizon: &KnownHorizon, [nx, ny, nz]: [usize; 3]) -> Option<Vec<f32>> {
+    let mut all = vec![f32::NAN; nx * ny];
+    let mut any = false;
+    for (trace, above) in horizon.jumps(ny).filter(|(_, above)| *above >= 0.0 && *above < (nz - 1) as f32) {
+        // The least of a number and NaN is the number.
+        all[trace] = all[trace].min(above + 0.5);
+        any = true;
+    }
+    any.then_some(all)
+}
+
+/// Leaves little of the links whose ends lie on different sides of a jump.
+fn weaken([a, b]: [f32; 2], dips: &[i16], weights: &mut [u8]) {
+    if a.is_nan() || b.is_nan() {
+        return;
+    }
+    for z in 0..dips.len() {
+        let half = 0.5 * f32::from(dips[z]) * DIP_STEP;
+        if (z as f32 - half > a) != (z as f32 + half > b) {
+            let marks = weights[z] & CUT_BELOW;
+            weights[z] = (f32::from(weights[z] & !CUT_BELOW) * THROUGH).round() as u8 | marks;
+        }
+    }
+}
+
+/// Marks the sample of a trace below which τ jumps.
+fn mark_jump(at: f32, weights: &mut [u8]) {
+    if at.is_finite() {
+        weights[at as usize] |= CUT_BELOW;
     }
 }
 

@@ -134,11 +134,18 @@ impl System<'_> {
         self.hubs.size
     }
 
-    /// Calls `pair(dips, weights, line a, line b)` for all pairs of neighbouring traces of all lines.
-    fn each_pair(&self, out: &mut [f32], pair: impl Fn([usize; 2], &[i16], &[u8], &mut [f32], &mut [f32]) + Sync) {
+    /// Calls `first(line, its part of out)` for all inlines, then `pair(traces, dips, weights, trace a, trace b)` for all
+    /// pairs of neighbouring traces: those of an inline right after it, while it is in the cache.
+    fn each_line(
+        &self,
+        out: &mut [f32],
+        first: impl Fn(usize, &mut [f32]) + Sync,
+        pair: impl Fn([usize; 2], &[i16], &[u8], &mut [f32], &mut [f32]) + Sync,
+    ) {
         let [nx, ny, nz] = self.size();
         let line = ny * nz;
         out.par_chunks_mut(line).enumerate().for_each(|(x, out)| {
+            first(x, out);
             for y in 0..ny - 1 {
                 let at = (x * ny + y) * nz;
                 let (a, b) = out.split_at_mut((y + 1) * nz);
@@ -188,18 +195,18 @@ impl System<'_> {
         value.par_iter_mut().zip(&self.hubs.hub).zip(&self.hubs.weight).for_each(|((value, &hub), &weight)| {
             *value = weight * (*value - times[hub as usize]);
         });
-        out.par_chunks_mut(ny * nz).enumerate().for_each(|(x, out)| {
+        let along = |x: usize, out: &mut [f32]| {
             for y in 0..ny {
                 let trace = x * ny + y;
                 let own = trace * nz..(trace + 1) * nz;
                 let out = &mut out[y * nz..(y + 1) * nz];
-                self.along_trace(&s[own.clone()], &self.links.weight[0][own], out);
+                self.along_trace(&s[own.clone()], &self.links.weight[1][own], out);
                 for v in self.hubs.on_trace(trace) {
                     spread(out, self.hubs.z[v], value[v]);
                 }
             }
-        });
-        self.each_pair(out, |[ta, tb], dips, weights, out_a, out_b| {
+        };
+        self.each_line(out, along, |[ta, tb], dips, weights, out_a, out_b| {
             let (a, b) = (&s[ta * nz..(ta + 1) * nz], &s[tb * nz..(tb + 1) * nz]);
             each_link(dips, weights, |at_a, at_b, p, weight| {
                 let e = weight * (at_b.of(b) - at_a.of(a) + offset * p);
@@ -221,7 +228,7 @@ impl System<'_> {
         }
     }
 
-    /// The terms of one trace: its first and second differences, not across faults.
+    /// The terms of one trace: its first and second differences, not across faults and unconformities.
     fn along_trace(&self, s: &[f32], weights: &[u8], out: &mut [f32]) {
         let [e1, e2] = self.smoothness;
         let nz = s.len();
@@ -242,8 +249,8 @@ impl System<'_> {
         }
     }
 
-    /// The diagonal of the matrix, without what the means of hubs take off it.
-    fn diagonal(&self) -> Vec<f32> {
+    /// The inverse of the diagonal of the matrix, without what the means of hubs take off it.
+    fn inverse_diagonal(&self) -> Vec<f32> {
         let [nx, ny, nz] = self.size();
         let [e1, e2] = self.smoothness;
         let mut out = vec![0.0f32; nx * ny * nz];
@@ -252,7 +259,7 @@ impl System<'_> {
             out[low] += weight * (1.0 - share) * (1.0 - share);
             out[(low + 1).min(nz - 1)] += weight * share * share;
         };
-        out.par_chunks_mut(ny * nz).enumerate().for_each(|(x, out)| {
+        let along = |x: usize, out: &mut [f32]| {
             for y in 0..ny {
                 let trace = x * ny + y;
                 let out = &mut out[y * nz..(y + 1) * nz];
@@ -262,8 +269,8 @@ impl System<'_> {
                     square(out, self.hubs.z[v], self.hubs.weight[v]);
                 }
             }
-        });
-        self.each_pair(&mut out, |_, dips, weights, a, b| {
+        };
+        self.each_line(&mut out, along, |_, dips, weights, a, b| {
             each_link(dips, weights, |at_a, at_b, _, weight| {
                 at_a.spread_square(a, weight);
                 at_b.spread_square(b, weight);
@@ -279,6 +286,7 @@ impl System<'_> {
             let from = anchor.trace as usize * nz;
             square(&mut out[from..from + nz], anchor.z, anchor.weight);
         }
+        out.par_iter_mut().for_each(|d| *d = 1.0 / *d);
         out
     }
 
@@ -295,16 +303,16 @@ impl System<'_> {
         progress: &Progress,
     ) -> Result<usize, Cancelled> {
         let line = self.size()[1] * self.size()[2];
-        let diagonal = self.diagonal();
+        let inverse = self.inverse_diagonal();
         let mut image = vec![0.0f32; s.len()];
         let mut residual = vec![0.0f32; s.len()];
         // What the residual is at s = 0 measures how far the start is.
-        self.gradient(&vec![0.0; s.len()], 1.0, &mut image);
-        let at_rest = dot(&image, &image, Some(&diagonal), line).sqrt();
+        self.gradient(&residual, 1.0, &mut image);
+        let at_rest = dot(&image, &image, Some(&inverse), line).sqrt();
         self.gradient(s, 1.0, &mut residual);
         residual.par_iter_mut().for_each(|r| *r = -*r);
-        let mut direction: Vec<f32> = residual.par_iter().zip(&diagonal).map(|(r, d)| r / d).collect();
-        let mut size = dot(&residual, &residual, Some(&diagonal), line);
+        let mut direction: Vec<f32> = residual.par_iter().zip(&inverse).map(|(r, d)| r * d).collect();
+        let mut size = dot(&residual, &residual, Some(&inverse), line);
         let mut steps = 0;
         while steps < most && size.sqrt() > tolerance * at_rest && size > 0.0 {
             progress.step(1)?;
@@ -314,14 +322,21 @@ impl System<'_> {
                 break;
             }
             let step = (size / along) as f32;
-            s.par_iter_mut().zip(&direction).for_each(|(s, d)| *s += step * d);
-            residual.par_iter_mut().zip(&image).for_each(|(r, a)| *r -= step * a);
-            let next = dot(&residual, &residual, Some(&diagonal), line);
+            let lines = s.par_chunks_mut(line).zip(residual.par_chunks_mut(line)).zip(direction.par_chunks(line));
+            let next = lines.zip(image.par_chunks(line)).zip(inverse.par_chunks(line));
+            let next: Vec<f64> = next
+                .map(|((((s, residual), direction), image), inverse)| {
+                    for (((s, r), p), a) in s.iter_mut().zip(residual.iter_mut()).zip(direction).zip(image) {
+                        *s += step * p;
+                        *r -= step * a;
+                    }
+                    products(residual, residual, Some(inverse))
+                })
+                .collect();
+            let next: f64 = next.iter().sum();
             let keep = (next / size) as f32;
-            direction
-                .par_iter_mut()
-                .zip(residual.par_iter().zip(&diagonal))
-                .for_each(|(p, (r, d))| *p = r / d + keep * *p);
+            let residuals = residual.par_iter().zip(&inverse);
+            direction.par_iter_mut().zip(residuals).for_each(|(p, (r, d))| *p = r * d + keep * *p);
             size = next;
             steps += 1;
         }
@@ -329,19 +344,28 @@ impl System<'_> {
     }
 }
 
-/// Σ a b, or Σ a b / d, summed line by line.
-fn dot(a: &[f32], b: &[f32], over: Option<&[f32]>, line: usize) -> f64 {
-    let parts: Vec<f64> = a
-        .par_chunks(line)
-        .zip(b.par_chunks(line))
-        .enumerate()
-        .map(|(n, (a, b))| {
-            let products = a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b));
-            match over {
-                Some(over) => products.zip(&over[n * line..]).map(|(p, d)| p / f64::from(*d)).sum::<f64>(),
-                None => products.sum(),
-            }
-        })
-        .collect();
+/// Σ a b, or Σ a b w, summed line by line.
+fn dot(a: &[f32], b: &[f32], weights: Option<&[f32]>, line: usize) -> f64 {
+    let own = |n: usize, len: usize| weights.map(|weights| &weights[n * line..n * line + len]);
+    let lines = a.par_chunks(line).zip(b.par_chunks(line)).enumerate();
+    let parts: Vec<f64> = lines.map(|(n, (a, b))| products(a, b, own(n, a.len()))).collect();
     parts.iter().sum()
+}
+
+/// Sums that run side by side, so that none waits for another.
+const LANES: usize = 8;
+
+/// Σ a b, or Σ a b w.
+fn products(a: &[f32], b: &[f32], weights: Option<&[f32]>) -> f64 {
+    let mut sums = [0.0f64; LANES];
+    let whole = a.len() / LANES * LANES;
+    let add = |sums: &mut [f64; LANES], n: usize| {
+        for (lane, sum) in sums.iter_mut().enumerate() {
+            let weighed = weights.map_or(b[n + lane], |weights| b[n + lane] * weights[n + lane]);
+            *sum += f64::from(a[n + lane] * weighed);
+        }
+    };
+    (0..whole).step_by(LANES).for_each(|n| add(&mut sums, n));
+    let rest: f64 = (whole..a.len()).map(|n| f64::from(a[n] * weights.map_or(b[n], |weights| b[n] * weights[n]))).sum();
+    sums.iter().sum::<f64>() + rest
 }

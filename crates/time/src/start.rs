@@ -5,18 +5,18 @@
 //! off by a part of the variation, which the dips then mend.
 
 use crate::hubs::Hubs;
-use crate::links::Links;
+use crate::links::{Links, THROUGH};
 use crate::solve::Tie;
 use interp::UnionFind;
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
-/// Two hubs that follow one another on some traces.
+/// Two hubs that follow one another on some traces, or that are beside two points of one time.
 #[derive(Debug, Clone, Copy)]
 pub struct Neighbours {
     /// The upper and the lower hub.
     pub hubs: [u32; 2],
-    /// Count of traces.
+    /// Count of traces, or weight.
     count: f32,
     /// Mean distance down, samples.
     distance: f32,
@@ -25,14 +25,15 @@ pub struct Neighbours {
 /// The pairs of hubs that follow one another on a trace without a fault between them.
 pub fn neighbours(hubs: &Hubs, links: &Links) -> Vec<Neighbours> {
     let [nx, ny, nz] = hubs.size;
-    let mut found: Vec<([u32; 2], f32)> = (0..nx * ny)
+    let mut found: Vec<([u32; 2], f32, bool)> = (0..nx * ny)
         .into_par_iter()
         .flat_map_iter(|trace| {
             let own = hubs.on_trace(trace);
             own.clone().zip(own.skip(1)).filter_map(move |(v, w)| {
                 let between = hubs.z[v] as usize..(hubs.z[w].ceil() as usize).min(nz - 1);
-                let cut = between.into_iter().any(|z| links.is_cut_below(trace * nz + z));
-                (!cut && hubs.hub[v] != hubs.hub[w]).then(|| ([hubs.hub[v], hubs.hub[w]], hubs.z[w] - hubs.z[v]))
+                let cut = between.clone().any(|z| links.is_cut_below(trace * nz + z));
+                let jumps = between.into_iter().any(|z| links.is_broken_below(trace * nz + z));
+                (!cut && hubs.hub[v] != hubs.hub[w]).then(|| ([hubs.hub[v], hubs.hub[w]], hubs.z[w] - hubs.z[v], jumps))
             })
         })
         .collect();
@@ -40,8 +41,11 @@ pub fn neighbours(hubs: &Hubs, links: &Links) -> Vec<Neighbours> {
     found
         .chunk_by(|a, b| a.0 == b.0)
         .map(|same| {
-            let sum: f64 = same.iter().map(|(_, distance)| f64::from(*distance)).sum();
-            Neighbours { hubs: same[0].0, count: same.len() as f32, distance: (sum / same.len() as f64) as f32 }
+            let sum: f64 = same.iter().map(|(_, distance, _)| f64::from(*distance)).sum();
+            // Through an unconformity distances tell next to nothing.
+            let through = same.iter().filter(|(_, _, jumps)| *jumps).count();
+            let count = (same.len() - through) as f32 + THROUGH * through as f32;
+            Neighbours { hubs: same[0].0, count, distance: (sum / same.len() as f64) as f32 }
         })
         .collect()
 }
@@ -59,7 +63,11 @@ pub fn tied(hubs: &Hubs, ties: &[Tie], times: Option<&[f32]>) -> Vec<Neighbours>
         let (v, w) = (nearest(tie.trace[0], tie.z[0])?, nearest(tie.trace[1], tie.z[1])?);
         let between = (tie.z[0] - hubs.z[v]) - (tie.z[1] - hubs.z[w]);
         let distance = between - times.map_or(0.0, |times| times[w] - times[v]);
-        (hubs.hub[v] != hubs.hub[w]).then(|| Neighbours { hubs: [hubs.hub[v], hubs.hub[w]], count: 1.0, distance })
+        (hubs.hub[v] != hubs.hub[w]).then(|| Neighbours {
+            hubs: [hubs.hub[v], hubs.hub[w]],
+            count: tie.weight,
+            distance,
+        })
     };
     ties.iter().filter_map(pair).collect()
 }

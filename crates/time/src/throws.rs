@@ -18,8 +18,10 @@ pub const FIRST: f32 = 1.5;
 const STACKED: usize = 5;
 /// Samples within which amplitudes are brought to one level.
 const LEVEL_WINDOW: usize = 24;
-/// Greatest throw that is looked for, as a share of the samples.
+/// Greatest throw that is looked for, as a share of the samples; in thin volumes up to [`THIN`] samples, as far as half of
+/// the volume.
 const GREATEST_SHARE: f32 = 0.16;
+const THIN: f32 = 20.0;
 /// Throws that differ by less are the same one in the margin, samples.
 const SAME_THROW: f32 = 3.0;
 /// What a throw that varies costs, for each squared sample.
@@ -126,8 +128,8 @@ fn quadratic(terms: &[f32; 6], size: [usize; 2], line: usize, z: f32) -> f32 {
 struct Panels {
     size: [usize; 2],
     sides: [Vec<f32>; 2],
-    /// Every so many lines are compared.
-    step: usize,
+    /// Every so many lines and samples are compared.
+    step: [usize; 2],
 }
 
 impl Panels {
@@ -135,10 +137,10 @@ impl Panels {
     fn score(&self, terms: &[f32; 6]) -> f32 {
         let nz = self.size[1];
         let (mut product, mut lower, mut upper, mut both, mut there) = (0.0f32, 0.0f32, 0.0f32, 0usize, 0usize);
-        for line in (0..self.size[0]).step_by(self.step) {
+        for line in (0..self.size[0]).step_by(self.step[0]) {
             let row = line * nz..(line + 1) * nz;
             let (a, b) = (&self.sides[0][row.clone()], &self.sides[1][row]);
-            for z in 0..nz {
+            for z in (0..nz).step_by(self.step[1]) {
                 there += usize::from(a[z].is_finite() || b[z].is_finite());
                 let half = 0.5 * quadratic(terms, self.size, line, z as f32);
                 let (za, zb) = (z as f32 - half, z as f32 + half);
@@ -188,6 +190,9 @@ impl Panels {
     }
 }
 
+/// Lines along a fault that are compared, about; half of them and every second sample while throws are scanned.
+const LINES: usize = 48;
+const SCANNED_SAMPLES: usize = 2;
 /// Count of throws that are refined.
 const REFINED: usize = 6;
 
@@ -197,8 +202,11 @@ pub fn throw_of(volume: &Volume<f32>, links: &Links, cut: &Cut) -> Option<Throw>
     if sides.iter().any(|side| side.iter().all(|a| a.is_nan())) {
         return None;
     }
-    let panels = Panels { size: cut.size, sides, step: cut.size[0].div_ceil(48).max(1) };
-    let greatest = (GREATEST_SHARE * cut.size[1] as f32).floor();
+    let step = cut.size[0].div_ceil(LINES).max(1);
+    // A part of the points tells which throws are worth all of them.
+    let mut panels = Panels { size: cut.size, sides, step: [2 * step, SCANNED_SAMPLES] };
+    let samples = cut.size[1] as f32;
+    let greatest = (GREATEST_SHARE * samples).max(THIN.min(0.5 * samples)).floor();
     let steps = |most: f32, step: f32| {
         let count = (most / step).floor() as i32;
         (-count..=count).map(move |n| n as f32 * step)
@@ -212,11 +220,12 @@ pub fn throw_of(volume: &Volume<f32>, links: &Links, cut: &Cut) -> Option<Throw>
         .collect();
     let mut found: Vec<([f32; 6], f32)> = starts.into_par_iter().map(|terms| (terms, panels.score(&terms))).collect();
     found.sort_by(|a, b| b.1.total_cmp(&a.1));
+    panels.step = [step, 1];
     let mut chosen: Vec<([f32; 6], f32)> = Vec::new();
-    for (terms, score) in found {
+    for (terms, _) in found {
         let is_new = chosen.iter().all(|(other, _)| (0..3).any(|n| (terms[n] - other[n]).abs() > SAME_THROW));
         if is_new {
-            chosen.push((terms, score));
+            chosen.push((terms, panels.score(&terms)));
         }
         if chosen.len() == REFINED {
             break;

@@ -39,6 +39,10 @@ pub(in crate::cli) struct TimeArgs {
     /// Name of the new volume
     #[arg(long, default_value = "time")]
     pub(in crate::cli) name: String,
+    /// Memory to use beside the candidates, such as 2G or 800M [default: half of what is available]; a survey that needs
+    /// more is solved in slabs of inlines that are joined
+    #[arg(long, value_name = "BYTES")]
+    pub(in crate::cli) memory: Option<String>,
 }
 
 #[derive(Debug, Args)]

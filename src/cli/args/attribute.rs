@@ -8,9 +8,9 @@ pub(in crate::cli) struct AttributeArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
     /// semblance (similarity of neighbouring traces, low at faults), envelope (strength of reflections),
-    /// dip (their steepness) or flattened (a Wheeler diagram: beds laid flat by geologic time, `petroglyph
-    /// time` first; empty where beds are missing)
-    #[arg(long, value_name = "semblance|envelope|dip|flattened")]
+    /// dip (their steepness); of geologic time, `petroglyph time` first, flattened (a Wheeler diagram: beds laid
+    /// flat; empty where beds are missing) or hiatus (how fast it runs down the traces: high at unconformities)
+    #[arg(long, value_name = "semblance|envelope|dip|flattened|hiatus")]
     pub(in crate::cli) kind: String,
     /// Name of the new volume; a dip adds NAME-inline and NAME-crossline
     #[arg(long)]

@@ -105,6 +105,13 @@ pub(in crate::cli) enum HorizonAction {
     /// Smooth a horizon, never across a fault; one that was assembled stays smoothed when its picks change
     #[command(after_help = "Example:\n  petroglyph horizon smooth north.petro \"Top Chalk\" --radius 4 --passes 2")]
     Smooth(SmoothArgs),
+    /// Add a stack of horizons: isochrons by geologic time, or surfaces at equal shares of the thickness between two
+    #[command(
+        after_help = "Examples:\n  petroglyph horizon stack north.petro Chalk --count 8 --between \"Top Chalk\" \"Base Chalk\"\
+                      \n  petroglyph horizon stack north.petro Slice --count 12 --between \"Top Chalk\" \"Base Chalk\" --spacing proportional\
+                      \n  petroglyph export north.petro chalk-3.csv --horizon \"Chalk 3\" --values seismic --window 4"
+    )]
+    Stack(StackArgs),
     /// Make the picks of horizons again, after another extraction
     #[command(after_help = "Example:\n  petroglyph horizon replay north.petro")]
     Replay(ReplayArgs),
@@ -144,6 +151,23 @@ pub(in crate::cli) enum HorizonAction {
         /// Horizon
         name: String,
     },
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct StackArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// What the names of the horizons begin with; a number follows
+    pub(in crate::cli) name: String,
+    /// Number of horizons
+    #[arg(long, value_name = "N")]
+    pub(in crate::cli) count: usize,
+    /// The horizon above and the horizon below [default: isochrons over all of the survey's rock]
+    #[arg(long, num_args = 2, value_names = ["TOP", "BASE"])]
+    pub(in crate::cli) between: Vec<String>,
+    /// isochrons (equal steps of geologic time, `petroglyph time` first) or proportional (equal shares of the thickness)
+    #[arg(long, value_name = "isochrons|proportional", default_value = "isochrons")]
+    pub(in crate::cli) spacing: String,
 }
 
 #[derive(Debug, Args)]
@@ -339,6 +363,12 @@ pub(in crate::cli) struct ExportArgs {
     /// Format of the file: csv, irap, opendtect, tsurf, zmap or cps3 [default: by its extension]
     #[arg(long, conflicts_with = "volume")]
     pub(in crate::cli) format: Option<String>,
+    /// Write the values of these volumes at the horizon's nodes, as CSV
+    #[arg(long, value_name = "VOLUME", num_args = 1.., requires = "horizon", conflicts_with_all = ["format", "when_rotated"])]
+    pub(in crate::cli) values: Vec<String>,
+    /// With --values: also their mean, root mean square and greatest magnitude over so many samples above and below
+    #[arg(long, value_name = "SAMPLES", default_value_t = 0, requires = "values")]
+    pub(in crate::cli) window: usize,
     /// Volume to write as SEG-Y
     #[arg(long, value_name = "NAME")]
     pub(in crate::cli) volume: Option<String>,

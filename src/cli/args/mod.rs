@@ -22,7 +22,8 @@ pub(super) use attribute::AttributeArgs;
 pub(super) use extraction::ExtractArgs;
 pub(super) use figure::FigureArgs;
 pub(super) use interpretation::{
-    ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, VolumeAction,
+    ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, StackArgs,
+    VolumeAction,
 };
 pub(super) use layer::{LayerAction, LayerSetArgs, RawArgs, ScalarAction, TextureArgs};
 pub(super) use output::{

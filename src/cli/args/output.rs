@@ -98,7 +98,11 @@ pub(in crate::cli) struct ParameterizeArgs {
     /// NaN outside), layer (0 = deepest) and block (uint8 or uint16), by inline, crossline and sample over the whole survey
     #[arg(long, value_name = "FILE.zarr", conflicts_with = "computed")]
     pub(in crate::cli) from: Option<PathBuf>,
-    /// Compute i, j, k here again, after --from
+    /// Take k between two horizons from geologic time, as its fraction between theirs: textures follow every bed
+    /// (`petroglyph time` first)
+    #[arg(long, conflicts_with_all = ["from", "computed"])]
+    pub(in crate::cli) by_time: bool,
+    /// Compute i, j, k here again, after --from or --by-time
     #[arg(long)]
     pub(in crate::cli) computed: bool,
     /// Samples of the stored arrays along inlines, crosslines and depth [default: the survey's]

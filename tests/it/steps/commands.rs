@@ -132,13 +132,14 @@ pub const MAKING: [Scenario; 5] = [
 ];
 
 /// What changes horizons, faults and wells.
-pub const INTERPRETING: [Scenario; 19] = [
+pub const INTERPRETING: [Scenario; 20] = [
     of(Imported, "horizon add p.petro top.csv --name Another"),
     of(Imported, "horizon rename p.petro Top Roof"),
     of(Imported, "horizon draw p.petro Drawn --line 4,2,40 4,9,40 --snap"),
     of(Imported, "horizon track p.petro Tracked --at 3,5,40 --traces 4"),
     of(Imported, "horizon fill p.petro Top"),
     of(Imported, "horizon smooth p.petro Top"),
+    of(Imported, "horizon stack p.petro Slice --count 2 --between Top Base --spacing proportional"),
     of(Imported, "horizon contact p.petro Base erosional"),
     of(Imported, "horizon remove p.petro Top"),
     of(Imported, "fault pick p.petro --name G --stick 8,2,4 8,2,60 --stick 8,9,4 8,9,60"),
@@ -186,7 +187,7 @@ pub const LOOKING: [Scenario; 11] = [
 ];
 
 /// What is computed, drawn and exported.
-pub const COMPUTING: [Scenario; 12] = [
+pub const COMPUTING: [Scenario; 13] = [
     of(Imported, "attribute p.petro --kind envelope --name strength"),
     of(Imported, "parameterize p.petro --size 6x6x6"),
     after(Imported, with_arrays, "parameterize p.petro --from own.zarr --size 6x6x6"),
@@ -195,6 +196,7 @@ pub const COMPUTING: [Scenario; 12] = [
     of(Imported, "animate p.petro a.gif --frames 2 --size 16x12 --samples 1 --device cpu"),
     after(Imported, with_figures, "figures p.petro out"),
     of(Imported, "export p.petro top.irap --horizon Top --format irap"),
+    of(Imported, "export p.petro top.csv --horizon Top --values seismic --window 2"),
     of(Imported, "export p.petro out.sgy --volume seismic"),
     of(Extracted, "export p.petro c.csv --candidates"),
     of(Imported, "review p.petro a.html --density 64 --sections 1 --device cpu"),

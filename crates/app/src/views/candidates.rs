@@ -5,7 +5,7 @@ use crate::state::{Action, Session};
 use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Align, Button, ComboBox, DragValue, Grid, Layout, ProgressBar, Ui};
 use interp::{ExtractSettings, Extremum, Method};
-use project::command::{Command, ComputeTime, has_time};
+use project::command::{AttributeKind, Command, ComputeAttribute, ComputeTime, has_time};
 use project::error::Noun;
 use time::TimeSettings;
 use widgets::obstacle::{needs, unless};
@@ -129,7 +129,7 @@ impl CandidatesPanel {
     }
 }
 
-/// What needs no picks: geologic time, and layers between its levels.
+/// What needs no picks: geologic time, layers between its levels, and volumes that are made of it.
 fn without_picks(ui: &mut Ui, session: &Session, is_extracted: bool, has_volume: bool, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let why = needs(is_extracted, "Needs candidates: extract them first");
@@ -140,7 +140,7 @@ fn without_picks(ui: &mut Ui, session: &Session, is_extracted: bool, has_volume:
                 false => TIME.to_owned(),
                 true => free_name(&session.document, Noun::Volume, TIME),
             };
-            let command = ComputeTime { name, settings: TimeSettings::default() };
+            let command = ComputeTime { name, settings: TimeSettings::default(), memory_bytes: None };
             actions.push(Action::Apply(Box::new(Command::Time(command))));
             actions.push(Action::Picking(PickingStep::Use(Tool::Time)));
         }
@@ -151,6 +151,36 @@ fn without_picks(ui: &mut Ui, session: &Session, is_extracted: bool, has_volume:
             "Layers without a pick: candidates, faults, geologic time, its strongest levels. Undo takes each back";
         if unless(ui, why, Button::new("Illustrate now")).on_hover_text(hint).clicked() {
             actions.push(Action::Illustrate);
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        let has_time = has_time(&session.document);
+        for (kind, label, volume, hint) in [
+            (
+                AttributeKind::Flattened,
+                "Lay beds flat",
+                "flattened",
+                "A Wheeler diagram: a volume down which geologic time runs, empty where beds are missing. Show it under Data",
+            ),
+            (
+                AttributeKind::Hiatus,
+                "Missing beds",
+                "missing beds",
+                "How fast geologic time runs down the traces: a volume that is high at unconformities. Show it under Data",
+            ),
+        ] {
+            let why = needs(has_time, "Needs geologic time: compute it first");
+            if unless(ui, why, Button::new(label)).on_hover_text(hint).clicked() {
+                let command = ComputeAttribute {
+                    kind,
+                    name: free_name(&session.document, Noun::Volume, volume),
+                    volume: None,
+                    dip: Default::default(),
+                    semblance: Default::default(),
+                    memory_bytes: None,
+                };
+                actions.push(Action::Apply(Box::new(Command::Attribute(command))));
+            }
         }
     });
 }

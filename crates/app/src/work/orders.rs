@@ -7,10 +7,12 @@ use crate::state::{Notice, Place, Snapshot};
 use chains::{demo, illustrate};
 use project::Project;
 use project::check::check;
-use project::command::{Command, ImportVolume};
+use project::command::{Command, ImportVolume, has_time};
 use project::error::ProjectError;
 use project::folder::DEFAULT_WAIT;
+use project::interpretation::times::Times;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Sender, channel};
 use survey::Progress;
 
@@ -39,12 +41,21 @@ pub(super) fn start(outbox: Outbox, running: Running) -> Sender<Order> {
     let (sender, orders) = channel::<Order>();
     let told = outbox.clone();
     keep_working("the project", &told, move || {
+        let mut times: Option<Arc<Times>> = None;
         while let Ok(order) = orders.recv() {
             let (place, root) = (order.place(), order.root());
             let (guard, progress) = running.begin(&order.title(), place, outbox.wake.clone());
+            if let Some(needed) = times_for(&order, &progress) {
+                times.replace(needed);
+            }
             match super::compute(|| order.carry_out(&progress)) {
                 Ok(event) => {
                     tell_warnings(&guard, place, &outbox);
+                    if let Event::Changed { snapshot, .. } | Event::Opened(snapshot) = &event
+                        && !has_time(&snapshot.document)
+                    {
+                        times.take();
+                    }
                     outbox.send(event);
                 }
                 Err(error) => outbox.send(Event::Told(match root {
@@ -57,6 +68,17 @@ pub(super) fn start(outbox: Outbox, running: Running) -> Sender<Order> {
         }
     });
     sender
+}
+
+/// What picks by geologic time read, held for as long as the user picks by it, so that a further click has its answer at
+/// once. What cannot be read is left to the command, which says why.
+fn times_for(order: &Order, progress: &Progress) -> Option<Arc<Times>> {
+    let Order::Apply { root, command, .. } = order else { return None };
+    if !matches!(**command, Command::PickByTime(_)) {
+        return None;
+    }
+    let project = Project::open(root).ok()?;
+    Times::load(project.root(), project.document(), progress).ok()
 }
 
 fn tell_warnings(guard: &RunningGuard, place: Place, outbox: &Outbox) {

@@ -6,7 +6,9 @@ use crate::content;
 use crate::content::volume_facts::{self, Facts};
 use crate::document::{Polarity, Source};
 use crate::folder::Draft;
+use crate::interpretation::assembly;
 use crate::memory_budget;
+use ::time::Cut;
 use attribute::blocks::{AttributeBlocks, dip_angle_blocks, dip_blocks, envelope_blocks, semblance_blocks};
 use attribute::{AttributeError, DipSettings, SemblanceSettings};
 use serde::{Deserialize, Serialize};
@@ -26,9 +28,14 @@ pub enum AttributeKind {
     Dip,
     /// The volume with its beds laid flat by the newest geologic time: a Wheeler diagram.
     Flattened,
+    /// How fast the newest geologic time runs down the traces: more than 1 where beds are missing, as at an unconformity.
+    Hiatus,
 }
 
 impl AttributeKind {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Semblance, Self::Envelope, Self::Dip, Self::Flattened, Self::Hiatus];
+
     /// The word for it on the command line.
     pub fn name(self) -> &'static str {
         match self {
@@ -36,6 +43,7 @@ impl AttributeKind {
             Self::Envelope => "envelope",
             Self::Dip => "dip",
             Self::Flattened => "flattened",
+            Self::Hiatus => "hiatus",
         }
     }
 }
@@ -81,7 +89,10 @@ impl ComputeAttribute {
             None if draft.document.volumes.is_empty() => return Err(ProjectError::NoVolume),
             None => 0,
         };
-        let from = draft.document.volumes[position].clone();
+        let from = match self.kind {
+            AttributeKind::Hiatus => time_volume(draft.root(), &draft.document)?,
+            _ => draft.document.volumes[position].clone(),
+        };
         let source = content::open_recorded(draft.root(), &from, draft.document.frame()?)?;
         let geometry =
             SurveyGeometry { velocity_m_s: draft.document.frame()?.velocity_m_s, ..source.info().geometry.clone() };
@@ -111,6 +122,13 @@ impl ComputeAttribute {
                 write(out[2], crossline, memory_bytes, progress)?;
                 let [inline, crossline] = [StoredVolume::open(out[1].0)?, StoredVolume::open(out[2].0)?];
                 write(out[0], dip_angle_blocks(&inline, &crossline, &out[0].1.geometry), memory_bytes, progress)?;
+            }
+            AttributeKind::Hiatus => {
+                let frame = draft.document.frame()?;
+                let tau = content::read_volume(draft.root(), &from, frame, progress)?;
+                let network = assembly::blocks(draft.root(), &draft.document, progress)?;
+                let rates = ::time::rates(&tau, &Cut::of_network(&network, tau.size()));
+                store::write_volume(out[0].0, &rates, out[0].1, progress)?;
             }
             AttributeKind::Flattened => {
                 if from.geometry.is_some() {
@@ -150,6 +168,7 @@ impl ComputeAttribute {
                 ("-inline", Some("samples per inline")),
                 ("-crossline", Some("samples per crossline")),
             ],
+            AttributeKind::Hiatus => vec![("", Some("times the median"))],
             AttributeKind::Semblance | AttributeKind::Envelope | AttributeKind::Flattened => vec![("", None)],
         }
     }

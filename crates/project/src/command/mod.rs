@@ -21,9 +21,11 @@ mod pick_by_time;
 mod refine;
 mod scalar;
 mod scene;
+mod stack;
 mod survey_frame;
 mod texture;
 pub(crate) mod time;
+mod time_slabs;
 mod well;
 
 pub use attribute::{AttributeComputed, AttributeKind, ComputeAttribute};
@@ -46,8 +48,11 @@ pub use pick_by_time::{PickByTime, PickedByTime, TimeLevel};
 pub use refine::{FillHorizon, HorizonRefined, SmoothHorizon};
 pub use scalar::{RemoveScalar, SetRaw, SetScalar};
 pub use scene::{AddScene, RemoveScene};
+pub(crate) use stack::values_table;
+pub use stack::{Spacing, StackHorizons, Stacked};
 pub use survey_frame::SetVelocity;
 pub use texture::AddTexture;
+pub(crate) use time::time_volume;
 pub use time::{ComputeTime, TimeComputed, has_time, read_time};
 pub use well::{AddWell, RemoveWell, RenameWell, WellAdded};
 
@@ -96,6 +101,8 @@ pub enum Command {
     Pick(PickNode),
     /// Add a horizon that is a level of geologic time.
     PickByTime(PickByTime),
+    /// Add a stack of horizons.
+    StackHorizons(StackHorizons),
     /// Make several picks of one horizon.
     PickSeveral(PickNodes),
     /// Draw a line of a horizon, or track it from a place.
@@ -176,6 +183,8 @@ pub enum Effect {
     TimeComputed(TimeComputed),
     /// A horizon was picked by geologic time.
     PickedByTime(PickedByTime),
+    /// A stack of horizons was added.
+    Stacked(Stacked),
     /// Candidates were extracted.
     Extracted(Box<Extracted>),
     /// Faults were proposed.
@@ -226,6 +235,7 @@ impl Command {
             Self::Extract(change) => change.execute(draft, progress),
             Self::Time(change) => change.execute(draft, progress),
             Self::PickByTime(change) => change.execute(draft, progress),
+            Self::StackHorizons(change) => change.execute(draft, progress),
             Self::ProposeFaults(change) => change.execute(draft, progress),
             Self::LinkVolume(change) => change.execute(draft, progress),
             Self::RemoveVolume(change) => change.execute(draft),
@@ -287,6 +297,7 @@ impl Effect {
             | Self::AttributeComputed(_)
             | Self::TimeComputed(_)
             | Self::PickedByTime(_)
+            | Self::Stacked(_)
             | Self::Extracted(_)
             | Self::FaultsProposed(_)
             | Self::Picked(_)
@@ -314,6 +325,7 @@ impl Effect {
             Self::AttributeComputed(done) => format!("{} of {}", done.attribute, done.of),
             Self::TimeComputed(done) => format!("geologic time of {}", done.of),
             Self::PickedByTime(done) => format!("horizon {} by geologic time", done.horizon),
+            Self::Stacked(done) => format!("{} stacked horizons", done.horizons.len()),
             Self::Extracted(done) => format!("candidates of {}", done.volume),
             Self::FaultsProposed(done) => format!("{} faults proposed", done.proposals.len()),
             Self::HorizonAdded(done) => format!("horizon {}", done.report.name),
@@ -355,6 +367,7 @@ impl std::fmt::Display for Effect {
             Self::AttributeComputed(done) => write!(f, "{done}"),
             Self::TimeComputed(done) => write!(f, "{done}"),
             Self::PickedByTime(done) => write!(f, "{done}"),
+            Self::Stacked(done) => write!(f, "{done}"),
             Self::Extracted(done) => write!(f, "{done}"),
             Self::FaultsProposed(done) => write!(f, "{done}"),
             Self::HorizonAdded(done) => write!(f, "{}", done.report),

@@ -3,11 +3,10 @@
 use super::horizon::{Age, insert_made};
 use super::time::time_volume;
 use super::{Effect, Noun, ProjectError};
-use crate::content;
 use crate::document::{Document, Source};
 use crate::folder::Draft;
 use crate::interpretation::assembly;
-use crate::interpretation::candidates::Candidates;
+use crate::interpretation::times::Times;
 use ::time::{Crossing, Cut, Event, Node, Reflections, Seed, Support, isochron};
 use glam::Vec3;
 use interp::Extremum;
@@ -79,16 +78,14 @@ impl PickByTime {
         let corrected = self.corrected(&draft.document)?;
         let geometry = draft.document.frame()?.clone();
         let entry = time_volume(draft.root(), &draft.document)?;
-        let tau = content::read_volume(draft.root(), &entry, &geometry, progress)?;
-        let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
+        let times = Times::load(draft.root(), &draft.document, progress)?;
+        let Times { tau, reflections, cuts } = times.as_ref();
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
-        let cuts = Cut::of_network(&blocks, tau.size());
-        let reflections = Reflections::new(&candidates.forest.surfaces, &cuts);
         let earlier = corrected.map_or(&[][..], |index| &draft.document.horizons[index].seeds);
         let (event, seeds, reading) = match self.level {
             TimeLevel::Through(at) => {
                 let seeds = [earlier, &[at]].concat();
-                let event = through(&seeds, &geometry, &tau, &reflections, &cuts)?;
+                let event = through(&seeds, &geometry, tau, reflections, cuts)?;
                 let [inline, crossline, z] = seeds[0];
                 let more = match seeds.len() {
                     1 => String::new(),
@@ -96,7 +93,7 @@ impl PickByTime {
                 };
                 (event, seeds, format!("geologic time through inline {inline}, crossline {crossline}, {z}{more}"))
             }
-            TimeLevel::Of(time) => (level(&tau, time, &reflections), Vec::new(), format!("geologic time {time}")),
+            TimeLevel::Of(time) => (level(tau, time, reflections), Vec::new(), format!("geologic time {time}")),
         };
         if event.nodes.is_empty() {
             return Err(ProjectError::NoIsochron { time: event.time });
@@ -188,6 +185,11 @@ fn level(tau: &Volume<f32>, time: f32, reflections: &Reflections) -> Event {
         Node { x: at.x, y: at.y, z: at.z, support: if is_there { Support::Snapped } else { Support::Between } }
     });
     Event { time, kind, nodes: nodes.collect() }
+}
+
+/// The sheets of a level of time as it is, smoothed.
+pub(super) fn level_sheets(times: &Times, time: f32, geometry: &SurveyGeometry, blocks: &FaultNetwork) -> Vec<Sheet> {
+    sheets(&level(&times.tau, time, &times.reflections), geometry, blocks, &[])
 }
 
 /// Distance from a level within which it passes a reflection, samples.

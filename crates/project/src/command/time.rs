@@ -1,5 +1,6 @@
 //! Geologic time as a volume of the project.
 
+use super::time_slabs::{SlabTimes, explain};
 use super::{Effect, Noun, ProjectError};
 use crate::content;
 use crate::content::volume_facts::{self, Facts};
@@ -7,7 +8,9 @@ use crate::document::{Document, Polarity, Source, VolumeEntry};
 use crate::folder::Draft;
 use crate::interpretation::assembly;
 use crate::interpretation::candidates::{Candidates, amplitudes};
-use ::time::{Cut, TimeSettings, find_faults, geologic_time};
+use crate::interpretation::times::Obeyed;
+use crate::memory_budget;
+use ::time::{Jump, Slabs, TimeSettings, find_faults, geologic_time};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use store::VolumeInfo;
@@ -16,7 +19,8 @@ use survey::{Progress, Volume};
 /// What a volume of geologic time says that it holds.
 const QUANTITY: &str = "geologic time";
 
-/// Computes geologic time from the present extraction, its volume and the faults, and adds it to the project.
+/// Computes geologic time from the present extraction, its volume and the interpretation (faults, picked horizons,
+/// unconformities, tops of wells), and adds it to the project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ComputeTime {
     /// Name of the new volume.
@@ -24,6 +28,10 @@ pub struct ComputeTime {
     /// The settings.
     #[serde(default)]
     pub settings: TimeSettings,
+    /// Memory to use beside the candidates, bytes; `None`: half of what is available. A survey that needs more is solved in
+    /// slabs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub memory_bytes: Option<u64>,
 }
 
 /// The report of computed geologic time.
@@ -37,13 +45,23 @@ pub struct TimeComputed {
     pub faults: usize,
     /// Number of faults that were found, where none is drawn, and cut it.
     pub found: usize,
+    /// Number of picked horizons that have one time each.
+    pub horizons: usize,
+    /// Number of those at which time jumps: unconformities.
+    pub unconformities: usize,
+    /// Number of pairs of tops of one name in two wells that were taken to have one time.
+    pub tops: usize,
+    /// Pairs of tops in two wells whose order in time is not that of a well that has both, and all such pairs.
+    pub tops_out_of_order: [usize; 2],
+    /// Number of slabs of inlines in which it was solved.
+    pub slabs: usize,
     /// Share of the voxels at which time is known, 0 to 1.
     pub known: f64,
 }
 
 impl std::fmt::Display for TimeComputed {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { volume, of, faults, found, known } = self;
+        let Self { volume, of, faults, found, horizons, unconformities, tops, tops_out_of_order, slabs, known } = self;
         let (faults, what) = if *faults > 0 { (faults, "drawn") } else { (found, "found") };
         write!(
             f,
@@ -53,6 +71,22 @@ impl std::fmt::Display for TimeComputed {
         if *known == 0.0 {
             write!(f, "; there are no candidates to find it from")?;
         }
+        if *horizons > 0 {
+            write!(f, "; one time on each of {horizons} picked horizons")?;
+        }
+        if *unconformities > 0 {
+            write!(f, ", at {unconformities} of which it jumps")?;
+        }
+        if *tops > 0 {
+            write!(f, "; {tops} pairs of tops in wells have one time")?;
+        }
+        let [wrong, all] = tops_out_of_order;
+        if *wrong > 0 {
+            write!(f, "; {wrong} of {all} pairs of tops lie in the wrong order")?;
+        }
+        if *slabs > 1 {
+            write!(f, "; in {slabs} slabs")?;
+        }
         Ok(())
     }
 }
@@ -61,28 +95,44 @@ impl ComputeTime {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         draft.document.check_new_name(Noun::Volume, &self.name)?;
         let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
+        let surfaces = &candidates.forest.surfaces;
         let from = amplitudes(&draft.document)?.clone();
         let geometry = draft.document.frame()?.clone();
-        let volume = content::read_volume(draft.root(), &from, &geometry, progress)?;
         let network = assembly::blocks(draft.root(), &draft.document, progress)?;
-        let drawn = Cut::of_network(&network, volume.size());
-        let found_faults: Vec<Cut> = if drawn.is_empty() {
-            let found = find_faults(&volume, &candidates.forest.surfaces, self.settings.fewest_vertices, progress)?;
-            found.into_iter().map(|fault| fault.cut).collect()
-        } else {
-            Vec::new()
-        };
-        let (faults, found_count) = (drawn.len(), found_faults.len());
-        let cuts = if drawn.is_empty() { found_faults } else { drawn };
-        let found = geologic_time(&volume, &candidates.forest.surfaces, &cuts, &self.settings, progress)?;
+        let mut obeyed = Obeyed::load(draft.root(), &draft.document, &network, progress)?;
         let (file, path) = draft.generation("volumes", &self.name, "zarr")?;
         let info = VolumeInfo {
             quantity: Some(QUANTITY.to_owned()),
             unit: Some("samples".to_owned()),
             source: Some(format!("{QUANTITY} of {}", from.name)),
-            ..VolumeInfo::of(geometry)
+            ..VolumeInfo::of(geometry.clone())
         };
-        store::write_volume(&path, &found.tau, &info, progress)?;
+        let faults = obeyed.interpretation.cuts.len();
+        let memory = self.memory_bytes.unwrap_or_else(memory_budget::half_of_available);
+        let slabs = Slabs::within(geometry.size(), memory);
+        let slab_count = slabs.ranges().len();
+        let (found_count, known, tops_out_of_order);
+        if slab_count == 1 {
+            let volume = content::read_volume(draft.root(), &from, &geometry, progress)?;
+            let found = match faults {
+                0 => find_faults(&volume, surfaces, self.settings.fewest_vertices, progress)?,
+                _ => Vec::new(),
+            };
+            found_count = found.len();
+            obeyed.interpretation.cuts.extend(found.into_iter().map(|fault| fault.cut));
+            let found = geologic_time(&volume, surfaces, &obeyed.interpretation, &self.settings, progress)?;
+            drop(volume);
+            tops_out_of_order = obeyed.order(&found.tau);
+            store::write_volume(&path, &found.tau, &info, progress)?;
+            known = found.known;
+        } else {
+            let volume = content::open_recorded(draft.root(), &from, &geometry)?;
+            let mut times = SlabTimes::new(&volume, surfaces, &obeyed.interpretation, &self.settings, slabs);
+            store::write_blocks(&path, &mut times, &info, memory / 8, progress).map_err(explain)?;
+            found_count = times.found;
+            known = times.known as f64 / geometry.size().iter().product::<usize>() as f64;
+            tops_out_of_order = [0, 0];
+        }
         let facts = Facts {
             name: self.name.clone(),
             file,
@@ -100,7 +150,12 @@ impl ComputeTime {
             of: from.name,
             faults,
             found: found_count,
-            known: found.known,
+            horizons: obeyed.interpretation.horizons.len(),
+            unconformities: obeyed.interpretation.horizons.iter().filter(|known| known.jump != Jump::None).count(),
+            tops: obeyed.interpretation.same.len(),
+            tops_out_of_order,
+            slabs: slab_count,
+            known,
         }))
     }
 }
@@ -111,7 +166,7 @@ pub fn has_time(document: &Document) -> bool {
 }
 
 /// The newest volume of geologic time.
-pub(super) fn time_volume(root: &Path, document: &Document) -> Result<VolumeEntry, ProjectError> {
+pub(crate) fn time_volume(root: &Path, document: &Document) -> Result<VolumeEntry, ProjectError> {
     for entry in document.volumes.iter().rev().filter(|entry| entry.geometry.is_none()) {
         let stored = content::open_volume(root, entry, document.frame()?)?;
         if stored.info().quantity.as_deref() == Some(QUANTITY) {

@@ -46,6 +46,9 @@ impl ProjectError {
             }
             Self::TimeUnknown { .. } => "point at a reflection",
             Self::NoIsochron { .. } => "point at a place inside the survey, or compute geologic time again",
+            Self::StackCount { .. } => "ask for fewer, or remove horizons that you no longer need",
+            Self::StackBetween => "name them with --between TOP BASE",
+            Self::StackOrder { .. } => "name the upper horizon first, then a lower one of the same blocks",
             Self::NoLayers => "add one with `petroglyph horizon add`",
             Self::NoLevels => "it may be chaotic, constant or too small: pick horizons by hand",
             Self::OverBudget { .. } => {

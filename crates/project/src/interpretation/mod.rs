@@ -11,3 +11,4 @@ pub mod extraction;
 pub(crate) mod order;
 pub mod proposals;
 pub mod solid;
+pub mod times;

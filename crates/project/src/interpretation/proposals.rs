@@ -1,4 +1,5 @@
-//! Proposed faults, from the offsets of horizons or, before there is one, from where reflections end; stored for as long as a state of the history names them.
+//! Proposed faults, from the offsets of horizons and from where reflections end, which needs no horizon; stored for as
+//! long as a state of the history names them. A fault that both tell of is proposed once, as its horizons tell it.
 //!
 //! `derived/fault-proposals-KEY.json` holds the proposals of the horizons, faults, volume and settings that the key
 //! identifies. Proposals of another state cannot be accepted, unless that state differs only by faults accepted from
@@ -119,7 +120,15 @@ fn file_of(key: &str) -> String {
 
 /// The path of the proposals of a state and settings.
 pub fn path(root: &Path, document: &Document, settings: &ProposeSettings) -> PathBuf {
-    folder(root).join(file_of(&key(document, settings)))
+    folder(root).join(file_of(&whole_key(document, settings)))
+}
+
+/// The key with the candidates, where there are any.
+fn whole_key(document: &Document, settings: &ProposeSettings) -> String {
+    match &document.extraction {
+        Some(extraction) => key_of(&(key(document, settings), &extraction.key, revision::FOUND_FAULTS)),
+        None => key(document, settings),
+    }
 }
 
 /// The key of proposals: a hash of everything that they are made from.
@@ -134,8 +143,8 @@ fn hashes(document: &Document) -> Vec<String> {
     document.horizons.iter().map(|entry| entry.hash.clone()).collect()
 }
 
-/// Proposes faults from the project's horizons, or from its candidates while it has none, unless that was done, and stores the proposals under their key;
-/// [`crate::command::ProposeFaults`] makes the state that names them. Needs no lock.
+/// Proposes faults from the project's horizons and its candidates, unless that was done, and stores the proposals under
+/// their key; [`crate::command::ProposeFaults`] makes the state that names them. Needs no lock.
 ///
 /// # Errors
 /// There are neither horizons nor candidates, data cannot be read, or the user cancelled.
@@ -149,7 +158,7 @@ pub(crate) fn compute(
     if document.horizons.is_empty() {
         return from_candidates(root, document, settings, progress);
     }
-    let key = key(document, settings);
+    let key = whole_key(document, settings);
     let none = FaultNetwork::none();
     let mut sheets = Vec::new();
     for entry in &document.horizons {
@@ -176,7 +185,11 @@ pub(crate) fn compute(
         None => None,
     };
     let found = propose_faults(&horizons, geometry, &blocks, likeness.as_ref(), settings, progress)?;
-    let proposals = Proposals::new(document, geometry, found.proposals, found.repeats);
+    let mut all = found.proposals;
+    if document.extraction.is_some() {
+        join(&mut all, new_faults(root, document, &blocks, progress)?, geometry);
+    }
+    let proposals = Proposals::new(document, geometry, all, found.repeats);
     write(root, &key, &proposals)?;
     Ok((key, proposals))
 }
@@ -189,21 +202,63 @@ fn from_candidates(
     progress: &Progress,
 ) -> Result<(String, Proposals), ProjectError> {
     let geometry = document.frame()?;
-    let Some(extraction) = &document.extraction else { return Err(ProjectError::NoEvidence) };
-    let key = key_of(&(key(document, settings), &extraction.key, revision::FOUND_FAULTS));
-    let candidates = Candidates::load(root, document, progress)?;
+    if document.extraction.is_none() {
+        return Err(ProjectError::NoEvidence);
+    }
+    let key = whole_key(document, settings);
+    // The key relies on the hashes that were recorded.
+    content::open_recorded(root, amplitudes(document)?, geometry)?;
     let blocks = assembly::blocks(root, document, progress)?;
-    let seismic = content::read_volume(root, amplitudes(document)?, geometry, progress)?;
     if let Some(known) = read(root, &key) {
         return Ok((key, known));
     }
-    let fewest = TimeSettings::default().fewest_vertices;
-    let found = find_faults(&seismic, &candidates.forest.surfaces, fewest, progress)?;
-    let drawn = Cut::of_network(&blocks, seismic.size());
-    let new: Vec<FoundFault> = found.into_iter().filter(|fault| !drawn.iter().any(|cut| fault.is_on(cut))).collect();
+    let new = new_faults(root, document, &blocks, progress)?;
     let proposals = Proposals::new(document, geometry, ::time::proposals(&new, geometry), Vec::new());
     write(root, &key, &proposals)?;
     Ok((key, proposals))
+}
+
+/// The faults along which reflections end, but for drawn ones.
+fn new_faults(
+    root: &Path,
+    document: &Document,
+    blocks: &FaultNetwork,
+    progress: &Progress,
+) -> Result<Vec<FoundFault>, ProjectError> {
+    let candidates = Candidates::load(root, document, progress)?;
+    let seismic = content::read_volume(root, amplitudes(document)?, document.frame()?, progress)?;
+    let fewest = TimeSettings::default().fewest_vertices;
+    let found = find_faults(&seismic, &candidates.forest.surfaces, fewest, progress)?;
+    let drawn = Cut::of_network(blocks, seismic.size());
+    Ok(found.into_iter().filter(|fault| !drawn.iter().any(|cut| fault.is_on(cut))).collect())
+}
+
+/// Distance of a horizon's proposal from a found fault within which they are the same, traces.
+const SAME_FAULT: f32 = 5.0;
+
+/// Adds found faults to the proposals of horizons, but for those that are proposed already; the largest come first again,
+/// minor ones last.
+fn join(all: &mut Vec<Proposal>, mut found: Vec<FoundFault>, geometry: &SurveyGeometry) {
+    let is_on = |proposal: &Proposal, cut: &Cut| {
+        let sides = proposal.mesh.vertices.iter().filter_map(|vertex| {
+            let voxel = geometry.voxel_from_world(*vertex);
+            let [nx, ny, _] = geometry.size();
+            let inside = |at: f64, count: usize| at >= -0.5 && at.round() < count as f64;
+            (inside(voxel.x, nx) && inside(voxel.y, ny)).then(|| {
+                let trace = [voxel.x.round().max(0.0) as usize, voxel.y.round().max(0.0) as usize];
+                cut.side(trace, voxel.z as f32)
+            })
+        });
+        let sides: Vec<f32> = sides.collect();
+        2 * sides.iter().filter(|side| side.abs() <= SAME_FAULT).count() > sides.len()
+    };
+    found.retain(|fault| !all.iter().any(|proposal| is_on(proposal, &fault.cut)));
+    all.extend(::time::proposals(&found, geometry));
+    all.sort_by(|a, b| a.is_minor.cmp(&b.is_minor).then(b.offset_m2.total_cmp(&a.offset_m2)));
+    for (n, proposal) in all.iter_mut().enumerate() {
+        proposal.id = n as u32 + 1;
+        proposal.name = format!("Fault {}", proposal.id);
+    }
 }
 
 fn write(root: &Path, key: &str, proposals: &Proposals) -> Result<(), ProjectError> {

@@ -1,11 +1,14 @@
 //! Geologic time of volumes whose layering is a closed form.
 
 use crate::{
-    Across, Cut, GeologicTime, Reflections, Seed, Support, TimeError, TimeSettings, find_faults, geologic_time,
-    isochron, proposals,
+    Across, Cut, GeologicTime, Interpretation, Jump, KnownHorizon, Place, Reflections, Seed, Support, TimeError,
+    TimeSettings, find_faults, geologic_time, isochron, proposals,
 };
 use interp::{GrowSettings, grow_surfaces};
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
+
+mod interpretation;
+mod slabs;
 
 /// Reflectivity of made-up beds at a stratigraphic depth: nothing repeats over a few beds.
 fn beds(t: f32) -> f32 {
@@ -23,8 +26,12 @@ fn volume(size: [usize; 3], strat: impl Fn(f32, f32, f32) -> f32) -> Volume<f32>
 }
 
 fn time_of(volume: &Volume<f32>, cuts: &[Cut]) -> GeologicTime {
+    time_with(volume, &cuts.into())
+}
+
+fn time_with(volume: &Volume<f32>, interpretation: &Interpretation) -> GeologicTime {
     let surfaces = grow_surfaces(volume, &GrowSettings::default(), &Progress::silent()).unwrap();
-    geologic_time(volume, &surfaces, cuts, &TimeSettings::default(), &Progress::silent()).unwrap()
+    geologic_time(volume, &surfaces, interpretation, &TimeSettings::default(), &Progress::silent()).unwrap()
 }
 
 /// The greatest error of isochrons from the middle trace, in samples, and the share of traces that have one, leaving out
@@ -120,11 +127,11 @@ fn it_refuses_candidates_of_another_volume_and_stops_when_cancelled() {
     let surfaces = grow_surfaces(&small, &GrowSettings::default(), &Progress::silent()).unwrap();
     let other = Volume::filled([24, 24, 50], 0.0f32);
     let settings = TimeSettings::default();
-    let refused = geologic_time(&other, &surfaces, &[], &settings, &Progress::silent());
+    let refused = geologic_time(&other, &surfaces, &Interpretation::default(), &settings, &Progress::silent());
     assert!(matches!(refused, Err(TimeError::Size { .. })));
     let cancelled = Progress::silent();
     cancelled.cancel();
-    let stopped = geologic_time(&small, &surfaces, &[], &settings, &cancelled);
+    let stopped = geologic_time(&small, &surfaces, &Interpretation::default(), &settings, &cancelled);
     assert!(matches!(stopped, Err(TimeError::Cancelled(_))));
 }
 
@@ -167,7 +174,7 @@ fn an_event_goes_through_its_patch_where_time_is_off_and_a_second_seed_corrects_
     let strat = |x: f32, y: f32, z: f32| z - 0.6 * x + 0.35 * y;
     let volume = volume([40, 32, 80], strat);
     let surfaces = grow_surfaces(&volume, &GrowSettings::default(), &Progress::silent()).unwrap();
-    let mut tau = geologic_time(&volume, &surfaces, &[], &TimeSettings::default(), &Progress::silent()).unwrap().tau;
+    let mut tau = time_of(&volume, &[]).tau;
     let reflections = Reflections::new(&surfaces, &[]);
     let seed = reflections.nearest([8, 16], 40.0, None, 6.0).unwrap();
     let wanted = strat(8.0, 16.0, seed.z);

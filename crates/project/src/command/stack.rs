@@ -1,0 +1,290 @@
+//! A stack of horizons between two: isochrons, or surfaces at equal shares of the thickness.
+
+use super::horizon::{Age, insert_made};
+use super::pick_by_time::level_sheets;
+use super::{Effect, Noun, ProjectError};
+use crate::content;
+use crate::document::Source;
+use crate::folder::Draft;
+use crate::interpretation::assembly;
+use crate::interpretation::times::Times;
+use interp::reassembly::{VoxelSheet, from_horizon, to_horizon};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use survey::{Horizon, Progress, Quality, SurveyGeometry, Volume};
+
+/// How the horizons of a stack are spaced.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Spacing {
+    /// At equal steps of geologic time: each is an isochron.
+    #[default]
+    Isochrons,
+    /// At equal shares of the thickness between two horizons, on every trace.
+    Proportional,
+}
+
+/// Adds a stack of horizons.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StackHorizons {
+    /// Number of horizons.
+    pub count: usize,
+    /// The horizons above and below; `None`: isochrons over all of the survey's rock.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub between: Option<[String; 2]>,
+    /// How they are spaced.
+    #[serde(default)]
+    pub spacing: Spacing,
+    /// What their names begin with; a number follows.
+    pub name: String,
+}
+
+/// The report of a stack.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Stacked {
+    /// Name of each horizon, from the top, and the share of the survey's traces that it covers.
+    pub horizons: Vec<(String, f64)>,
+}
+
+impl std::fmt::Display for Stacked {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} horizons:", self.horizons.len())?;
+        self.horizons.iter().try_for_each(|(name, share)| write!(f, "\n  {name}: {:.1} % of the traces", 100.0 * share))
+    }
+}
+
+/// Most horizons of a stack, with which the column still has room.
+const MOST: usize = 60;
+/// Thickness between two horizons below which there is none between them, samples.
+const PINCHED: f32 = 0.2;
+
+impl StackHorizons {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let room = MOST.saturating_sub(draft.document.horizons.len());
+        if self.count == 0 || self.count > room {
+            return Err(ProjectError::StackCount { count: self.count, most: room });
+        }
+        if let Some(names) = &self.between {
+            for name in names {
+                draft.document.position(Noun::Horizon, name)?;
+            }
+        }
+        let made = match (self.spacing, &self.between) {
+            (Spacing::Isochrons, _) => self.isochrons(draft, progress)?,
+            (Spacing::Proportional, Some(between)) => self.proportional(draft, between, progress)?,
+            (Spacing::Proportional, None) => return Err(ProjectError::StackBetween),
+        };
+        let traces: usize = draft.document.frame()?.size()[..2].iter().product();
+        let mut horizons = Vec::new();
+        for (horizon, source) in made {
+            draft.document.check_new_name(Noun::Horizon, &horizon.name)?;
+            let mut covered = vec![false; traces];
+            for sheet in &horizon.sheets {
+                let known = sheet.depth.iter().map(|depth| depth.is_finite());
+                covered.iter_mut().zip(known).for_each(|(covered, known)| *covered |= known);
+            }
+            insert_made(draft, &horizon, &Age::ByDepth, source, progress)?;
+            let share = covered.iter().filter(|covered| **covered).count() as f64 / traces.max(1) as f64;
+            horizons.push((horizon.name, share));
+        }
+        Ok(Effect::Stacked(Stacked { horizons }))
+    }
+
+    fn name(&self, n: usize) -> String {
+        format!("{} {}", self.name, n + 1)
+    }
+
+    fn isochrons(&self, draft: &Draft, progress: &Progress) -> Result<Vec<(Horizon, Source)>, ProjectError> {
+        let geometry = draft.document.frame()?.clone();
+        let times = Times::load(draft.root(), &draft.document, progress)?;
+        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let [top, base] = match &self.between {
+            None => range(&times.tau),
+            Some(names) => {
+                let mut found = [None; 2];
+                for (name, found) in names.iter().zip(&mut found) {
+                    let entry = &draft.document.horizons[draft.document.position(Noun::Horizon, name)?];
+                    let horizon = content::read_horizon(draft.root(), entry, progress)?;
+                    *found = median(&from_horizon(&horizon, &geometry, &blocks), &times.tau);
+                }
+                found
+            }
+        }
+        .map(|time| time.unwrap_or(f32::NAN));
+        // Unknown times are refused, too.
+        if top.partial_cmp(&base) != Some(std::cmp::Ordering::Less) {
+            return Err(ProjectError::StackOrder { between: self.between.clone() });
+        }
+        let entry = super::time_volume(draft.root(), &draft.document)?;
+        let level = |n: usize| {
+            let time = top + (base - top) * (n + 1) as f32 / (self.count + 1) as f32;
+            let source = Source {
+                path: PathBuf::from(&entry.file),
+                bytes: entry.source.bytes,
+                reading: format!("geologic time {time}"),
+            };
+            (Horizon::new(self.name(n), level_sheets(&times, time, &geometry, &blocks)), source)
+        };
+        Ok((0..self.count).map(level).filter(|(horizon, _)| !horizon.sheets.is_empty()).collect())
+    }
+
+    fn proportional(
+        &self,
+        draft: &Draft,
+        between: &[String; 2],
+        progress: &Progress,
+    ) -> Result<Vec<(Horizon, Source)>, ProjectError> {
+        let geometry = draft.document.frame()?.clone();
+        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let mut sheets = Vec::new();
+        for name in between {
+            let entry = &draft.document.horizons[draft.document.position(Noun::Horizon, name)?];
+            let horizon = content::read_horizon(draft.root(), entry, progress)?;
+            sheets.push(from_horizon(&horizon, &geometry, &blocks));
+        }
+        let mut made = Vec::new();
+        for n in 0..self.count {
+            let share = (n + 1) as f32 / (self.count + 1) as f32;
+            let parts = shares(&sheets[0], &sheets[1], share);
+            if parts.iter().all(|sheet| sheet.nodes() == 0) {
+                return Err(ProjectError::StackOrder { between: Some(between.clone()) });
+            }
+            let [top, base] = between;
+            let reading = format!("{:.1} % of the thickness from {top} to {base}", 100.0 * share);
+            let source = Source { path: PathBuf::from(top), bytes: 0, reading };
+            made.push((to_horizon(&self.name(n), &parts, &geometry), source));
+        }
+        Ok(made)
+    }
+}
+
+/// Times between which lie all but the first and the last hundredth of what is known.
+fn range(tau: &Volume<f32>) -> [Option<f32>; 2] {
+    let every = (tau.samples().len() >> 20).max(1);
+    let mut known: Vec<f32> = tau.samples().iter().step_by(every).copied().filter(|time| time.is_finite()).collect();
+    known.sort_by(f32::total_cmp);
+    [known.len() / 100, known.len().saturating_sub(1 + known.len() / 100)].map(|n| known.get(n).copied())
+}
+
+/// The median of τ along a horizon.
+fn median(sheets: &[VoxelSheet], tau: &Volume<f32>) -> Option<f32> {
+    let [_, ny, nz] = tau.size();
+    let nodes = sheets.iter().flat_map(|sheet| sheet.z.iter().enumerate());
+    let inside = nodes.filter(|(_, z)| **z >= 0.0 && **z <= (nz - 1) as f32);
+    let at = |(trace, z): (usize, &f32)| {
+        let (own, low) = (tau.trace(trace / ny, trace % ny), *z as usize);
+        own[low] + (z - low as f32) * (own[(low + 1).min(nz - 1)] - own[low])
+    };
+    let mut times: Vec<f32> = inside.map(at).filter(|time| time.is_finite()).collect();
+    times.sort_by(f32::total_cmp);
+    times.get(times.len() / 2).copied()
+}
+
+/// The sheets at a share of the thickness between those of two horizons, block by block.
+fn shares(top: &[VoxelSheet], base: &[VoxelSheet], share: f32) -> Vec<VoxelSheet> {
+    let mut made: Vec<VoxelSheet> = Vec::new();
+    for upper in top {
+        for lower in base.iter().filter(|lower| lower.block == upper.block) {
+            let mut sheet = VoxelSheet::empty(upper.block, upper.z.len());
+            for trace in 0..upper.z.len() {
+                let (a, b) = (upper.z[trace], lower.z[trace]);
+                // Not known compares as false.
+                if b - a > PINCHED {
+                    sheet.z[trace] = a + share * (b - a);
+                    sheet.quality[trace] = Quality::Filled;
+                }
+            }
+            if sheet.nodes() > 0 {
+                made.push(sheet);
+            }
+        }
+    }
+    made
+}
+
+/// Writes a horizon's nodes and the values of volumes at them as CSV: inline, crossline, x, y, the vertical value, and a
+/// column for each volume; where `window` is more than 0, the mean, the root mean square and the greatest magnitude over so
+/// many samples to both sides follow.
+///
+/// Values between samples are interpolated; outside a volume, and where it has no value, a field is empty.
+pub(crate) fn values_table(
+    horizon: &Horizon,
+    geometry: &SurveyGeometry,
+    volumes: &[(String, Volume<f32>)],
+    window: usize,
+) -> String {
+    use std::fmt::Write;
+    let mut text = format!("inline,crossline,x,y,z_{}", geometry.vertical.unit.symbol());
+    for (name, _) in volumes {
+        let name = name.replace(',', " ");
+        let _ = write!(text, ",{name}");
+        if window > 0 {
+            let _ = write!(text, ",{name} mean,{name} rms,{name} greatest");
+        }
+    }
+    text.push('\n');
+    let [_, ny, nz] = geometry.size();
+    for sheet in from_horizon(horizon, geometry, &model::FaultNetwork::none()) {
+        for (trace, z) in sheet.z.iter().enumerate().filter(|(_, z)| z.is_finite()) {
+            let voxel = glam::DVec3::new((trace / ny) as f64, (trace % ny) as f64, f64::from(*z));
+            let (lines, world) = (geometry.lines_from_voxel(voxel.truncate()), geometry.world_from_voxel(voxel));
+            let _ = write!(text, "{},{},{:.2},{:.2},{:.3}", lines.x, lines.y, world.x, world.y, world.z);
+            for (_, volume) in volumes {
+                let own = volume.trace(trace / ny, trace % ny);
+                let inside = *z >= 0.0 && *z <= (nz - 1) as f32;
+                let low = (z.max(0.0) as usize).min(nz - 1);
+                let value = if inside {
+                    own[low] + (z - low as f32) * (own[(low + 1).min(nz - 1)] - own[low])
+                } else {
+                    f32::NAN
+                };
+                let field = |value: f32| if value.is_finite() { value.to_string() } else { String::new() };
+                let _ = write!(text, ",{}", field(value));
+                if window > 0 {
+                    let middle = z.round().clamp(0.0, (nz - 1) as f32) as usize;
+                    let around = &own[middle.saturating_sub(window)..(middle + window + 1).min(nz)];
+                    let known: Vec<f32> = around.iter().copied().filter(|value| value.is_finite() && inside).collect();
+                    let count = known.len() as f32;
+                    let mean = known.iter().sum::<f32>() / count;
+                    let rms = (known.iter().map(|value| value * value).sum::<f32>() / count).sqrt();
+                    let greatest = known.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs()));
+                    let _ =
+                        write!(text, ",{},{},{}", field(mean), field(rms), greatest.map_or_else(String::new, field));
+                }
+            }
+            text.push('\n');
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use survey::VerticalUnit;
+
+    #[test]
+    fn a_share_of_the_thickness_lies_between_in_every_block_and_nowhere_else() {
+        let sheet = |block: u16, z: [f32; 4]| VoxelSheet { block, z: z.to_vec(), quality: vec![Quality::Picked; 4] };
+        let top = [sheet(0, [10.0, 12.0, f32::NAN, 20.0]), sheet(1, [f32::NAN, f32::NAN, 30.0, f32::NAN])];
+        let base = [sheet(0, [18.0, f32::NAN, 40.0, 20.1])];
+        let made = shares(&top, &base, 0.25);
+        assert_eq!(made.len(), 1);
+        assert_eq!((made[0].block, made[0].nodes(), made[0].z[0]), (0, 1, 12.0));
+        assert_eq!(made[0].quality[0], Quality::Filled);
+    }
+
+    #[test]
+    fn values_along_a_horizon_are_interpolated_and_those_around_it_summed_up() {
+        let geometry = SurveyGeometry::regular([2, 1, 6], 25.0, 4.0, VerticalUnit::Milliseconds);
+        let samples = vec![0.0, 1.0, 2.0, 3.0, 4.0, f32::NAN, 0.0, -2.0, -4.0, -6.0, -8.0, -10.0];
+        let volume = Volume::from_samples([2, 1, 6], samples).unwrap();
+        let sheet = VoxelSheet { block: 0, z: vec![4.0, 2.5], quality: vec![Quality::Picked; 2] };
+        let horizon = to_horizon("H", &[sheet], &geometry);
+        let table = values_table(&horizon, &geometry, &[("a".to_owned(), volume)], 1);
+        let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+        assert_eq!(rows[0][4..], ["z_ms", "a", "a mean", "a rms", "a greatest"]);
+        assert_eq!(rows[1][4..7], ["16.000", "4", "3.5"]);
+        assert_eq!((rows[1][8], rows[2][4], rows[2][5], rows[2][8]), ("4", "10.000", "-5", "-8"));
+    }
+}

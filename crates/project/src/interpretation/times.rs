@@ -1,0 +1,209 @@
+//! Geologic time as picks need it, and what of a project it obeys.
+//!
+//! A caller that picks by time several times holds the result of [`Times::load`]. While it lives, the next pick reads
+//! nothing.
+
+use crate::command::time_volume;
+use crate::content;
+use crate::document::{Document, HorizonEntry};
+use crate::error::ProjectError;
+use crate::interpretation::assembly;
+use crate::interpretation::candidates::Candidates;
+use crate::weak_cache::WeakCache;
+use ::time::{Cut, Interpretation, Jump, KnownHorizon, Place, Reflections};
+use interp::reassembly::from_horizon;
+use model::FaultNetwork;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use survey::{Contact, Progress, Quality, SurveyGeometry, Volume, Well, well::is_same_surface};
+
+/// What geologic time depends on: path, hash of its volume, key of the extraction, faults.
+type Key = (PathBuf, String, String, Vec<String>);
+
+static HELD: WeakCache<Key, Times> = WeakCache::nothing();
+
+/// The newest geologic time of a project, with the reflections and faults that picks by it need. Memory: 4 bytes a voxel
+/// and 20 a vertex of the candidates.
+pub struct Times {
+    /// τ in samples, NaN where it is not known.
+    pub tau: Volume<f32>,
+    /// The vertices of all candidates.
+    pub reflections: Reflections,
+    /// The faults.
+    pub cuts: Vec<Cut>,
+}
+
+impl std::fmt::Debug for Times {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Times").field("size", &self.tau.size()).finish_non_exhaustive()
+    }
+}
+
+impl Times {
+    /// Geologic time of the project in `root`: what someone holds if it is still right, otherwise read from disk.
+    ///
+    /// # Errors
+    /// [`ProjectError::NoTime`], there are no candidates, data are damaged, or the user cancelled.
+    pub fn load(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<Self>, ProjectError> {
+        let entry = time_volume(root, document)?;
+        let candidates = document.extraction.as_ref().map_or_else(String::new, |entry| entry.key.clone());
+        let faults = document.faults.iter().map(|entry| format!("{} {}", entry.name, entry.shape())).collect();
+        HELD.get_or_make((root.join(&entry.file), entry.hash.clone(), candidates, faults), || {
+            let candidates = Candidates::load(root, document, progress)?;
+            let tau = content::read_volume(root, &entry, document.frame()?, progress)?;
+            let blocks = assembly::blocks(root, document, progress)?;
+            let cuts = Cut::of_network(&blocks, tau.size());
+            let reflections = Reflections::new(&candidates.forest.surfaces, &cuts);
+            Ok(Self { tau, reflections, cuts })
+        })
+    }
+}
+
+/// A top of a well inside the survey.
+struct WellTop {
+    name: String,
+    well: usize,
+    place: Place,
+}
+
+/// What of a project geologic time obeys: its faults, its picked horizons and their contacts, its wells' tops.
+pub(crate) struct Obeyed {
+    /// As the computation takes it.
+    pub interpretation: Interpretation,
+    tops: Vec<WellTop>,
+}
+
+impl Obeyed {
+    /// Reads it.
+    ///
+    /// # Errors
+    /// Data are damaged, or the user cancelled.
+    pub(crate) fn load(
+        root: &Path,
+        document: &Document,
+        network: &FaultNetwork,
+        progress: &Progress,
+    ) -> Result<Self, ProjectError> {
+        let geometry = document.frame()?;
+        let mut horizons = Vec::new();
+        for entry in document.horizons.iter().filter(|entry| is_evidence(entry)) {
+            let horizon = content::read_horizon(root, entry, progress)?;
+            if horizon.any_shape().is_some() {
+                continue;
+            }
+            let jump = match entry.contact {
+                Contact::Erosional => Jump::Below,
+                Contact::Onlap => Jump::Above,
+                _ => Jump::None,
+            };
+            let [_, ny, nz] = geometry.size();
+            let mut nodes = Vec::new();
+            for sheet in from_horizon(&horizon, geometry, network) {
+                let told = sheet.z.iter().zip(&sheet.quality).enumerate().filter(|(_, (z, quality))| {
+                    matches!(quality, Quality::Picked | Quality::Tracked) && **z >= 0.0 && **z <= (nz - 1) as f32
+                });
+                nodes.extend(told.map(|(trace, (z, _))| Place { trace: [trace / ny, trace % ny], z: *z }));
+            }
+            horizons.push(KnownHorizon { nodes, jump });
+        }
+        let mut tops = Vec::new();
+        for (n, entry) in document.wells.iter().enumerate() {
+            tops.extend(tops_of(&content::read_well(root, entry)?, n, geometry));
+        }
+        let same = same_names(&tops);
+        let cuts = Cut::of_network(network, geometry.size());
+        Ok(Self { interpretation: Interpretation { cuts, horizons, same }, tops })
+    }
+
+    /// Pairs of tops in different wells whose order in τ is not that of a well that has both: [wrong, all].
+    pub(crate) fn order(&self, tau: &Volume<f32>) -> [usize; 2] {
+        let time = |top: &WellTop| {
+            let [x, y] = top.place.trace;
+            tau.trace(x, y)[top.place.z.round() as usize]
+        };
+        let younger = |a: &WellTop, b: &WellTop| {
+            let above = |well: usize| {
+                let find = |of: &WellTop| {
+                    self.tops.iter().position(|top| top.well == well && is_same_surface(&top.name, &of.name))
+                };
+                Some(find(a)? < find(b)?)
+            };
+            above(a.well) == Some(true) || above(b.well) == Some(true)
+        };
+        let mut counts = [0, 0];
+        for a in &self.tops {
+            for b in self.tops.iter().filter(|b| b.well != a.well && !is_same_surface(&a.name, &b.name)) {
+                if younger(a, b) && time(a).is_finite() && time(b).is_finite() {
+                    counts[0] += usize::from(time(a) > time(b));
+                    counts[1] += 1;
+                }
+            }
+        }
+        counts
+    }
+}
+
+/// Whether a horizon tells more than geologic time itself did: not a level of it, and no boundary of an intrusion.
+fn is_evidence(entry: &HorizonEntry) -> bool {
+    let is_level = entry.seeds.is_empty() && entry.source.reading.starts_with("geologic time");
+    !is_level && !entry.contact.is_intrusive()
+}
+
+/// The tops of a well inside the survey, from the top down.
+fn tops_of(well: &Well, number: usize, geometry: &SurveyGeometry) -> Vec<WellTop> {
+    let [nx, ny, nz] = geometry.size();
+    let mut tops: Vec<_> = well.tops.iter().collect();
+    tops.sort_by(|a, b| a.md_m.total_cmp(&b.md_m));
+    let place = |md_m: f64| {
+        let voxel = well.voxel_at_md(md_m, geometry)?;
+        let inside = |at: f64, count: usize| at >= -0.5 && at.round() <= (count - 1) as f64;
+        (inside(voxel.x, nx) && inside(voxel.y, ny) && voxel.z >= 0.0 && voxel.z <= (nz - 1) as f64).then(|| Place {
+            trace: [voxel.x.round().max(0.0) as usize, voxel.y.round().max(0.0) as usize],
+            z: voxel.z as f32,
+        })
+    };
+    let found = tops.into_iter().filter_map(|top| Some((top.name.clone(), place(top.md_m)?)));
+    found.map(|(name, place)| WellTop { name, well: number, place }).collect()
+}
+
+/// Pairs of tops of one name in a well and in the next that has it.
+fn same_names(tops: &[WellTop]) -> Vec<[Place; 2]> {
+    let next = |n: usize, top: &WellTop| {
+        let later = tops[n + 1..].iter();
+        later.filter(|other| other.well != top.well).find(|other| is_same_surface(&top.name, &other.name))
+    };
+    tops.iter().enumerate().filter_map(|(n, top)| Some([top.place, next(n, top)?.place])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tops_of_one_name_pair_up_and_their_order_is_checked() {
+        let top = |name: &str, well: usize, x: usize, z: f32| WellTop {
+            name: name.to_owned(),
+            well,
+            place: Place { trace: [x, 0], z },
+        };
+        let tops = vec![
+            top("Top Chalk", 0, 0, 3.0),
+            top("Base Chalk", 0, 0, 6.0),
+            top("TOP_CHALK", 1, 4, 5.0),
+            top("Base Chalk", 1, 4, 8.0),
+            top("Salt", 1, 4, 9.0),
+        ];
+        let pairs = same_names(&tops);
+        assert_eq!(pairs.len(), 2);
+        assert_eq!(pairs[0].map(|place| place.trace[0]), [0, 4]);
+        let obeyed = Obeyed { interpretation: Interpretation::default(), tops };
+        let tau = |throw: f32| {
+            let samples = (0..50).map(|n| (n % 10) as f32 - if n / 10 >= 3 { throw } else { 0.0 }).collect();
+            Volume::from_samples([5, 1, 10], samples).unwrap()
+        };
+        // The second well lies two samples deeper; there are six pairs that a well orders.
+        assert_eq!(obeyed.order(&tau(2.0)), [0, 4]);
+        // With six samples too much its base of the chalk is younger than the first well's top.
+        assert!(obeyed.order(&tau(8.0))[0] > 0);
+    }
+}
