@@ -20,8 +20,6 @@ use survey::LevelField;
 
 /// Nodes around what a layer holds that lines begin at, too: those that the cubic between nodes uses.
 const AROUND: usize = 2;
-/// Longest step along a line, in cube roots of a voxel.
-const STEP: f32 = 1.5;
 /// Steps of a line, at most.
 const MOST_STEPS: usize = 600;
 /// A line is at the middle when k is as near to ½.
@@ -29,9 +27,11 @@ const AT_MIDDLE: f32 = 1e-4;
 /// A line ends where k rises by less than this share of what its slope says: there is a crease.
 const LEAST_RISE: f32 = 0.3;
 
-/// The place where the line through `start` along ∇k meets k = ½, or ends. `rise` gives k and its derivatives per voxel.
+/// The place where the line through `start` along ∇k meets k = ½, or ends, by steps of at most `longest` cube roots of a
+/// voxel. `rise` gives k and its derivatives per voxel.
 pub fn middle(
     metric: &Metric,
+    longest: f32,
     start: Vec3,
     rise: impl Fn(Vec3) -> (f32, Vec3),
     is_known: impl Fn(Vec3) -> bool,
@@ -40,12 +40,12 @@ pub fn middle(
     let (mut k, mut slope) = rise(p);
     for _ in 0..MOST_STEPS {
         let left = 0.5 - k;
-        let Some(step) = step(metric, slope, left) else { break };
+        let Some(step) = step(metric, longest, slope, left) else { break };
         if left.abs() < AT_MIDDLE {
             break;
         }
         // The midpoint rule.
-        let Some(step) = self::step(metric, rise(p + 0.5 * step).1, left) else { break };
+        let Some(step) = self::step(metric, longest, rise(p + 0.5 * step).1, left) else { break };
         let next = p + step;
         if !is_known(next) {
             break;
@@ -61,7 +61,7 @@ pub fn middle(
 }
 
 /// The voxel vector along ∇k over which k would rise by `by`, or the longest step that way; `None` where k has no slope.
-fn step(metric: &Metric, slope: Vec3, by: f32) -> Option<Vec3> {
+fn step(metric: &Metric, longest: f32, slope: Vec3, by: f32) -> Option<Vec3> {
     let along = metric.raise(slope);
     let steepness = slope.dot(along);
     if !(steepness > 1e-12 && steepness.is_finite()) {
@@ -69,7 +69,7 @@ fn step(metric: &Metric, slope: Vec3, by: f32) -> Option<Vec3> {
     }
     let full = along * (by / steepness);
     let length = by.abs() / steepness.sqrt();
-    Some(if length > STEP { full * (STEP / length) } else { full })
+    Some(if length > longest { full * (longest / length) } else { full })
 }
 
 /// The layers that the nodes of a lattice hold, and their blocks.
@@ -171,12 +171,12 @@ mod tests {
             ((out.length() - 10.0) / 20.0, out.normalize() / 20.0)
         };
         for start in [Vec3::new(11.0, 3.0, 0.0), Vec3::new(8.0, 1.0, -9.0), Vec3::new(-19.0, 0.0, 20.0)] {
-            let found = middle(&metric, start, rise, |_| true);
+            let found = middle(&metric, 1.5, start, rise, |_| true);
             let exact = Vec3::new(start.x, 0.0, start.z).normalize() * 20.0 + Vec3::Y * start.y;
             assert!(found.abs_diff_eq(exact, 0.01), "{start}: {found} {exact}");
         }
         // What is not known ends a line.
-        let found = middle(&metric, Vec3::new(11.0, 0.0, 0.0), rise, |p| p.x < 14.0);
+        let found = middle(&metric, 1.5, Vec3::new(11.0, 0.0, 0.0), rise, |p| p.x < 14.0);
         assert!(found.x > 12.0 && found.x < 14.0, "{found}");
     }
 
@@ -185,8 +185,8 @@ mod tests {
         let metric = Metric::new(DMat3::IDENTITY, 1.0).unwrap();
         // The distance from two planes that meet: largest on x = 0, never ½.
         let rise = |p: Vec3| (0.3 - 0.01 * p.x.abs(), Vec3::X * (-0.01 * p.x.signum()));
-        let found = middle(&metric, Vec3::new(7.3, 0.0, 0.0), rise, |_| true);
-        assert!(found.x.abs() < 2.0 * STEP, "{found}");
+        let found = middle(&metric, 1.5, Vec3::new(7.3, 0.0, 0.0), rise, |_| true);
+        assert!(found.x.abs() < 3.0, "{found}");
     }
 
     #[test]

@@ -33,12 +33,14 @@ use survey::progress::{Cancelled, Progress};
 pub type Unfolding = Arc<[LevelField; 2]>;
 
 /// Nodes of the lattice around the volume; a layer is solved on those that it holds.
-const NODES: f64 = 200_000.0;
+const NODES: f64 = 100_000.0;
 /// Nodes around the layer that are solved with it.
 const AROUND: usize = 3;
 /// Nodes of an unfolding around the volume, at most; they are no closer than [`FINEST`] cube roots of a voxel.
 const FINE_NODES: f64 = 1_000_000.0;
 const FINEST: f64 = 0.7;
+/// Voxels around the volume in which the levels of horizons are defined.
+const MARGIN: f32 = 4.0;
 /// Weight w of what changes across the layering.
 const ACROSS: f64 = 6.0;
 /// Weight of second differences, in units of slope.
@@ -78,8 +80,11 @@ pub fn unfold<M: LayerModel + ?Sized>(
     let region_near = |p: Vec3| model.region_at(p.clamp(Vec3::ZERO, last));
     let solved = solve(model, metric, layers, &rise, progress)?;
     let voxels = size.iter().product::<usize>() as f64;
-    let fine = CutLattice::nodes_around(size, metres, FINE_NODES.min(voxels / FINEST.powi(3)), 1.0);
+    let count = FINE_NODES.min(voxels / FINEST.powi(3));
+    let fine = CutLattice::nodes_between(Vec3::splat(-MARGIN), last + MARGIN, metres, count, 1.0, 0.5);
     let held = Held::of(fine, region_near);
+    // A step from node to node.
+    let longest = metric.length_squared(fine.step / 3.0f32.sqrt()).sqrt();
     let lengths = [0, 1].map(|axis| metres.col(axis).length() as f32);
     progress.begin("carrying", layers.len() as u64);
     let of_layer = |(&layer, solved): (&u16, &Solved)| {
@@ -88,7 +93,7 @@ pub fn unfold<M: LayerModel + ?Sized>(
             let on_lattice =
                 |p: Vec3| [0, 1].map(|which: usize| tricubic::sample(&solved.fields[which][block], p).0 / lengths[which]);
             let is_known = |p: Vec3| solved.lattice.is_known(block, p);
-            let in_middle = |p: Vec3| on_lattice(carried::middle(metric, p, |p| rise(p, region), is_known));
+            let in_middle = |p: Vec3| on_lattice(carried::middle(metric, longest, p, |p| rise(p, region), is_known));
             Arc::new(held.fields(region, in_middle, on_lattice))
         };
         let unfoldings = (0..model.block_count()).into_par_iter().map(of_block).collect();

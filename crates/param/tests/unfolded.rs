@@ -79,7 +79,8 @@ fn measure(
             step(n, 0.618_034, 2.0, 38.0),
             step(n, 0.754_878, 3.0, 77.0),
         );
-        if model.region_at(p) != region {
+        let around = Vec3::AXES.into_iter().flat_map(|axis| [p, p + 0.5 * axis, p - 0.5 * axis]);
+        if around.into_iter().any(|q| model.region_at(q) != region) {
             continue;
         }
         if is_crease(p) {
