@@ -13,7 +13,7 @@ use formats::{
 };
 use project::command::{
     AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, MoveStickPoint, RemoveFault,
-    RemoveHorizon, RemovePick, RenameFault, RenameHorizon, SetContact, SetFaultExtent, SetHorizonColour, SetTruncation,
+    RemoveHorizon, RemovePick, RenameFault, RenameHorizon, SetContact, SetFaultColour, SetFaultExtent, SetHorizonColour, SetTruncation,
 };
 use project::document::Polarity;
 use project::memory_budget;
@@ -202,6 +202,11 @@ pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
         FaultAction::Extent { project, name, extent } => {
             let grown_m = grown_m("extent", &extent)?;
             Request::Change { project, command: Command::SetFaultExtent(SetFaultExtent { fault: name, grown_m }) }
+        }
+        FaultAction::Colour { project, name, colour } => {
+            let colour = colour.parse().map_err(|_| format!("colour {colour}: expected #rrggbb"))?;
+            let command = Command::SetFaultColour(SetFaultColour { fault: name, colour });
+            Request::Change { project, command }
         }
         FaultAction::Rename { project, from, to } => {
             Request::Change { project, command: Command::RenameFault(RenameFault { from, to }) }

@@ -67,6 +67,7 @@ fn made_of(
         strata: &model.stratigraphy().horizons,
         wells: &[],
         faults: &["Northern boundary fault".to_owned()],
+        fault_colours: &[],
         layers,
         library,
         interpretation: None,

@@ -81,6 +81,7 @@ impl Fold {
             strata: &[],
             wells: &[],
             faults: &["F1".to_owned()],
+            fault_colours: &[],
             layers: &self.layers,
             library: Some(&self.library),
             interpretation: None,

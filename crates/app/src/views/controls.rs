@@ -228,7 +228,7 @@ fn block(ui: &mut Ui, session: &Session, scene: &mut Scene, actions: &mut Vec<Ac
     });
     cut_shapes::show(ui, session, scene);
     let mut handles = session.view.handles;
-    if ui.checkbox(&mut handles, "Handles to drag faces (H)").changed() {
+    if ui.checkbox(&mut handles, "Handles to drag faces (Shift H)").changed() {
         actions.push(Action::Handles(handles));
     }
 }

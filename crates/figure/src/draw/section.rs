@@ -35,6 +35,8 @@ pub struct SectionContents<'a> {
     pub horizons: &'a [NamedColour],
     /// Names of faults, by index.
     pub faults: &'a [String],
+    /// Their colours; black where there is none.
+    pub fault_colours: &'a [Colour],
     /// What an interpreter sees over it.
     pub interpretation: Option<(&'a DrawnInterpretation<'a>, &'a OverlayLines, SeenOn<'a>)>,
     /// Where other sections run.
@@ -61,7 +63,7 @@ impl SectionContents<'_> {
         let [right, down] = [DVec2::new(image.width(), 0.0), DVec2::new(0.0, image.height())];
         group.push(Picture::of_samples(self.image.clone(), image.min, right, down));
         match self.interpretation {
-            None => model_lines(self.lines, self.horizons, self.faults, page).into_iter().for_each(|g| group.push(g)),
+            None => model_lines(self.lines, self.horizons, (self.faults, self.fault_colours), page).into_iter().for_each(|g| group.push(g)),
             Some((shown, lines, on)) => {
                 lines.drawn(page).into_iter().for_each(|lines| group.push(lines));
                 overlay::sticks(shown, on, page).into_iter().for_each(|stick| group.push(stick));
@@ -76,7 +78,7 @@ impl SectionContents<'_> {
 fn model_lines(
     lines: &[CutLine],
     horizons: &[NamedColour],
-    faults: &[String],
+    (faults, fault_colours): (&[String], &[Colour]),
     page: impl Fn(DVec2) -> DVec2,
 ) -> Vec<Group> {
     let mut rims = Group::new(GroupKind::Annotation, "rims");
@@ -94,7 +96,8 @@ fn model_lines(
             }
             LineKind::Fault { fault, .. } => {
                 let name = faults.get(fault).map_or("", String::as_str);
-                (Group::new(GroupKind::Fault, name), Colour::BLACK, FAULT_PT)
+                let colour = fault_colours.get(fault).copied().unwrap_or(Colour::BLACK);
+                (Group::new(GroupKind::Fault, name), colour, FAULT_PT)
             }
         };
         let own = lines.iter().filter(|line| line.kind == kind);
