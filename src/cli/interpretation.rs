@@ -13,7 +13,8 @@ use formats::{
 };
 use project::command::{
     AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, MoveStickPoint, RemoveFault,
-    RemoveHorizon, RemovePick, RenameFault, RenameHorizon, SetContact, SetFaultColour, SetFaultExtent, SetHorizonColour, SetTruncation,
+    RemoveHorizon, RemovePick, RenameFault, RenameHorizon, SetContact, SetFaultColour, SetFaultExtent,
+    SetHorizonColour, SetTruncation,
 };
 use project::document::Polarity;
 use project::memory_budget;

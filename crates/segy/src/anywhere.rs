@@ -76,7 +76,8 @@ impl Sweep {
                 let is_small = [low, high].iter().all(|number| number.unsigned_abs() <= MAX_LINE_NUMBER);
                 // A 2-byte number before something that never varies.
                 let is_short = || number_type == NumberType::I32 && column.iter().all(|n| (n ^ low) & 0xffff == 0);
-                (low != NO_INTEGER && is_small && low != high && !is_short()).then_some((i64::from(high) - i64::from(low), byte))
+                (low != NO_INTEGER && is_small && low != high && !is_short())
+                    .then_some((i64::from(high) - i64::from(low), byte))
             })
             .collect();
         spans.sort_unstable();

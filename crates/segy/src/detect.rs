@@ -310,8 +310,12 @@ impl Search<'_> {
         }
         findings.evidence(Note::unless(
             format!(
-                "the file counts {} first; no file says which axis is called inline: the swapped reading is {}",
+                "the file counts {} first; {}: the swapped reading is {}",
                 if lattice.inline_sorted { "crosslines" } else { "inlines" },
+                match chosen.convention {
+                    NAMED => "its text header says which axis is the inline",
+                    _ => "no file says which axis is called inline",
+                },
                 swapped.as_choice()
             ),
             swapped.remedy(),

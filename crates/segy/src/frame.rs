@@ -383,7 +383,7 @@ fn starts(
             Some(n) => starts.push(after(n)),
             None => findings.warning(
                 "byte 3505 announces extended text headers closed by ((SEG: EndText)), which is nowhere in the \
-                 file; none are read"
+                 file; what looks like text is taken for them"
                     .to_owned(),
             ),
         },

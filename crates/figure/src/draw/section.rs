@@ -63,7 +63,9 @@ impl SectionContents<'_> {
         let [right, down] = [DVec2::new(image.width(), 0.0), DVec2::new(0.0, image.height())];
         group.push(Picture::of_samples(self.image.clone(), image.min, right, down));
         match self.interpretation {
-            None => model_lines(self.lines, self.horizons, (self.faults, self.fault_colours), page).into_iter().for_each(|g| group.push(g)),
+            None => model_lines(self.lines, self.horizons, (self.faults, self.fault_colours), page)
+                .into_iter()
+                .for_each(|g| group.push(g)),
             Some((shown, lines, on)) => {
                 lines.drawn(page).into_iter().for_each(|lines| group.push(lines));
                 overlay::sticks(shown, on, page).into_iter().for_each(|stick| group.push(stick));

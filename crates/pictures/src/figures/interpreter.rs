@@ -83,7 +83,11 @@ impl<'a> InterpreterPicks<'a> {
         }
         let faults = document.faults.iter().map(|entry| {
             let fault = content::read_fault(root, entry)?;
-            Ok(Mesh { name: entry.name.clone(), colour: entry.ink(), triangles: content::fault_triangles(&fault, geometry) })
+            Ok(Mesh {
+                name: entry.name.clone(),
+                colour: entry.ink(),
+                triangles: content::fault_triangles(&fault, geometry),
+            })
         });
         let open = proposals::open(root, document).into_iter().filter(|proposal| view.shows(proposal));
         let open = open.map(|proposal| {

@@ -90,7 +90,9 @@ fn extended_text_headers_by_count_and_by_end_stanza() {
 #[test]
 fn text_headers_that_the_file_does_not_announce_rightly_are_no_traces() {
     let text = |lines: usize| {
-        let block = |n: usize| format!("((SEG: Location Data ver 1.0)) part {n}, with words to the end of the line ").repeat(60);
+        let block = |n: usize| {
+            format!("((SEG: Location Data ver 1.0)) part {n}, with words to the end of the line ").repeat(60)
+        };
         (0..lines).flat_map(|n| block(n).into_bytes().into_iter().take(3200)).collect::<Vec<u8>>()
     };
     // The stride of a trace divides a text header, so that the length of the file does not tell.

@@ -63,7 +63,7 @@ pub struct ShownFault {
     /// Its name.
     pub name: String,
     /// Its colour.
-    pub colour: ttf::Colour,
+    pub colour: Colour,
     /// Its triangles.
     pub triangles: Vec<[DVec3; 3]>,
 }
@@ -425,7 +425,10 @@ impl Keeper {
             }
         });
         let horizons = horizons.collect();
-        let faults = document.faults.iter().map(|entry| Ok(ShownFault { colour: entry.ink(), ..shown(&content::read_fault(root, entry)?, geometry) }));
+        let faults = document
+            .faults
+            .iter()
+            .map(|entry| Ok(ShownFault { colour: entry.ink(), ..shown(&content::read_fault(root, entry)?, geometry) }));
         let faults = faults.collect::<Result<_, ProjectError>>()?;
         let (proposals, unit) = proposed(root, document, geometry);
         self.number += 1;
@@ -449,7 +452,7 @@ fn hashes(document: &Document) -> Vec<String> {
 }
 
 fn shown(fault: &Fault, geometry: &SurveyGeometry) -> ShownFault {
-    ShownFault { name: fault.name.clone(), colour: ttf::Colour::BLACK, triangles: content::fault_triangles(fault, geometry) }
+    ShownFault { name: fault.name.clone(), colour: Colour::BLACK, triangles: content::fault_triangles(fault, geometry) }
 }
 
 /// The proposals for the present horizons without those that were accepted, and the unit of their throws.
