@@ -14,8 +14,8 @@ use formats::{
 };
 use project::command::{
     AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, MoveStickPoint, RemoveFault,
-    RemoveHorizon, RemovePick, RenameFault, RenameHorizon, SetContact, SetFaultExtent, SetHorizonColour, SetTruncation,
-    Spacing, StackHorizons,
+    RemoveHorizon, RemovePick, RenameFault, RenameHorizon, SetContact, SetFaultColour, SetFaultExtent,
+    SetHorizonColour, SetTruncation, Spacing, StackHorizons,
 };
 use project::document::Polarity;
 use project::memory_budget;
@@ -215,6 +215,11 @@ pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
         FaultAction::Extent { project, name, extent } => {
             let grown_m = grown_m("extent", &extent)?;
             Request::Change { project, command: Command::SetFaultExtent(SetFaultExtent { fault: name, grown_m }) }
+        }
+        FaultAction::Colour { project, name, colour } => {
+            let colour = colour.parse().map_err(|_| format!("colour {colour}: expected #rrggbb"))?;
+            let command = Command::SetFaultColour(SetFaultColour { fault: name, colour });
+            Request::Change { project, command }
         }
         FaultAction::Rename { project, from, to } => {
             Request::Change { project, command: Command::RenameFault(RenameFault { from, to }) }

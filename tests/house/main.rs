@@ -9,6 +9,7 @@ mod source;
 
 use imports::Crate;
 use source::{Source, crates};
+use std::path::Path;
 
 /// Lines of a crate, tests included.
 const CRATE_LINES: usize = 13_000;
@@ -54,6 +55,43 @@ fn every_file_says_what_it_is_about() {
         silent.extend(sources.iter().filter(|source| !source.text.starts_with("//!")).map(|s| s.path.clone()));
     }
     assert!(silent.is_empty(), "without module documentation: {silent:?}");
+}
+
+/// docs/tried.md promises for each row a test that fails when it is no longer so.
+#[test]
+fn every_case_that_was_tried_has_its_test() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = std::fs::read_to_string(root.join("docs/tried.md")).unwrap();
+    let mut code = String::new();
+    for folder in ["crates", "src", "tests"] {
+        gather(&root.join(folder), &mut code);
+    }
+    let rows = page.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| tried"));
+    let mut count = 0;
+    for row in rows {
+        let cell = row.trim_end_matches(['|', ' ']).rsplit('|').next().unwrap_or_default();
+        // The words in code quotes: names of tests, and of files where these are.
+        let quoted = cell.split('`').skip(1).step_by(2);
+        let tests: Vec<&str> = quoted.filter(|name| !name.contains(['/', '.'])).collect();
+        assert!(!tests.is_empty(), "without a test: {row}");
+        for name in tests {
+            assert!(code.contains(&format!("fn {name}()")), "docs/tried.md names {name}, which is no test");
+            count += 1;
+        }
+    }
+    assert!(count > 50, "{count} tests were named");
+}
+
+/// The text of all Rust files of a folder.
+fn gather(folder: &Path, code: &mut String) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            gather(&path, code);
+        } else if path.extension().is_some_and(|ending| ending == "rs") {
+            code.push_str(&std::fs::read_to_string(&path).unwrap());
+        }
+    }
 }
 
 /// The finder must be able to fail: a circle across folders is found, through re-exports too, and one within a folder

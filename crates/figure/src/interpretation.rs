@@ -45,6 +45,8 @@ pub struct PickedSheets<'a> {
 pub struct FaultMesh<'a> {
     /// Its name.
     pub name: &'a str,
+    /// Its colour.
+    pub colour: Colour,
     /// Its triangles.
     pub triangles: &'a [[DVec3; 3]],
 }

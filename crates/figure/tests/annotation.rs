@@ -70,6 +70,7 @@ impl Survey {
             strata: &self.closed.stratigraphy.horizons,
             wells: &self.wells,
             faults: &["F1".to_owned()],
+            fault_colours: &[],
             layers: &self.layers,
             library: Some(&library),
             interpretation: None,

@@ -84,7 +84,8 @@ pub struct Held {
 impl Held {
     /// Asks for the region at each node.
     pub fn of(nodes: NodeBox, region_at: impl Fn(Vec3) -> Region + Sync) -> Self {
-        let of_node: Vec<Region> = (0..nodes.count()).into_par_iter().map(|node| region_at(nodes.place(node))).collect();
+        let of_node: Vec<Region> =
+            (0..nodes.count()).into_par_iter().map(|node| region_at(nodes.place(node))).collect();
         let layers = |node: usize| {
             let own = of_node[node];
             let same = nodes.beside(node).map(|m| of_node[m]).filter(|other| other.block == own.block);

@@ -90,8 +90,9 @@ pub fn unfold<M: LayerModel + ?Sized>(
     let of_layer = |(&layer, solved): (&u16, &Solved)| {
         let of_block = |block: usize| {
             let region = Region { layer, block: block as u16 };
-            let on_lattice =
-                |p: Vec3| [0, 1].map(|which: usize| tricubic::sample(&solved.fields[which][block], p).0 / lengths[which]);
+            let on_lattice = |p: Vec3| {
+                [0, 1].map(|which: usize| tricubic::sample(&solved.fields[which][block], p).0 / lengths[which])
+            };
             let is_known = |p: Vec3| solved.lattice.is_known(block, p);
             let in_middle = |p: Vec3| on_lattice(carried::middle(metric, longest, p, |p| rise(p, region), is_known));
             Arc::new(held.fields(region, in_middle, on_lattice))

@@ -74,11 +74,7 @@ fn measure(
     let mut measured = Measured::default();
     let step = |n: usize, k: f64, low: f64, high: f64| (low + (n as f64 * k).fract() * (high - low)) as f32;
     for n in 0..12_000 {
-        let p = Vec3::new(
-            step(n, 0.414_214, 2.0, 58.0),
-            step(n, 0.618_034, 2.0, 38.0),
-            step(n, 0.754_878, 3.0, 77.0),
-        );
+        let p = Vec3::new(step(n, 0.414_214, 2.0, 58.0), step(n, 0.618_034, 2.0, 38.0), step(n, 0.754_878, 3.0, 77.0));
         let around = Vec3::AXES.into_iter().flat_map(|axis| [p, p + 0.5 * axis, p - 0.5 * axis]);
         if around.into_iter().any(|q| model.region_at(q) != region) {
             continue;
@@ -145,7 +141,8 @@ fn patterns_go_around_a_fold_of_scattered_points() {
     let fold = RecumbentFold::fitting(&geometry());
     let bed = |(n, age): (usize, f64)| {
         let places = (0..2000).map(|m| {
-            let (y, z) = ((m as f64 * 0.754_878 + 0.1 * n as f64).fract() * 1000.0, (m as f64 * 0.569_84).fract() * 800.0);
+            let (y, z) =
+                ((m as f64 * 0.754_878 + 0.1 * n as f64).fract() * 1000.0, (m as f64 * 0.569_84).fract() * 800.0);
             DVec3::new(fold.x_of(age, z), y, z)
         });
         let origin = geometry().origin.extend(0.0);

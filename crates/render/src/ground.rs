@@ -3,7 +3,8 @@
 //! Everything in the topmost (open) layer is air. A coarse map stores, for cells of a few voxels, a height
 //! above which there is only air, so a ray skips most of the block cell by cell. Below that height it
 //! advances by a step that cannot cross a sheet: with `gap` the vertical distance to the nearest sheet and s
-//! the steepest slope of the ground, `step = gap / (|d_z| + s·|d_xy|)`. The distance to the nearest fault
+//! the steepest slope of the ground, `step = gap / (|d_z| + s·|d_xy|)`. Here s is the steepest slope in the cell of the
+//! map and the cells around it, as long as the step stays in them. The distance to the nearest fault
 //! limits a step, too, and no step is shorter than [`SHORTEST_STEP`]. The step that ends in rock is refined: by the
 //! secant method if it crosses a single sheet of one block, and by bisection otherwise. Where the ray crosses
 //! a fault into rock, it hits the fault scarp, whose normal is that of the fault.
@@ -14,7 +15,8 @@
 //! Departure: the paper marches through a volume with empty-space skipping. We use the height fields
 //! themselves, which are exact.
 //!
-//! Voxel space, f32. The shader `ground.wgsl` computes the same.
+//! Voxel space, f32. The shader `ground.wgsl` computes the same, but takes the steepest slope of the whole ground: its steps
+//! are shorter, and lead to the same point.
 
 use crate::scene::{Ground, Scene};
 use crate::visible::Ray;
@@ -37,6 +39,8 @@ pub const INTO_CELL: f32 = 0.01;
 pub const INTO_ROCK: f32 = 0.05;
 /// Largest slope that step lengths take into account; steeper ground is treated as if it had this slope.
 const STEEPEST: f32 = 3.0;
+/// How much steeper than at its nodes the ground may be in a cell: a factor, and what is added.
+const STEEPER: [f32; 2] = [1.5, 0.1];
 /// Spacing of the nodes at which the height is evaluated, voxels.
 const STRIDE: usize = 2;
 /// How far the ground may reach beyond the heights found at nodes, voxels, in addition to what its slope
@@ -58,6 +62,8 @@ pub struct Relief {
     pub map_cells: [usize; 2],
     /// Voxel z above which (smaller z) a cell contains only air, `[x][y]`.
     pub map_tops: Vec<f32>,
+    /// Steepest slope of the ground in a cell and those around it, `[x][y]`.
+    pub map_slopes: Vec<f32>,
     /// Longest voxel edge, m.
     pub longest_m: f32,
     /// Direction to the light in display space.
@@ -134,6 +140,7 @@ impl Relief {
             map_low: roaming_box.low().as_vec3().truncate(),
             map_cells: heights.cells,
             map_tops: heights.tops.clone(),
+            map_slopes: heights.slopes.clone(),
             longest_m: longest as f32,
             light: DVec3::new(bearing.sin(), bearing.cos(), 1.0).normalize().as_vec3(),
             hill_shade: ground.hill_shade,
@@ -154,9 +161,10 @@ impl Relief {
     /// The first hit of the ground along a ray between distances `from` (in the air) and `to`.
     pub fn march(&self, model: &StructuralModel, ray: &Ray, from: f32, to: f32) -> Option<GroundHit> {
         let (start, end) = self.clip(ray, from, to)?;
-        let fall = ray.direction.z.abs() + self.steepest * ray.direction.truncate().length();
-        // A surface of any shape may lie in any direction.
-        let fall = if model.has_levels() { fall.max(1.0) } else { fall };
+        let [down, along] = [ray.direction.z.abs(), ray.direction.truncate().length()];
+        let has_levels = model.has_levels();
+        // The slope of a cell holds for a cell's side around it.
+        let farthest = CELL / along.max(1e-6);
         let (mut air_t, mut air) = (from, None);
         let mut t = start;
         for _ in 0..MAX_STEPS {
@@ -174,9 +182,23 @@ impl Relief {
             }
             (air_t, air) = (t, Some(here));
             let to_fault = 0.8 * here.fault_m / self.longest_m;
-            t = (t + (here.gap / fall).min(to_fault).max(SHORTEST_STEP)).min(end);
+            let to_ground = if has_levels {
+                // A surface of any shape may lie in any direction.
+                here.gap / (down + self.steepest * along).max(1.0)
+            } else {
+                let slope = self.map_slopes[self.cell_at(ray.at(t))];
+                (here.gap / (down + slope * along).max(1e-6)).min(farthest)
+            };
+            t = (t + to_ground.min(to_fault).max(SHORTEST_STEP)).min(end);
         }
         None
+    }
+
+    /// Number of the cell of the coarse map in which a point lies, or the nearest one.
+    fn cell_at(&self, p: Vec3) -> usize {
+        let last = Vec2::new(self.map_cells[0] as f32, self.map_cells[1] as f32) - 1.0;
+        let cell = ((p.truncate() - self.map_low) / CELL).floor().clamp(Vec2::ZERO, last);
+        cell.x as usize * self.map_cells[1] + cell.y as usize
     }
 
     /// The first distance at or after `t` at which the coarse map does not exclude rock.
@@ -329,13 +351,15 @@ pub(crate) struct Heights {
     horizons: Vec<usize>,
     cells: [usize; 2],
     tops: Vec<f32>,
+    slopes: Vec<f32>,
 }
 
 /// Heights of the ground over a row of nodes along y.
 struct HeightRow {
     /// Smallest and largest voxel z per node.
     ranges: Vec<[f32; 2]>,
-    steepest: f32,
+    /// Steepest slope per node.
+    slopes: Vec<f32>,
     /// Bit h is set if horizon h forms the ground or nearly does.
     horizons: u64,
 }
@@ -344,9 +368,9 @@ impl HeightRow {
     /// Evaluates the nodes at `x`. Only the part of a sheet that lies in its own block counts; sheets that
     /// are extended beyond it may be steep.
     fn of(model: &StructuralModel, x: f32, ys: &[f32]) -> Self {
-        let mut row = Self { ranges: vec![[f32::MAX, f32::MIN]; ys.len()], steepest: 0.0, horizons: 0 };
+        let mut row = Self { ranges: vec![[f32::MAX, f32::MIN]; ys.len()], slopes: vec![0.0; ys.len()], horizons: 0 };
         for block in 0..model.block_count() as u16 {
-            for (&y, range) in ys.iter().zip(&mut row.ranges) {
+            for ((&y, range), steepest) in ys.iter().zip(&mut row.ranges).zip(&mut row.slopes) {
                 let ground = |x: f32, y: f32| model.horizon_z(0, block, x, y);
                 let z = ground(x, y);
                 if model.block_at(Vec3::new(x, y, z)) != block {
@@ -360,7 +384,7 @@ impl HeightRow {
                     range[0] = range[0].min(top);
                 }
                 let slope = (ground(x + 1.0, y) - z).hypot(ground(x, y + 1.0) - z);
-                row.steepest = row.steepest.max(slope);
+                *steepest = steepest.max(slope);
                 for h in 0..model.stratigraphy().horizons.len() {
                     let near = HEIGHT_MARGIN + STRIDE as f32 * slope;
                     row.horizons |= u64::from((model.sheet(h, block).z_at(x, y) - z).abs() <= near) << h;
@@ -379,36 +403,38 @@ impl Heights {
         };
         let (xs, ys) = (nodes(0), nodes(1));
         let rows: Vec<HeightRow> = xs.par_iter().map(|&x| HeightRow::of(model, x, &ys)).collect();
-        let steepest = rows.iter().map(|row| row.steepest).fold(0.0, f32::max);
+        let steepest = rows.iter().flat_map(|row| &row.slopes).copied().fold(0.0, f32::max);
         let steepest = (steepest * 1.5).min(STEEPEST);
         // Between the evaluated nodes the ground can rise as far as its slope allows.
         let margin = HEIGHT_MARGIN + STRIDE as f32 * steepest;
         let cells = [xs.len(), ys.len()].map(|nodes| ((nodes - 1) * STRIDE).div_ceil(CELL as usize).max(1));
         let mut own = vec![f32::MAX; cells[0] * cells[1]];
+        let mut own_slopes = vec![0.0_f32; own.len()];
         let mut z_range = [f32::MAX, f32::MIN];
         for (x, row) in rows.iter().enumerate() {
             for (y, [top, base]) in row.ranges.iter().enumerate() {
                 let cell = |node: usize, axis: usize| (node * STRIDE / CELL as usize).min(cells[axis] - 1);
-                let own = &mut own[cell(x, 0) * cells[1] + cell(y, 1)];
-                *own = own.min(*top);
+                let cell = cell(x, 0) * cells[1] + cell(y, 1);
+                own[cell] = own[cell].min(*top);
+                own_slopes[cell] = own_slopes[cell].max(row.slopes[y]);
                 z_range = [z_range[0].min(*top), z_range[1].max(*base)];
             }
         }
         let around = |x: usize, axis: usize| x.saturating_sub(1)..=(x + 1).min(cells[axis] - 1);
-        let tops = (0..own.len())
-            .map(|n| {
-                let columns = around(n / cells[1], 0);
-                let lowest = columns.flat_map(|x| around(n % cells[1], 1).map(move |y| [x, y]));
-                lowest.map(|[x, y]| own[x * cells[1] + y]).fold(f32::MAX, f32::min) - margin
-            })
-            .collect();
+        let beside = |n: usize| {
+            around(n / cells[1], 0).flat_map(move |x| around(n % cells[1], 1).map(move |y| x * cells[1] + y))
+        };
+        let tops = (0..own.len()).map(|n| beside(n).map(|cell| own[cell]).fold(f32::MAX, f32::min) - margin).collect();
+        let [factor, more] = STEEPER;
+        let slope = |n: usize| beside(n).map(|cell| own_slopes[cell]).fold(0.0, f32::max);
+        let slopes = (0..own.len()).map(|n| (slope(n) * factor + more).min(STEEPEST)).collect();
         let mask = rows.iter().fold(0, |mask, row| mask | row.horizons);
         let mut horizons: Vec<usize> =
             (0..model.stratigraphy().horizons.len()).filter(|h| mask >> h & 1 == 1).collect();
         if horizons.is_empty() && !model.stratigraphy().horizons.is_empty() {
             horizons.push(0);
         }
-        Self { z_range: [z_range[0] - margin, z_range[1] + margin], steepest, horizons, cells, tops }
+        Self { z_range: [z_range[0] - margin, z_range[1] + margin], steepest, horizons, cells, tops, slopes }
     }
 }
 

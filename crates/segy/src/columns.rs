@@ -10,10 +10,12 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
+use super::anywhere::Sweep;
 use super::error::SegyProblem;
 use super::header::{Field, Traces, reinterpret};
 use super::number_type::NumberType;
 use super::sample::ByteOrder;
+use super::text_bytes::NamedBytes;
 use survey::progress::Progress;
 
 /// Headers of a block (240 bytes each) stay in the cache while its fields are read one after the other.
@@ -90,8 +92,8 @@ impl HeaderColumn {
 pub(super) struct HeaderLayout {
     /// Bytes of a trace header, extensions included.
     pub bytes: usize,
-    /// Bytes of X and Y that the textual header names.
-    pub named: Option<[u16; 2]>,
+    /// Bytes that the textual header names.
+    pub named: NamedBytes,
 }
 
 /// Fields of every trace.
@@ -101,19 +103,25 @@ pub(super) struct Columns {
     columns: Vec<HeaderColumn>,
     order: ByteOrder,
     layout: HeaderLayout,
+    sweep: Option<Sweep>,
     /// What stands for a field that was not asked for: 0 throughout.
     absent: HeaderColumn,
 }
 
 impl Columns {
-    /// Reads `fields` of all traces.
+    /// Reads `fields` of all traces, and those of a sweep.
     pub fn read(
         traces: &Traces<'_>,
         fields: &[Field],
-        named: Option<[u16; 2]>,
+        sweep: Option<Sweep>,
+        named: NamedBytes,
         progress: &Progress,
     ) -> Result<Self, SegyProblem> {
         let count = traces.count;
+        let fields = match sweep {
+            Some(sweep) => &sweep.with_fields(fields.to_vec()),
+            None => fields,
+        };
         progress.begin("reading trace headers", count as u64);
         let blocks: Vec<Vec<Block>> = (0..count.div_ceil(BLOCK))
             .into_par_iter()
@@ -137,7 +145,7 @@ impl Columns {
         }
         let layout = HeaderLayout { bytes: traces.header_bytes, named };
         let absent = HeaderColumn { blocks: vec![Block::Constant(0); count.div_ceil(BLOCK)], count, range: [0, 0] };
-        Ok(Self { fields: fields.to_vec(), columns, order: traces.order, layout, absent })
+        Ok(Self { fields: fields.to_vec(), columns, order: traces.order, layout, sweep, absent })
     }
 
     /// Traces in the file.
@@ -173,6 +181,11 @@ impl Columns {
     /// The number of another type that starts where a 4-byte field starts.
     pub fn reinterpret(&self, field: i32, number_type: NumberType) -> i32 {
         reinterpret(field, number_type, self.order)
+    }
+
+    /// Whether every field of a sweep was read.
+    pub fn has_all_of(&self, sweep: Sweep) -> bool {
+        self.sweep == Some(sweep)
     }
 
     /// What was known of the headers before they were read.

@@ -4,6 +4,7 @@
 use glam::DVec2;
 
 use super::SegyOptions;
+use super::anywhere::coordinate_pairs;
 use super::columns::{Columns, HeaderColumn, HeaderLayout};
 use super::error::SegyProblem;
 use super::header::{Field, at};
@@ -30,6 +31,9 @@ const MAX_COORDINATE: f64 = 1e8;
 
 /// The cosine of the angle between the axes from which they are called skewed.
 const MAX_SKEW: f64 = 1e-3;
+
+/// The same of X and Y that are where no convention has them: surveys are laid out at right angles.
+const MAX_SKEW_ANYWHERE: f64 = 0.01;
 
 /// What integers are multiplied by.
 #[derive(Debug, Clone, Copy)]
@@ -121,20 +125,54 @@ impl<'a> Coordinates<'a> {
         })
     }
 
-    /// Whether they are the line numbers once more, in either order.
-    fn repeat(&self, lattice: &LineLattice) -> bool {
-        if self.number_type != NumberType::I32 {
-            return false;
+    /// Whether X and Y are, each for itself, the numbers of one and the same axis once more, as they are stored or scaled.
+    fn repeat(&self, lattice: &LineLattice) -> [bool; 2] {
+        // Where a number of the lattice is beyond what a field can hold, no field repeats it.
+        let number = |axis: &LineAxis, n: usize| i64::from(axis.first) + i64::from(axis.step) * n as i64;
+        // [axis][inline or crossline][as stored or scaled]
+        let mut same = [[[true; 2]; 2]; 2];
+        for (inline, crossline, trace) in lattice.traces() {
+            let numbers = [number(&lattice.inlines, inline), number(&lattice.crosslines, crossline)];
+            let scaled = self.of(trace).unwrap_or(DVec2::ZERO).to_array();
+            let stored = [self.x, self.y].map(|column| i64::from(column.at(trace)));
+            for axis in 0..2 {
+                for (line, number) in numbers.into_iter().enumerate() {
+                    same[axis][line][0] &= stored[axis] == number;
+                    same[axis][line][1] &= scaled[axis] == number as f64;
+                }
+            }
+            if !same.as_flattened().as_flattened().contains(&true) {
+                break;
+            }
         }
-        let numbers = |(inline, crossline, trace): (usize, usize, usize)| {
-            // Where a number of the lattice is beyond what a field can hold, no field repeats it.
-            let number = |axis: &LineAxis, n: usize| i64::from(axis.first) + i64::from(axis.step) * n as i64;
-            ([number(&lattice.inlines, inline), number(&lattice.crosslines, crossline)], trace)
+        same.map(|lines| lines.as_flattened().contains(&true))
+    }
+
+    /// Whether X and Y grow by one, as they are stored, or by the step of its numbers from each line to the next, and
+    /// along one axis each: they count lines.
+    fn count(&self, lattice: &LineLattice, fit: &FittedPlace) -> bool {
+        let unit = match self.number_type {
+            NumberType::I32 | NumberType::I16 | NumberType::U16 => scaled(1, self.scalar.at(0)),
+            NumberType::F32 | NumberType::F64 | NumberType::Ibm32 => 1.0,
         };
-        let held = |trace: usize| [self.x.at(trace), self.y.at(trace)].map(i64::from);
-        let swapped = |[x, y]: [i64; 2]| [y, x];
-        lattice.traces().map(numbers).all(|(numbers, trace)| held(trace) == numbers)
-            || lattice.traces().map(numbers).all(|(numbers, trace)| held(trace) == swapped(numbers))
+        let counts = |vector: DVec2, axis: &LineAxis| {
+            let [most, least] = [vector.abs().max_element() / unit, vector.abs().min_element() / unit];
+            let is = |step: f64| (most - step).abs() < 1e-6 * step;
+            least < 1e-6 * most && (is(1.0) || is(f64::from(axis.step).abs()))
+        };
+        counts(fit.inline_vector, &lattice.inlines) && counts(fit.crossline_vector, &lattice.crosslines)
+    }
+
+    /// Why they may be something else than coordinates.
+    fn doubt(&self, lattice: &LineLattice, fit: &FittedPlace) -> Option<&'static str> {
+        match self.repeat(lattice) {
+            [true, true] => Some("X and Y are line numbers once more"),
+            [true, false] => Some("X is a line number once more"),
+            [false, true] => Some("Y is a line number once more"),
+            [false, false] => {
+                self.count(lattice, fit).then_some("X and Y grow by one from line to line, as counters do")
+            }
+        }
     }
 
     /// Largest X or Y, in their unit.
@@ -194,32 +232,68 @@ pub(super) fn varying<'a>(columns: &'a Columns, options: &SegyOptions) -> Option
         .find(|coordinates| coordinates.vary() && (0..columns.count()).any(|trace| coordinates.of(trace).is_some()))
 }
 
-/// The first home and storage whose X and Y are affine in the lattice, with bins of a plausible size if there are any;
-/// failing that, the first that spans an area. `lines` are the bytes of the line numbers, which are no coordinates, and
-/// neither is what repeats them elsewhere.
+/// How good a fit is: 0 if X and Y are not affine in the lattice, [`SURE`] if nothing speaks against it.
+fn rank(coordinates: &Coordinates<'_>, fit: &FittedPlace, lattice: &LineLattice) -> u8 {
+    if !fit.agrees() {
+        return 0;
+    }
+    1 + u8::from(has_plausible_bins(fit, 1.0)) * (1 + u8::from(coordinates.doubt(lattice, fit).is_none()))
+}
+
+/// The rank of coordinates without a doubt.
+const SURE: u8 = 3;
+
+/// The first home and storage whose X and Y are affine in the lattice, with bins of a plausible size if there are any, and
+/// no counters; failing that, any two neighbouring fields that are, where all were read; failing that, the first that
+/// spans an area. `lines` are the bytes of the line numbers, which are no coordinates, and neither is what repeats them
+/// elsewhere.
 pub(super) fn locate<'a>(
     lattice: &LineLattice,
     lines: [u16; 2],
     columns: &'a Columns,
     options: &SegyOptions,
 ) -> Option<(Coordinates<'a>, FittedPlace)> {
-    let homes = homes(options, columns.layout());
-    let mut fits = homes
-        .into_iter()
-        .filter(|(bytes, _)| !bytes.iter().any(|byte| lines.contains(byte)))
-        .map(|home| Coordinates::new(columns, home, options))
-        .filter(|coordinates| coordinates.vary() && (is_stated(options) || !coordinates.repeat(lattice)))
-        .filter_map(|coordinates| Some((coordinates, FittedPlace::fit(lattice, |trace| coordinates.of(trace))?)));
-    // What agrees well comes first, then what agrees, then what there is.
-    let mut best = fits.next()?;
-    let rank = |fit: &FittedPlace| u8::from(fit.agrees()) * (1 + u8::from(has_plausible_bins(fit, 1.0)));
-    while rank(&best.1) < 2 {
-        let Some(next) = fits.next() else { break };
-        if rank(&next.1) > rank(&best.1) {
-            best = next;
+    let of = |home: Home| {
+        let coordinates = Coordinates::new(columns, home, options);
+        let is_free = !home.0.iter().any(|byte| lines.contains(byte)) && coordinates.vary();
+        let is_own = is_free && (is_stated(options) || coordinates.repeat(lattice) != [true; 2]);
+        is_own.then(|| Some((coordinates, FittedPlace::fit(lattice, |trace| coordinates.of(trace))?))).flatten()
+    };
+    let mut best: Option<((Coordinates<'a>, FittedPlace), u8)> = None;
+    for found in homes(options, columns.layout()).into_iter().filter_map(of) {
+        let rank = rank(&found.0, &found.1, lattice);
+        if best.as_ref().is_none_or(|(_, best)| rank > *best) {
+            best = Some((found, rank));
+        }
+        if rank == SURE {
+            break;
         }
     }
-    Some(best)
+    if is_open(options) && best.as_ref().is_none_or(|(_, rank)| *rank < SURE) {
+        let anywhere = coordinate_pairs(columns).into_iter().filter_map(|bytes| of((bytes, options.coordinate_type)));
+        let is_sure = |found: &(Coordinates<'_>, FittedPlace)| {
+            rank(&found.0, &found.1, lattice) == SURE && found.1.skew() < MAX_SKEW_ANYWHERE
+        };
+        let sure = anywhere.into_iter().find(is_sure);
+        return sure.or(best.map(|(found, _)| found));
+    }
+    best.map(|(found, _)| found)
+}
+
+/// Whether X and Y may be anywhere.
+fn is_open(options: &SegyOptions) -> bool {
+    options.bin_m.is_none() && !is_stated(options)
+}
+
+/// Whether X and Y at the usual places are missing or doubtful, so that every field is worth a look.
+pub(super) fn needs_any_place(
+    lattice: &LineLattice,
+    lines: [u16; 2],
+    columns: &Columns,
+    options: &SegyOptions,
+) -> bool {
+    let is_sure = |(coordinates, fit)| rank(&coordinates, &fit, lattice) == SURE;
+    is_open(options) && lattice.places() > 1 && !locate(lattice, lines, columns, options).is_some_and(is_sure)
 }
 
 /// Whether the user says where X and Y are.
@@ -246,7 +320,7 @@ fn homes(options: &SegyOptions, HeaderLayout { bytes: header_bytes, named }: Hea
             let (mut homes, rest): (Vec<Home>, Vec<Home>) = usual.partition(|(bytes, _)| bytes[0] == at::CDP_X);
             homes.extend(extended);
             homes.extend(rest);
-            if let Some(named) = named {
+            if let Some(named) = named.coordinates {
                 homes.retain(|(bytes, _)| *bytes != named);
                 homes.insert(0, (named, stated));
             }
@@ -288,7 +362,7 @@ impl CoordinatePlace {
                 None => note_unknown_units(units, findings),
             }
         }
-        note_doubts(&coordinates, &fit, unit, columns, options, findings);
+        note_doubts((&coordinates, &fit), lattice, unit, columns, options, findings);
         note_fit(&coordinates, &fit, unit, options, findings);
         Ok(Self {
             bytes: Some(coordinates.bytes),
@@ -384,8 +458,8 @@ impl Angles {
 
 /// Reasons to doubt that these are the coordinates; what the user states is not doubted.
 fn note_doubts(
-    coordinates: &Coordinates<'_>,
-    fit: &FittedPlace,
+    (coordinates, fit): (&Coordinates<'_>, &FittedPlace),
+    lattice: &LineLattice,
     unit: LengthUnit,
     columns: &Columns,
     options: &SegyOptions,
@@ -396,6 +470,22 @@ fn note_doubts(
     }
     let others = || Remedy::all([Setting::XByte.stated(), Setting::YByte.stated()]);
     let [x, y] = coordinates.bytes;
+    let named = columns.layout().named.coordinates;
+    if named != Some(coordinates.bytes) && !HOMES.contains(&coordinates.bytes) && coordinates.bytes != at::EXTENDED_CDP
+    {
+        findings.assumption(Note::unless(
+            format!(
+                "X and Y are at bytes {x} and {y}, where no convention has them: they alone fit the lattice of lines"
+            ),
+            others(),
+        ));
+    }
+    if let Some(doubt) = coordinates.doubt(lattice, fit) {
+        findings.warning(Note::unless(
+            format!("at bytes {x} and {y} {doubt}: the place and the size of the survey are doubtful"),
+            Remedy::any([others(), Setting::Bin.stated()]),
+        ));
+    }
     if !has_plausible_bins(fit, unit.metres()) {
         let [inline, crossline] = [fit.inline_vector, fit.crossline_vector].map(|side| side.length() * unit.metres());
         findings.warning(Note::unless(
@@ -406,7 +496,7 @@ fn note_doubts(
             Remedy::any([others(), Setting::CoordinateUnit.stated(), Setting::Bin.stated()]),
         ));
     }
-    if let Some([named_x, named_y]) = columns.layout().named.filter(|named| *named != coordinates.bytes) {
+    if let Some([named_x, named_y]) = named.filter(|named| *named != coordinates.bytes) {
         findings.warning(Note::unless(
             format!(
                 "the text header names bytes {named_x} and {named_y} for X and Y, which make no lattice there; bytes {x} \

@@ -12,10 +12,11 @@ use std::borrow::Cow;
 use rayon::prelude::*;
 
 use super::SegyOptions;
+use super::anywhere::{MAX_LINE_NUMBER, Sweep};
 use super::bins::{self, Bins};
 use super::candidate::{Candidate, Verdict};
 use super::columns::{Columns, HeaderColumn, HeaderLayout};
-use super::coordinates::{coordinate_fields, is_coordinate, locate};
+use super::coordinates::{coordinate_fields, locate, varying as varying_coordinates};
 use super::error::SegyProblem;
 use super::header::{Field, NO_INTEGER, at};
 use super::info::Findings;
@@ -36,18 +37,13 @@ const CONVENTIONS: [(u16, u16, &str); 5] = [
 
 /// The name of a pair of bytes that the user stated.
 const STATED: &str = "stated";
+/// The name of a pair of bytes that the textual header names.
+const NAMED: &str = "named by the text header";
 
 /// Fields that may hold line numbers outside the conventions. Not among them: trace counters (1, 5, 13),
 /// which make a lattice of any regular file, and coordinates.
 const OTHER_LINE_FIELDS: [u16; 15] = [9, 17, 21, 25, 189, 193, 197, 205, 209, 213, 217, 221, 225, 229, 233];
 
-/// Where line numbers are looked for in the end, when X and Y confirm them: every 4-byte field.
-fn any_fields() -> impl Iterator<Item = u16> {
-    (1..=237).step_by(4)
-}
-
-/// So many of them are tried at most.
-const MOST_FIELDS: usize = 16;
 /// Fields that usually count traces along a line: they make a lattice of any regular file.
 const COUNTERS: [u16; 2] = [1, 13];
 
@@ -55,15 +51,14 @@ const COUNTERS: [u16; 2] = [1, 13];
 const OTHER_TYPES: [NumberType; 4] = [NumberType::I16, NumberType::U16, NumberType::F32, NumberType::Ibm32];
 const NARROW_PAIRS: [(u16, u16); 2] = [(189, 191), (181, 183)];
 
-/// No survey has larger line numbers. The bits of floats, read as integers, are larger.
-const MAX_LINE_NUMBER: u32 = 100_000_000;
-
 /// Repeated places beyond this share mean that the file is no post-stack volume, or the bytes no line
 /// numbers.
 const MAX_DUPLICATES: f64 = 0.1;
 /// Least share of filled places for a known convention, and for a pair that no convention knows.
 const MIN_FILL: f64 = 0.05;
 const MIN_FILL_UNKNOWN: f64 = 0.25;
+/// The same for a pair that no convention knows in a file without X and Y, which would confirm it.
+const MIN_FILL_UNCONFIRMED: f64 = 0.95;
 
 /// The reading that was chosen.
 #[derive(Debug)]
@@ -72,6 +67,8 @@ pub(super) struct Detected {
     pub bytes: Option<[u16; 2]>,
     pub lattice: LineLattice,
     pub candidates: Vec<Candidate>,
+    /// Every field, where that had to be read.
+    pub columns: Option<Box<Columns>>,
 }
 
 /// Fields that detection looks at.
@@ -79,6 +76,7 @@ pub(super) fn fields(options: &SegyOptions, layout: HeaderLayout) -> Vec<Field> 
     let conventions = CONVENTIONS.iter().flat_map(|&(inline, crossline, _)| [inline, crossline]);
     let narrow = NARROW_PAIRS.into_iter().flat_map(|(inline, crossline)| [inline, crossline]);
     let mut bytes: Vec<u16> = conventions.chain(narrow).chain(OTHER_LINE_FIELDS).collect();
+    bytes.extend(layout.named.lines.into_iter().flatten());
     let stated = [options.inline_byte, options.crossline_byte].into_iter().flatten();
     let mut fields = coordinate_fields(options, layout);
     match options.line_type {
@@ -99,24 +97,18 @@ pub(super) fn fields(options: &SegyOptions, layout: HeaderLayout) -> Vec<Field> 
     once
 }
 
-/// Reads every field of the trace headers.
-type EveryField<'a> = dyn Fn() -> Result<Columns, SegyProblem> + Sync + 'a;
+/// Reads every field of a sweep.
+type EveryField<'a> = dyn Fn(Sweep) -> Result<Columns, SegyProblem> + Sync + 'a;
 
-/// The same with every 4-byte field.
-pub(super) fn with_any_fields(mut fields: Vec<Field>) -> Vec<Field> {
-    fields.extend(any_fields().map(Field::I32).filter(|field| !fields.contains(field)).collect::<Vec<_>>());
-    fields
-}
-
-/// Finds the line numbers. `every_field` reads the columns of [`with_any_fields`]; that is done for the few files
-/// whose line numbers are at none of the usual places.
+/// Finds the line numbers. `every_field` reads the fields of a sweep; that is done for the few files whose line numbers
+/// are at none of the usual places.
 pub(super) fn detect(
     columns: &Columns,
     every_field: &EveryField<'_>,
     options: &SegyOptions,
     findings: &mut Findings,
 ) -> Result<Detected, SegyProblem> {
-    let search = Search { columns, every_field: Some(every_field), options };
+    let search = Search { columns, every_field, swept: None, options };
     if options.line_source != LineSource::Headers {
         return match bins::find(columns, options, bins::MIN_FILL_STATED) {
             Ok(bins) => search.by_coordinates(&bins, Vec::new(), findings),
@@ -128,6 +120,12 @@ pub(super) fn detect(
     }
     let is_open = |stated: Option<u16>, byte: u16| stated.is_none_or(|stated| stated == byte);
     let number_type = options.line_type.unwrap_or_default();
+    if let Some(named) = search.named(findings) {
+        let others = CONVENTIONS.iter().filter(|(i, x, _)| [*i, *x] != [named.inline_byte, named.crossline_byte]);
+        let others = others.map(|&(i, x, convention)| search.evaluate([i, x], NumberType::I32, convention, MIN_FILL));
+        let candidates = std::iter::once(named.clone()).chain(others).collect();
+        return search.choose(&named, candidates, findings);
+    }
     let candidates: Vec<Candidate> = CONVENTIONS
         .par_iter()
         .filter(|(i, x, _)| is_open(options.inline_byte, *i) && is_open(options.crossline_byte, *x))
@@ -158,8 +156,9 @@ pub(super) fn detect(
 
 struct Search<'a> {
     columns: &'a Columns,
-    /// Reads every field; none where that is done.
-    every_field: Option<&'a EveryField<'a>>,
+    every_field: &'a EveryField<'a>,
+    /// The sweep that `columns` are of.
+    swept: Option<Sweep>,
     options: &'a SegyOptions,
 }
 
@@ -246,6 +245,24 @@ impl Search<'_> {
         candidate
     }
 
+    /// The reading of the bytes that the textual header names, where it is one and the user states nothing else.
+    fn named(&self, findings: &mut Findings) -> Option<Candidate> {
+        let Some(bytes) = self.columns.layout().named.lines else { return None };
+        let options = self.options;
+        if options.inline_byte.is_some() || options.crossline_byte.is_some() || options.line_type.is_some() {
+            return None;
+        }
+        let candidate = self.evaluate(bytes, NumberType::I32, NAMED, MIN_FILL);
+        if !candidate.fits() {
+            // What holds several traces, or none, at a place is told by what is found elsewhere.
+            findings.warning(Note::unless(
+                format!("the text header names bytes that are not taken: {}", candidate.as_sentence()),
+                candidate.remedy(),
+            ));
+        }
+        candidate.fits().then_some(candidate)
+    }
+
     fn stated(&self, inline: u16, crossline: u16, findings: &mut Findings) -> Result<Detected, SegyProblem> {
         let number_type = self.options.line_type.unwrap_or_default();
         let chosen = self.evaluate([inline, crossline], number_type, STATED, 0.0);
@@ -278,12 +295,27 @@ impl Search<'_> {
         let [inline, crossline] = self.numbers(chosen);
         let lattice = LineLattice::build(&inline, &crossline, self.options.duplicates.unwrap_or_default())
             .map_err(|_| SegyProblem::NoLineNumbers { tried: candidates.clone() })?;
-        findings.evidence(format!("line numbers: {} ({})", chosen.as_sentence(), chosen.convention));
+        let known = if chosen.convention.is_empty() { "no convention" } else { chosen.convention };
+        findings.evidence(format!("line numbers: {} ({known})", chosen.as_sentence()));
         let swapped = chosen.swapped();
+        if chosen.convention.is_empty() && self.options.inline_byte.or(self.options.crossline_byte).is_none() {
+            findings.assumption(Note::unless(
+                format!(
+                    "bytes {} and {} hold the line numbers, where no convention has them: X and Y confirm the lattice; \
+                     the lower byte is taken as the inline, as in every convention",
+                    chosen.inline_byte, chosen.crossline_byte
+                ),
+                swapped.remedy(),
+            ));
+        }
         findings.evidence(Note::unless(
             format!(
-                "the file counts {} first; no file says which axis is called inline: the swapped reading is {}",
+                "the file counts {} first; {}: the swapped reading is {}",
                 if lattice.inline_sorted { "crosslines" } else { "inlines" },
+                match chosen.convention {
+                    NAMED => "its text header says which axis is the inline",
+                    _ => "no file says which axis is called inline",
+                },
                 swapped.as_choice()
             ),
             swapped.remedy(),
@@ -296,7 +328,7 @@ impl Search<'_> {
             });
         }
         candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
-        Ok(Detected { bytes: Some([chosen.inline_byte, chosen.crossline_byte]), lattice, candidates })
+        Ok(Detected { bytes: Some([chosen.inline_byte, chosen.crossline_byte]), lattice, candidates, columns: None })
     }
 
     /// The lattice of X and Y, where no header numbers lines or the user wants it.
@@ -340,7 +372,7 @@ impl Search<'_> {
             findings.evidence(note);
         }
         candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
-        Ok(Detected { bytes: None, lattice, candidates })
+        Ok(Detected { bytes: None, lattice, candidates, columns: None })
     }
 
     /// One of each set of candidates that hold the same numbers.
@@ -377,16 +409,37 @@ impl Search<'_> {
             .filter(Candidate::fits)
             .collect();
         let fitting = if fitting.is_empty() { self.in_other_types() } else { fitting };
-        if fitting.is_empty()
-            && let Some(every_field) = self.every_field
-        {
-            let columns = every_field()?;
-            let search = Search { columns: &columns, every_field: None, options: self.options };
-            return search.elsewhere(candidates, findings);
+        let fitting = match self.swept {
+            Some(sweep) if fitting.is_empty() => self.anywhere(sweep),
+            _ => fitting,
+        };
+        let is_contradicted = |candidate: &Candidate| candidate.verdict == Verdict::ContradictsCoordinates;
+        if self.swept.is_some() && candidates.iter().any(is_contradicted) {
+            // X and Y that no convention has may agree with them.
+            let again =
+                |c: &Candidate| self.evaluate([c.inline_byte, c.crossline_byte], c.number_type, c.convention, MIN_FILL);
+            let again: Vec<Candidate> = candidates.iter().map(again).collect();
+            let agreeing = self.distinct(again.iter().filter(|c| c.fits()));
+            if let [only] = agreeing.as_slice() {
+                return self.choose(&only.clone(), again, findings);
+            }
         }
-        let fitting = if fitting.is_empty() { self.anywhere() } else { fitting };
+        let next = Sweep::after(self.swept).filter(|_| self.swept.is_none() || !candidates.iter().any(is_contradicted));
+        if fitting.is_empty()
+            && let Some(sweep) = next
+        {
+            let columns = (self.every_field)(sweep)?;
+            let search = Search { columns: &columns, swept: Some(sweep), ..*self };
+            let mut detected = search.elsewhere(candidates, findings)?;
+            detected.columns = detected.columns.or_else(|| Some(Box::new(columns)));
+            return Ok(detected);
+        }
         let mut readings = self.distinct(fitting.iter());
-        if inline.is_none() && crossline.is_none() {
+        // Which of both is the inline cannot be seen. Where that alone is open, the order of the bytes tells, as in every
+        // convention; where more is, both are shown.
+        let is_confirmed = |reading: &Candidate| reading.residual_bins.is_some();
+        let is_open = inline.is_none() && crossline.is_none();
+        if is_open && !(readings.len() == 1 && readings.iter().all(is_confirmed)) {
             let both = |reading: &Candidate| match reading.convention {
                 "" => vec![reading.clone(), reading.swapped()],
                 _ => vec![reading.clone()],
@@ -394,7 +447,7 @@ impl Search<'_> {
             readings = readings.iter().flat_map(both).collect();
         }
         // Lines that X and Y contradict are still lines, if nothing else is there: coordinates may be wrong.
-        let contradicted = candidates.iter().find(|c| c.verdict == Verdict::ContradictsCoordinates).cloned();
+        let contradicted = candidates.iter().find(|c| is_contradicted(c)).cloned();
         readings.splice(0..0, contradicted);
         match readings.as_slice() {
             [] => match bins::find(self.columns, self.options, MIN_FILL_UNKNOWN) {
@@ -418,26 +471,20 @@ impl Search<'_> {
         }
     }
 
-    /// Any two fields whose lattice X and Y confirm; those that count traces only where nothing else is found.
-    fn anywhere(&self) -> Vec<Candidate> {
-        let (inline, crossline) = (self.options.inline_byte, self.options.crossline_byte);
+    /// Any two fields whose lattice X and Y confirm; those that count traces only where nothing else is found. Without X
+    /// and Y, lattices that are nearly full.
+    fn anywhere(&self, sweep: Sweep) -> Vec<Candidate> {
         if self.options.line_type.is_some() {
             return Vec::new();
         }
-        let is_line = |byte: &u16| {
-            let column = self.column(*byte);
-            let is_small = column.range.iter().all(|number| number.unsigned_abs() <= MAX_LINE_NUMBER);
-            column.constant().is_none() && is_small && !is_coordinate(*byte)
-        };
-        let mut varying: Vec<u16> = any_fields().filter(is_line).collect();
-        // Lines have few numbers: in headers full of something else, the fields with the smallest spans are tried.
-        varying.sort_by_key(|&byte| {
-            let [low, high] = self.column(byte).range.map(i64::from);
-            high - low
-        });
-        varying.truncate(MOST_FIELDS);
-        varying.sort_unstable();
-        let pairs: Vec<[u16; 2]> = match (inline, crossline) {
+        let fitting = sweep.types().iter().map(|number_type| self.of_type(sweep, *number_type));
+        fitting.into_iter().find(|fitting| !fitting.is_empty()).unwrap_or_default()
+    }
+
+    /// The same among fields of one type.
+    fn of_type(&self, sweep: Sweep, number_type: NumberType) -> Vec<Candidate> {
+        let varying = sweep.line_fields(self.columns, number_type);
+        let pairs: Vec<[u16; 2]> = match (self.options.inline_byte, self.options.crossline_byte) {
             (Some(inline), _) => {
                 varying.iter().filter(|&&other| other != inline).map(|&other| [inline, other]).collect()
             }
@@ -448,14 +495,22 @@ impl Search<'_> {
                 varying.iter().enumerate().flat_map(|(n, &a)| varying[n + 1..].iter().map(move |&b| [a, b])).collect()
             }
         };
-        let evaluated = pairs.into_par_iter().map(|pair| self.evaluate(pair, NumberType::I32, "", MIN_FILL_UNKNOWN));
-        let confirmed = |candidate: &Candidate| candidate.fits() && candidate.residual_bins.is_some();
-        let fitting: Vec<Candidate> = evaluated.filter(confirmed).collect();
+        let evaluated = pairs.into_par_iter().map(|pair| self.evaluate(pair, number_type, "", MIN_FILL_UNKNOWN));
+        let fitting: Vec<Candidate> = evaluated.filter(Candidate::fits).collect();
         let counters = |candidate: &Candidate| {
             [candidate.inline_byte, candidate.crossline_byte].iter().filter(|byte| COUNTERS.contains(byte)).count()
         };
-        let fewest = fitting.iter().map(counters).min().unwrap_or(0);
-        fitting.into_iter().filter(|candidate| counters(candidate) == fewest).collect()
+        let confirmed = || fitting.iter().filter(|candidate| candidate.residual_bins.is_some());
+        let fewest = confirmed().map(counters).min();
+        match fewest {
+            Some(fewest) => confirmed().filter(|candidate| counters(candidate) == fewest).cloned().collect(),
+            None if varying_coordinates(self.columns, self.options).is_some() => Vec::new(),
+            None => {
+                let is_full =
+                    |candidate: &Candidate| candidate.filled >= MIN_FILL_UNCONFIRMED && counters(candidate) == 0;
+                fitting.into_iter().filter(is_full).collect()
+            }
+        }
     }
 
     /// The conventions' fields read as 2-byte integers and floats.

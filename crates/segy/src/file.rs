@@ -4,17 +4,18 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
+use super::anywhere::Sweep;
 use super::bytes::{Bytes, Stamp};
 use super::columns::{Columns, HeaderColumn, HeaderLayout};
-use super::coordinates::CoordinatePlace;
-use super::detect::{Detected, detect, fields, with_any_fields};
+use super::coordinates::{CoordinatePlace, needs_any_place};
+use super::detect::{Detected, detect, fields};
 use super::error::{SegyError, SegyProblem};
 use super::frame::FileLayout;
 use super::header::{Field, at};
 use super::info::{BytePositions, Findings, SegyInfo, corners};
 use super::lines::{Flaw, LineLattice, NO_TRACE};
 use super::options::{KeptDuplicate, SegyOptions, TraceWeight};
-use super::text_bytes::coordinate_bytes;
+use super::text_bytes::NamedBytes;
 use super::vertical::{Vertical, coordinate_unit, note_coordinate_unit};
 use survey::geometry::{DEFAULT_VELOCITY_M_S, SurveyGeometry};
 use survey::progress::Progress;
@@ -210,7 +211,7 @@ fn understand(path: &Path, bytes: Bytes, options: &SegyOptions, progress: &Progr
     let frame = FileLayout::read(&bytes, options, &mut findings)?;
     check_bytes(options, frame.header_bytes)?;
     let traces = frame.traces(&bytes);
-    let named = coordinate_bytes(frame.text.iter().chain(&frame.extended_text));
+    let named = NamedBytes::find(frame.text.iter().chain(&frame.extended_text));
     let mut wanted = fields(options, HeaderLayout { bytes: frame.header_bytes, named });
     wanted.push(Field::I32(at::TRACE_IN_RECORD));
     wanted.push(Field::I32(at::OFFSET));
@@ -218,12 +219,12 @@ fn understand(path: &Path, bytes: Bytes, options: &SegyOptions, progress: &Progr
     let short =
         [at::TRACE_ID, at::COORDINATE_SCALAR, at::COORDINATE_UNIT, at::LAG_A, at::DELAY, at::WEIGHT, at::TIME_SCALAR];
     wanted.extend(short.map(Field::I16));
-    let columns = Columns::read(&traces, &wanted, named, progress)?;
+    let columns = Columns::read(&traces, &wanted, None, named, progress)?;
     let count = traces.count;
 
     let dead = dead_traces(&columns, count, &mut findings);
-    let every_field = || Columns::read(&traces, &with_any_fields(wanted.clone()), named, progress);
-    let detected = if count == 1 {
+    let every_field = |sweep: Sweep| Columns::read(&traces, &wanted, Some(sweep), named, progress);
+    let mut detected = if count == 1 {
         single_trace(&columns, options)?
     } else {
         detect(&columns, &every_field, options, &mut findings)?
@@ -232,6 +233,11 @@ fn understand(path: &Path, bytes: Bytes, options: &SegyOptions, progress: &Progr
     let unit = coordinate_unit(&frame, options);
     // Coordinates may number the lines, but line numbers are no coordinates.
     let lines = detected.bytes.unwrap_or_default();
+    let columns = match detected.columns.take() {
+        Some(swept) => *swept,
+        None if needs_any_place(&detected.lattice, lines, &columns, options) => every_field(Sweep::FourBytes)?,
+        None => columns,
+    };
     let place = CoordinatePlace::find(&detected.lattice, lines, &columns, unit, options, &mut findings)?;
     if place.bytes.is_some() {
         note_coordinate_unit(&frame, options, &mut findings);
@@ -370,7 +376,7 @@ fn single_trace(columns: &Columns, options: &SegyOptions) -> Result<Detected, Se
     let [inline, crossline] = [inline_byte, crossline_byte].map(|byte| columns.numbers(byte, number_type));
     let lattice = LineLattice::place(&inline, &crossline, None, KeptDuplicate::First)
         .map_err(|_: Flaw| SegyProblem::NoLineNumbers { tried: Vec::new() })?;
-    Ok(Detected { bytes: Some([inline_byte, crossline_byte]), lattice, candidates: Vec::new() })
+    Ok(Detected { bytes: Some([inline_byte, crossline_byte]), lattice, candidates: Vec::new(), columns: None })
 }
 
 fn note_lattice(detected: &Detected, options: &SegyOptions, findings: &mut Findings) {

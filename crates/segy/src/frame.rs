@@ -9,7 +9,7 @@ use super::error::SegyProblem;
 use super::header::{BinaryHeader, FILE_HEADER_BYTES, Field, ORDER_CONSTANT, TRACE_HEADER_BYTES, Traces, at};
 use super::info::Findings;
 use super::sample::{ByteOrder, SampleFormat};
-use super::text::{TEXT_BYTES, TextEncoding, decode_lines, ends_text};
+use super::text::{TEXT_BYTES, TextEncoding, decode_lines, ends_text, is_text};
 
 /// Bytes of extended text that are read at most: 300 headers. The standard's stanzas take a few.
 const MOST_EXTENDED_TEXT: usize = 300 * TEXT_BYTES;
@@ -376,21 +376,48 @@ fn starts(
     if binary.has_revision_2() && binary.first_trace >= FILE_HEADER_BYTES as u64 {
         starts.push(binary.first_trace);
     }
+    let written = texts(file, encoding)?;
     match binary.extended_headers {
         n @ 1.. => starts.push(after(u64::from(n.unsigned_abs()))),
-        -1 => match find_end_of_text(file, encoding)? {
+        ..=-1 => match find_end_of_text(file, encoding)? {
             Some(n) => starts.push(after(n)),
             None => findings.warning(
                 "byte 3505 announces extended text headers closed by ((SEG: EndText)), which is nowhere in the \
-                 file; none are read"
+                 file; what looks like text is taken for them"
                     .to_owned(),
             ),
         },
         _ => {}
     }
+    starts.push(after(written));
     starts.push(after(0));
+    // No trace begins in the midst of text, however many headers are announced.
+    let first = starts[0];
+    let announced = u64::try_from(binary.extended_headers).map_or(first, after);
+    starts.retain(|start| *start >= after(written) && *start < file.len());
+    if starts.first().is_some_and(|start| *start != announced && *start != binary.first_trace) {
+        findings.warning(format!(
+            "byte 3505 announces {} extended text headers, and {written} are there",
+            binary.extended_headers
+        ));
+    }
+    if starts.is_empty() {
+        starts.push(first);
+    }
     starts.dedup();
     Ok(starts)
+}
+
+/// How many blocks behind the file header are text.
+fn texts(file: &Bytes, encoding: TextEncoding) -> Result<u64, SegyProblem> {
+    let (mut count, mut from) = (0, FILE_HEADER_BYTES as u64);
+    while count < (MOST_EXTENDED_TEXT / TEXT_BYTES) as u64 {
+        match file.get(from, TEXT_BYTES, None)? {
+            Some(block) if is_text(&block, encoding) => (count, from) = (count + 1, from + TEXT_BYTES as u64),
+            _ => break,
+        }
+    }
+    Ok(count)
 }
 
 /// Number of the extended header (from 1) that holds the end-of-text stanza.

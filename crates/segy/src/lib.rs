@@ -34,6 +34,7 @@
 //! # Ok::<(), segy::SegyError>(())
 //! ```
 
+mod anywhere;
 mod bins;
 mod block;
 mod bytes;
@@ -60,6 +61,7 @@ mod statistics;
 mod text;
 mod text_bytes;
 mod vertical;
+mod vertical_words;
 mod write;
 
 #[cfg(test)]

@@ -95,16 +95,14 @@ fn gathers_of_a_line(columns: &Columns, candidate: &Candidate) -> Result<(), Seg
     let numbers = columns.numbers(byte, candidate.number_type);
     let traces = numbers.iter().count();
     let places = numbers.iter().collect::<BTreeSet<i32>>().len();
-    let offset = columns.get(Field::I32(at::OFFSET));
-    if traces < 2 * places || offset.constant().is_some() {
+    // Counters that fold, and fields that are nearly empty, are no lines.
+    if places < 2 || traces < 2 * places {
         return Ok(());
     }
+    let (offsets, may_repeat) = offsets(columns);
     Err(SegyProblem::PreStack {
-        evidence: format!(
-            "{traces} traces stand at {places} {kind}s (byte {byte}) of one line and {}",
-            offsets(columns).0
-        ),
-        may_repeat: false,
+        evidence: format!("{traces} traces stand at {places} {kind}s (byte {byte}) of one line and {offsets}"),
+        may_repeat,
     })
 }
 
@@ -114,6 +112,11 @@ pub(super) fn two_dimensional(columns: &Columns, candidates: &[Candidate]) -> Re
         let [low, high] = columns.get(Field::I32(byte)).range;
         format!("{low} to {high}")
     };
+    // An inline that is 0 throughout was left out by the writer; that traces share a crossline tells all the same.
+    let has_offsets = columns.get(Field::I32(at::OFFSET)).constant().is_none();
+    for candidate in candidates.iter().filter(|c| has_offsets && c.inline_byte != at::TRACE_IN_FILE) {
+        gathers_of_a_line(columns, candidate)?;
+    }
     for candidate in candidates.iter().filter(|c| c.inline_byte != at::TRACE_IN_FILE) {
         let (inline, crossline) = (candidate.inline_byte, candidate.crossline_byte);
         let evidence = match candidate.verdict {

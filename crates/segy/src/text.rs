@@ -76,6 +76,16 @@ pub(super) fn decode_lines(bytes: &[u8], encoding: TextEncoding) -> Vec<String> 
         .collect()
 }
 
+/// Whether a block is text: nearly all of it are letters, digits, signs and blanks, some of them letters or digits. Trace
+/// headers are mostly zeros.
+pub(super) fn is_text(block: &[u8], encoding: TextEncoding) -> bool {
+    let blank = if encoding == TextEncoding::Ebcdic { 0x40 } else { b' ' };
+    let is_sign = |b: &u8| *b == blank || ('!'..='~').contains(&encoding.decode(*b));
+    let printable = block.iter().filter(|b| is_sign(b)).count();
+    let letters = block.iter().filter(|&&b| encoding.decode(b).is_ascii_alphanumeric()).count();
+    printable * 20 >= block.len() * 19 && letters >= 4
+}
+
 /// Whether an extended text header holds the end-of-text stanza.
 pub(super) fn ends_text(block: &[u8], encoding: TextEncoding) -> bool {
     // Blanks and capitals are as every program likes them.

@@ -9,6 +9,7 @@ use super::error::SegyProblem;
 use super::frame::FileLayout;
 use super::header::{Field, at};
 use super::info::{FileUnit, Findings, LengthUnit, METRES_PER_FOOT};
+use super::vertical_words::{Said, Words};
 use survey::geometry::{VerticalAxis, VerticalUnit};
 use survey::remedy::{Note, Setting};
 
@@ -206,8 +207,59 @@ const GREATEST_DEPTH_M: f64 = 60_000.0;
 /// An interval field of depth with less than this holds whole metres or feet.
 const FEWEST_THOUSANDTHS: f64 = 100.0;
 
-/// The unit of the axis: stated; or written in the text next to the interval; or by words that mean time or
-/// depth; or, where those contradict one another or say nothing, by what is plausible for the length of a trace.
+/// What the length of a trace weighs where it is plausible for one kind of axis alone: as much as the name of a method.
+const LENGTH: u8 = 2;
+
+/// The unit by what the sentences of the text header weigh, for either kind, together with the length of a trace.
+fn weighed(
+    words: &Words,
+    likely: Option<FileUnit>,
+    in_depth: FileUnit,
+    plausibility: &Plausibility,
+    findings: &mut Findings,
+) -> FileUnit {
+    let time = FileUnit::Milliseconds;
+    let weight = |said: &Option<Said>, unit: FileUnit| {
+        said.as_ref().map_or(0, |said| said.weight as u8) + if likely == Some(unit) { LENGTH } else { 0 }
+    };
+    let unit = if weight(&words.depth, in_depth) > weight(&words.time, time) { in_depth } else { time };
+    let (followed, other) = if unit == time { (&words.time, &words.depth) } else { (&words.depth, &words.time) };
+    let alone = if likely == Some(unit) { ", for which alone the length of a trace is plausible" } else { "" };
+    match (followed, other) {
+        (Some(Said { quote, .. }), None) => {
+            let axis = if unit == time { "two-way time" } else { "depth" };
+            findings.evidence(format!("vertical axis: {axis}, text header: \"{quote}\""));
+        }
+        (_, Some(Said { quote: against, .. })) => {
+            let word = |is_time: bool| if is_time { "time" } else { "depth" };
+            let here = followed
+                .as_ref()
+                .map_or_else(String::new, |said| format!("of {} (\"{}\") and ", word(unit == time), said.quote));
+            findings.warning(Note::unless(
+                format!(
+                    "the text header speaks {here}of {} (\"{against}\"); the axis is taken as {}{alone}",
+                    word(unit != time),
+                    unit.description(),
+                ),
+                Setting::VerticalUnit.stated_as(others(unit)),
+            ));
+        }
+        (None, None) => {
+            let why = match unit {
+                FileUnit::Milliseconds => String::new(),
+                _ => format!(", and {} would be unlikely", plausibility.length(FileUnit::Milliseconds)),
+            };
+            findings.assumption(Note::unless(
+                format!("the vertical axis is {}: the file does not say{why}", unit.description()),
+                Setting::VerticalUnit.stated_as(others(unit)),
+            ));
+        }
+    }
+    unit
+}
+
+/// The unit of the axis: stated; or written in the text next to the interval; or by what the sentences of the text and
+/// the length of a trace weigh.
 fn unit(frame: &FileLayout, micro: f64, options: &SegyOptions, findings: &mut Findings) -> FileUnit {
     if let Some(unit) = options.vertical_unit {
         findings.evidence(format!("vertical axis: {}, as stated", unit.description()));
@@ -217,47 +269,15 @@ fn unit(frame: &FileLayout, micro: f64, options: &SegyOptions, findings: &mut Fi
         2 => FileUnit::Feet,
         _ => FileUnit::Metres,
     };
-    let words = TextWords::find(frame, micro / 1000.0);
+    let words = Words::find(frame.text.iter().chain(&frame.extended_text), micro / 1000.0);
     let plausibility = Plausibility::of(micro, frame.samples);
     let likely = plausibility.only(in_depth);
-    let said = |quote: &str| format!("text header: \"{quote}\"");
-    let unit = match (&words.interval, &words.time, &words.depth) {
-        (Some((unit, quote)), _, _) => {
-            findings.evidence(format!("vertical axis: {}, {}", unit.description(), said(quote)));
+    let unit = match &words.interval {
+        Some((unit, quote)) => {
+            findings.evidence(format!("vertical axis: {}, text header: \"{quote}\"", unit.description()));
             *unit
         }
-        (None, Some(quote), None) => {
-            findings.evidence(format!("vertical axis: two-way time, {}", said(quote)));
-            FileUnit::Milliseconds
-        }
-        (None, None, Some(quote)) => {
-            findings.evidence(format!("vertical axis: depth, {}", said(quote)));
-            in_depth
-        }
-        (None, Some(time), Some(depth)) => {
-            let unit = likely.unwrap_or(FileUnit::Milliseconds);
-            findings.warning(Note::unless(
-                format!(
-                    "the text header speaks of time (\"{time}\") and of depth (\"{depth}\"); the axis is taken as {}{}",
-                    unit.description(),
-                    if likely.is_some() { ", for which alone the length of a trace is plausible" } else { "" }
-                ),
-                Setting::VerticalUnit.stated_as(others(unit)),
-            ));
-            unit
-        }
-        (None, None, None) => {
-            let unit = likely.unwrap_or(FileUnit::Milliseconds);
-            let why = match unit {
-                FileUnit::Milliseconds => String::new(),
-                _ => format!(", and {} would be unlikely", plausibility.length(FileUnit::Milliseconds)),
-            };
-            findings.assumption(Note::unless(
-                format!("the vertical axis is {}: the file does not say{why}", unit.description()),
-                Setting::VerticalUnit.stated_as(others(unit)),
-            ));
-            unit
-        }
+        None => weighed(&words, likely, in_depth, &plausibility, findings),
     };
     plausibility.tell(unit, findings);
     if unit != FileUnit::Milliseconds && unit != in_depth && frame.binary.measurement != 0 {
@@ -271,82 +291,6 @@ fn unit(frame: &FileLayout, micro: f64, options: &SegyOptions, findings: &mut Fi
         ));
     }
     unit
-}
-
-/// What the textual header says about the vertical axis, with the line it says it in.
-#[derive(Debug, Default)]
-struct TextWords {
-    interval: Option<(FileUnit, String)>,
-    time: Option<String>,
-    depth: Option<String>,
-}
-
-impl TextWords {
-    fn find(frame: &FileLayout, interval: f64) -> Self {
-        let mut found = Self::default();
-        let mut contradicted = false;
-        for line in frame.text.iter().chain(&frame.extended_text) {
-            let upper = line.to_ascii_uppercase();
-            let said: Vec<&str> = upper.split_whitespace().filter(|piece| !is_file_name(piece)).collect();
-            let said = said.join(" ");
-            let words: Vec<&str> = said
-                .split(|c: char| !c.is_ascii_alphanumeric() && c != '.')
-                .map(|word| word.trim_matches('.'))
-                .filter(|word| !word.is_empty())
-                .collect();
-            // A template offers both (`Trace start time/depth`) and says neither; a name of a file says how somebody
-            // called it.
-            let offers_both = words.iter().any(|word| word.starts_with("TIME")) && words.contains(&"DEPTH");
-            for (index, word) in words.iter().enumerate() {
-                let next = words.get(index + 1).copied().unwrap_or("");
-                let previous = if index > 0 { words[index - 1] } else { "" };
-                if let (Ok(number), Some(unit)) = (word.parse::<f64>(), unit_word(next))
-                    && (number - interval).abs() < 1e-6 * interval
-                {
-                    contradicted |= found.interval.as_ref().is_some_and(|(other, _)| *other != unit);
-                    found.interval.get_or_insert((unit, line.clone()));
-                }
-                let is_time = matches!(*word, "TWT" | "TWTT" | "PSTM")
-                    // A template that was not filled in has units without numbers.
-                    || (unit_word(word) == Some(FileUnit::Milliseconds) && previous.parse::<f64>().is_ok())
-                    || (*word == "TIME" && !offers_both && (next.starts_with("MIGRAT") || AXIS_OF_TIME.contains(&next) || previous == "WAY"));
-                // Depths of the acquisition say nothing about the axis.
-                let of_gear = ["WATER", "SOURCE", "GUN", "CABLE", "STREAMER", "RECEIVER", "TOW", "TOWING", "SHOT"];
-                let is_depth = matches!(*word, "TVD" | "TVDSS" | "PSDM")
-                    || (*word == "DEPTH" && !of_gear.contains(&previous) && !offers_both);
-                if is_time {
-                    found.time.get_or_insert_with(|| line.clone());
-                }
-                if is_depth {
-                    found.depth.get_or_insert_with(|| line.clone());
-                }
-            }
-        }
-        if contradicted {
-            found.interval = None;
-        }
-        found
-    }
-}
-
-/// Words behind TIME that make it the vertical axis.
-const AXIS_OF_TIME: [&str; 8] = ["DOMAIN", "AXIS", "RANGE", "MIN", "MAX", "MINIMUM", "MAXIMUM", "SECTION"];
-
-/// Whether a piece of a line is the name of a file: it has an ending, or is of many parts.
-fn is_file_name(piece: &str) -> bool {
-    let piece = piece.trim_matches(|c: char| !c.is_ascii_alphanumeric());
-    [".SGY", ".SEGY", ".SEG", ".VT", ".ZGY"].iter().any(|ending| piece.ends_with(ending))
-        || piece.matches('_').count() >= 2
-        || piece.contains(['/', '\\']) && piece.contains('.')
-}
-
-fn unit_word(word: &str) -> Option<FileUnit> {
-    match word {
-        "MS" | "MSEC" | "MSECS" | "MILLISECONDS" => Some(FileUnit::Milliseconds),
-        "M" | "METER" | "METERS" | "METRE" | "METRES" => Some(FileUnit::Metres),
-        "FT" | "FEET" | "FOOT" => Some(FileUnit::Feet),
-        _ => None,
-    }
 }
 
 /// The earliest start, and by how many samples each trace starts later.

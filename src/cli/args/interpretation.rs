@@ -123,7 +123,7 @@ pub(in crate::cli) enum HorizonAction {
         /// Number of the pick
         id: u32,
     },
-    /// Give an assembled horizon another colour
+    /// Give a horizon another colour
     #[command(after_help = "Example:\n  petroglyph horizon colour north.petro \"Top Chalk\" #0072b2")]
     Colour {
         /// Project folder
@@ -305,6 +305,16 @@ pub(in crate::cli) enum FaultAction {
         /// `drawn`, or `grow` and how many metres it reaches farther on every side
         #[arg(value_name = "drawn|grow M", num_args = 1..=2, required = true, allow_hyphen_values = true)]
         extent: Vec<String>,
+    },
+    /// Give a fault another colour on sections
+    #[command(after_help = "Example:\n  petroglyph fault colour north.petro F1 #c0182c")]
+    Colour {
+        /// Project folder
+        project: PathBuf,
+        /// Fault
+        name: String,
+        /// Colour, #rrggbb
+        colour: String,
     },
     /// Rename a fault
     #[command(after_help = "Example:\n  petroglyph fault rename north.petro F1 \"Main fault\"")]

@@ -148,6 +148,7 @@ pub const INTERPRETING: [Scenario; 20] = [
     of(Imported, "fault extent p.petro F grow 20"),
     of(Imported, "fault move p.petro F --stick 1 --point 2 --to 3,3,60"),
     of(Imported, "fault rename p.petro F North"),
+    of(Imported, "fault colour p.petro F '#c0182c'"),
     of(Imported, "fault remove p.petro F"),
     of(Imported, "well add p.petro A.csv --name A-1 --head 100,100 --kb 0 --tops tops.csv"),
     after(Imported, with_well, "well rename p.petro A-1 B-2"),

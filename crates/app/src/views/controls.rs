@@ -17,6 +17,8 @@ const FOV_DEG: f64 = 35.0;
 const LABELS: f32 = 100.0;
 /// Width that the label and the number beside a slider take, points.
 const BESIDE_SLIDER: f32 = 184.0;
+/// Width that the button beside a scene takes, points.
+const BESIDE_SCENE: f32 = 90.0;
 /// Shares of the block that a new corner cut takes.
 const CUT_SHARE: [f64; 2] = [0.45, 0.45];
 
@@ -56,7 +58,11 @@ impl Controls {
     fn scenes(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         for entry in &session.document.scenes {
             ui.horizontal(|ui| {
-                if ui.button(&entry.name).on_hover_text("Show this scene").clicked() {
+                let shown = ui.scope(|ui| {
+                    ui.set_max_width((ui.available_width() - BESIDE_SCENE).max(60.0));
+                    ui.add(Button::new(&entry.name).truncate())
+                });
+                if shown.inner.on_hover_text(format!("Show scene {}", entry.name)).clicked() {
                     actions.push(Action::ShowNamed(entry.name.clone()));
                 }
                 if super::data::remove(ui, &format!("Remove scene {}", entry.name)) {
@@ -175,7 +181,10 @@ fn block(ui: &mut Ui, session: &Session, scene: &mut Scene, actions: &mut Vec<Ac
             VerticalUnit::Metres => "Depth, m",
         };
         for (axis, name) in ["Inlines", "Crosslines", vertical].into_iter().enumerate() {
-            ui.label(name);
+            ui.horizontal(|ui| {
+                ui.set_min_width(LABELS);
+                ui.label(name);
+            });
             for (end, word) in ["from", "to"].into_iter().enumerate() {
                 let voxel = if end == 0 { bounds.min[axis] } else { bounds.max[axis] };
                 let at = |voxel: f64| match axis {
@@ -228,7 +237,7 @@ fn block(ui: &mut Ui, session: &Session, scene: &mut Scene, actions: &mut Vec<Ac
     });
     cut_shapes::show(ui, session, scene);
     let mut handles = session.view.handles;
-    if ui.checkbox(&mut handles, "Handles to drag faces (H)").changed() {
+    if ui.checkbox(&mut handles, "Handles to drag faces (Shift H)").changed() {
         actions.push(Action::Handles(handles));
     }
 }

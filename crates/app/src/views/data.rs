@@ -1,15 +1,15 @@
 //! The volumes, horizons, faults and wells of the project.
 
 use super::notices;
-use super::picking::swatch;
+use super::picking::{palette, swatch};
 use crate::state::{Action, Blended, Choice, Dialogue, Place, SectionVolumes, Session, State, SurfaceForm};
 use eframe::egui::{
     Align, Button, ComboBox, DragValue, Id, Label, Layout, Response, ScrollArea, Ui, UiBuilder, WidgetInfo,
 };
 use formats::SurfaceKind;
 use project::command::{
-    Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameFault, RenameHorizon, SetFaultExtent, SetRaw,
-    SetVelocity,
+    Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameFault, RenameHorizon, RenameWell,
+    SetFaultColour, SetFaultExtent, SetRaw, SetVelocity,
 };
 use project::document::{FaultEntry, VolumeEntry};
 use project::styles;
@@ -29,8 +29,12 @@ pub struct Data {
     renaming: Option<Renaming>,
     /// The fault whose name is being changed.
     renaming_fault: Option<Renaming>,
+    /// The well whose name is being changed.
+    renaming_well: Option<Renaming>,
     /// The fault whose buttons are shown.
     fault: Option<String>,
+    /// The well whose buttons are shown.
+    well: Option<String>,
     velocity: Option<f64>,
     /// The fault whose extent is being changed, and the metres so far.
     extent: Option<(String, f64)>,
@@ -52,7 +56,7 @@ impl Data {
             ui.heading("Faults");
             self.faults(ui, session, actions);
             ui.add_space(10.0);
-            wells(ui, session, actions);
+            self.wells(ui, session, actions);
             self.survey(ui, session, actions);
         });
     }
@@ -103,6 +107,10 @@ impl Data {
             let is_chosen = self.fault.as_ref() == Some(&entry.name);
             ui.horizontal(|ui| {
                 eye(ui, session, SurfaceKind::Fault, &entry.name, actions);
+                if let Some(colour) = palette(ui, entry.ink(), &format!("Colour of fault {}", entry.name)) {
+                    let command = SetFaultColour { fault: entry.name.clone(), colour };
+                    actions.push(Action::Apply(Box::new(Command::SetFaultColour(command))));
+                }
                 if let Some(renaming) = self.renaming_fault.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
                     let renamed = renaming.show(ui, 150.0);
                     if let Renamed::To(to) = &renamed {
@@ -163,6 +171,60 @@ impl Data {
             let command = SetFaultExtent { fault: entry.name.clone(), grown_m };
             actions.push(Action::Apply(Box::new(Command::SetFaultExtent(command))));
         }
+    }
+
+    fn wells(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+        ui.heading("Wells");
+        for entry in &session.document.wells {
+            let is_chosen = self.well.as_ref() == Some(&entry.name);
+            ui.horizontal(|ui| {
+                let hidden = &session.view.scene.hidden_wells;
+                let mut is_shown = !hidden.contains(&entry.name);
+                let shown = ui.name_inputs(format!("Show well {}", entry.name), |ui| ui.checkbox(&mut is_shown, ""));
+                if shown.on_hover_text("Its path in the block, and its name on figures").changed() {
+                    let mut hidden: Vec<String> = hidden.iter().filter(|name| **name != entry.name).cloned().collect();
+                    hidden.extend((!is_shown).then(|| entry.name.clone()));
+                    let scene = Scene { hidden_wells: hidden, ..session.view.scene.clone() };
+                    actions.push(Action::Show(Box::new(scene)));
+                }
+                if let Some(renaming) = self.renaming_well.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
+                    let renamed = renaming.show(ui, 150.0);
+                    if let Renamed::To(to) = &renamed {
+                        let command = RenameWell { from: entry.name.clone(), to: to.clone() };
+                        actions.push(Action::Apply(Box::new(Command::RenameWell(command))));
+                        // What is hidden stays so under its new name.
+                        let mut scene = session.view.scene.clone();
+                        scene
+                            .hidden_wells
+                            .iter_mut()
+                            .filter(|name| **name == entry.name)
+                            .for_each(|name| name.clone_from(to));
+                        actions.push(Action::Show(Box::new(scene)));
+                    }
+                    if renamed != Renamed::Typing {
+                        self.renaming_well = None;
+                    }
+                    return;
+                }
+                let row = named(ui, &entry.name, Some(is_chosen), &format!("Remove well {}", entry.name));
+                if row.name.on_hover_text(format!("{}: {}", entry.name, entry.source.reading)).clicked() {
+                    self.well = (!is_chosen).then(|| entry.name.clone());
+                }
+                if row.is_removed {
+                    let command = RemoveWell { name: entry.name.clone() };
+                    actions.push(Action::Apply(Box::new(Command::RemoveWell(command))));
+                }
+            });
+            if is_chosen {
+                ui.indent("chosen", |ui| {
+                    if ui.button("Rename").on_hover_text(format!("Rename well {}", entry.name)).clicked() {
+                        self.renaming_well = Some(Renaming::of(&entry.name));
+                    }
+                });
+            }
+        }
+        add(ui, "Add a well…", Choice::Well, session.document.geometry.is_some(), actions);
+        ui.add_space(10.0);
     }
 
     fn survey(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -336,29 +398,4 @@ fn blended(ui: &mut Ui, session: &Session, over: &Blended, actions: &mut Vec<Act
     if next != *over {
         actions.push(Action::Volumes(SectionVolumes { over: Some(next), ..session.view.volumes.clone() }));
     }
-}
-
-fn wells(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    ui.heading("Wells");
-    for entry in &session.document.wells {
-        ui.horizontal(|ui| {
-            let hidden = &session.view.scene.hidden_wells;
-            let mut is_shown = !hidden.contains(&entry.name);
-            let shown = ui.name_inputs(format!("Show well {}", entry.name), |ui| ui.checkbox(&mut is_shown, ""));
-            if shown.on_hover_text("Its path in the block, and its name on figures").changed() {
-                let mut hidden: Vec<String> = hidden.iter().filter(|name| **name != entry.name).cloned().collect();
-                hidden.extend((!is_shown).then(|| entry.name.clone()));
-                let scene = Scene { hidden_wells: hidden, ..session.view.scene.clone() };
-                actions.push(Action::Show(Box::new(scene)));
-            }
-            let row = named(ui, &entry.name, None, &format!("Remove well {}", entry.name));
-            row.name.on_hover_text(format!("{}: {}", entry.name, entry.source.reading));
-            if row.is_removed {
-                let command = RemoveWell { name: entry.name.clone() };
-                actions.push(Action::Apply(Box::new(Command::RemoveWell(command))));
-            }
-        });
-    }
-    add(ui, "Add a well…", Choice::Well, session.document.geometry.is_some(), actions);
-    ui.add_space(10.0);
 }

@@ -33,6 +33,9 @@ fn from_left() -> Layout {
 /// Width of the buttons beside the path of a new project, points.
 const BUTTONS: f32 = 190.0;
 
+/// Width of the labels in front of the fields, points: one column for all of them.
+const LABELS: f32 = 118.0;
+
 /// The dialogue.
 #[derive(Default)]
 pub struct Import {
@@ -75,11 +78,14 @@ impl Import {
             ui.columns_const(|[left, right]: &mut [Ui; 2]| {
                 ScrollArea::vertical()
                     .id_salt("reading")
+                    // The dialogue keeps its size whatever is read, so that no field moves from under the pointer.
+                    .auto_shrink([true, false])
                     .max_height(height)
                     .min_scrolled_height(height)
                     .show(left, |ui| ui.with_layout(from_left(), |ui| self.form(ui)));
                 ScrollArea::vertical()
                     .id_salt("evidence")
+                    .auto_shrink([true, false])
                     .max_height(height)
                     .min_scrolled_height(height)
                     .show(right, |ui| ui.with_layout(from_left(), |ui| self.evidence(ui)));
@@ -114,7 +120,7 @@ impl Import {
                 byte(ui, Setting::YByte, &mut options.y_byte, bytes.and_then(|bytes| bytes.y));
             });
             ui.add_space(6.0);
-            Grid::new("units").num_columns(2).spacing([12.0, 7.0]).show(ui, |ui| {
+            Grid::new("units").num_columns(2).min_col_width(LABELS).spacing([12.0, 7.0]).show(ui, |ui| {
                 let found = info.map_or(AS_FOUND.to_owned(), |info| format!("{} (found)", info.vertical_unit.symbol()));
                 let units =
                     [FileUnit::Milliseconds, FileUnit::Metres, FileUnit::Feet].map(|unit| (unit, unit.symbol()));
@@ -218,7 +224,11 @@ impl Import {
 
 /// A byte position: the detected one, until another is typed.
 fn byte(ui: &mut Ui, setting: Setting, option: &mut Option<u16>, found: Option<u16>) {
-    let label = ui.label(form::name_of(setting));
+    let named = ui.horizontal(|ui| {
+        ui.set_min_width(LABELS);
+        ui.label(form::name_of(setting))
+    });
+    let label = named.inner;
     let mut value = option.or(found).unwrap_or(0);
     let drag = DragValue::new(&mut value).speed(0.3).range(0..=237);
     if ui.add(drag).labelled_by(label.id).on_hover_text("First byte in the trace header, 1 to 237").changed()
@@ -236,7 +246,7 @@ fn byte(ui: &mut Ui, setting: Setting, option: &mut Option<u16>, found: Option<u
 
 /// Settings that seldom need to be stated.
 fn more(ui: &mut Ui, options: &mut SegyOptions) {
-    Grid::new("more").num_columns(2).spacing([12.0, 7.0]).show(ui, |ui| {
+    Grid::new("more").num_columns(2).min_col_width(LABELS - ui.spacing().indent).spacing([12.0, 7.0]).show(ui, |ui| {
         form::number(ui, Setting::Interval, &mut options.interval);
         form::number(ui, Setting::Start, &mut options.start);
         let units = [LengthUnit::Metres, LengthUnit::Feet].map(|unit| (unit, unit.symbol()));

@@ -16,6 +16,7 @@ use figure::interpretation::{DrawnInterpretation, DrawnSelection, Stick};
 use formats::SurfaceKind;
 use glam::DVec2;
 use pictures::figures::InterpreterView;
+use project::document::FaultEntry;
 use std::collections::HashMap;
 use std::sync::Arc;
 use ttf::Colour;
@@ -91,7 +92,11 @@ pub fn stick_point(session: &Session, kind: SectionKind, at: Pos2, page: impl Fn
 /// All sticks with their colours: those of faults, those drawn, and the one being drawn.
 fn sticks(session: &Session) -> Vec<Stick> {
     let Some(geometry) = &session.document.geometry else { return Vec::new() };
-    let made = session.document.sticks.iter().flat_map(|fault| &fault.sticks).map(|stick| (stick, Colour::BLACK));
+    let made = session.document.sticks.iter().flat_map(|fault| {
+        let entry = session.document.faults.iter().find(|entry| entry.name == fault.fault);
+        let colour = entry.map_or(Colour::BLACK, FaultEntry::ink);
+        fault.sticks.iter().map(move |stick| (stick, colour))
+    });
     let places = |stick: &Vec<[f64; 3]>| stick.iter().map(|place| voxel_of(geometry, *place)).collect();
     let line = &session.view.picking.line;
     let line = (!line.is_empty()).then(|| (line, session.view.picking.colour_in(&session.document)));

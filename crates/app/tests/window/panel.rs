@@ -303,7 +303,7 @@ fn the_controls_set_projection_cut_outs_box_and_ground_and_choose_the_map() {
     assert_eq!(scene(&harness).roaming_box.map(|block| block.min[0]), Some(1.0));
     click_last(&mut harness, "Whole survey");
     assert!(scene(&harness).roaming_box.is_none());
-    click_last(&mut harness, "Handles to drag faces (H)");
+    click_last(&mut harness, "Handles to drag faces (Shift H)");
     assert!(!state(&harness).session.as_ref().unwrap().view.handles);
     click_last(&mut harness, "Ground: topmost horizon as relief");
     assert!(scene(&harness).ground.is_none());

@@ -65,6 +65,12 @@ fn faults_are_renamed_and_imported_horizons_coloured() {
     click_last(&mut harness, "Colour 12");
     let chosen = Some(ttf::Colour::new(0x30, 0x30, 0x30));
     wait(&mut harness, "it has its colour", |harness| document(harness).horizons[0].own_colour() == chosen);
+    // A fault too, which its lines and sticks are drawn in.
+    assert_eq!(document(&harness).faults[0].ink(), ttf::Colour::BLACK);
+    click_last(&mut harness, "Colour of fault Border");
+    click_last(&mut harness, "Colour 10");
+    let red = ttf::Colour::new(0xc0, 0x18, 0x2c);
+    wait(&mut harness, "the fault has its colour", |harness| document(harness).faults[0].ink() == red);
 }
 
 #[test]
@@ -82,6 +88,16 @@ fn a_well_is_hidden_in_the_scene() {
     assert_eq!(hidden(&harness), ["W"]);
     click_last(&mut harness, "Show well W");
     assert!(hidden(&harness).is_empty());
+    // It stays hidden under another name.
+    click_last(&mut harness, "Show well W");
+    click_last(&mut harness, "W");
+    click_last(&mut harness, "Rename");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.get_by_label("New name").type_text("F02-1");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    wait(&mut harness, "it has its name", |harness| document(harness).wells[0].name == "F02-1");
+    assert_eq!(hidden(&harness), ["F02-1"]);
 }
 
 #[test]

@@ -163,9 +163,10 @@ impl Legend<'_> {
         };
         let size = self.size_pt(width, share);
         let more = if left_out > 0 { arranged.places.pop() } else { None };
-        let horizons = self.horizons.iter().map(|named| {
-            LegendLine::new(&named.name, GroupKind::Horizon, Stroke::new(1.5 * HORIZON_PT, named.colour))
-        });
+        let horizons = self
+            .horizons
+            .iter()
+            .map(|named| LegendLine::new(&named.name, GroupKind::Horizon, Stroke::new(1.5 * HORIZON_PT, named.colour)));
         let lines: Vec<LegendLine> = horizons.chain(self.lines.iter().cloned()).collect();
         let layers = self.styles().len();
         for (n, at) in arranged.places.iter().enumerate() {

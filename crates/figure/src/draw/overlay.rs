@@ -157,7 +157,7 @@ impl OverlayLines {
         });
         let fault = |fault: &crate::interpretation::FaultMesh| NamedLines {
             name: fault.name.to_owned(),
-            colour: Colour::BLACK,
+            colour: fault.colour,
             lines: on.mesh(fault.triangles),
         };
         Self {

@@ -120,12 +120,17 @@ mod tests {
         assert_eq!(texts.len(), 2);
         // Of 21 points, 20 are 200 ms at a tenth of a point each.
         let both = drawn(strip, Some(0.1), Some((0.1, "ms")), "vertical exaggeration 2");
-        let bars: Vec<Rect> = both.items.iter().filter_map(|item| match item {
-            crate::list::Item::Path(bar) => bar.path.bounds(),
-            _ => None,
-        }).collect();
+        let bars: Vec<Rect> = both
+            .items
+            .iter()
+            .filter_map(|item| match item {
+                crate::list::Item::Path(bar) => bar.path.bounds(),
+                _ => None,
+            })
+            .collect();
         assert!(bars.len() == 4 && (bars[2].height() - 20.0).abs() < 1e-9 && strip.contains(bars[2].max));
-        let said = |text: &str| both.items.iter().any(|item| matches!(item, crate::list::Item::Text(own) if own.text == text));
+        let said =
+            |text: &str| both.items.iter().any(|item| matches!(item, crate::list::Item::Text(own) if own.text == text));
         assert!(said("200 ms") && said("1 km"));
         // Seen from straight above a block has no height.
         assert_eq!(drawn(strip, Some(0.1), Some((0.0, "m")), "").items.len(), group.items.len());

@@ -3,15 +3,15 @@
 //! Solid where picked, dashed where filled, dotted where extrapolated; on a light rim, so that lines are
 //! seen on any amplitude.
 
-use super::axes::{self, Axis};
 use super::annotation::room::LabelRoom;
+use super::axes::{self, Axis};
 use super::overlay::{self, OverlayLines, SeenOn};
 use super::section_wells::WellOnSection;
 use super::{NamedColour, scale};
 use crate::Rect;
 use crate::cut::CutLine;
-use crate::interpretation::DrawnInterpretation;
 use crate::error::FigureError;
+use crate::interpretation::DrawnInterpretation;
 use crate::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Stroke, Text, Upright};
 use crate::style::{ACCENT, FAULT_PT, HORIZON_PT, INK, NUMBER_PT, QUIET_INK, RIM_OPACITY, RIM_PT, TITLE_PT};
 use glam::DVec2;
@@ -37,6 +37,8 @@ pub struct SectionContents<'a> {
     pub horizons: &'a [NamedColour],
     /// Names of faults, by index.
     pub faults: &'a [String],
+    /// Their colours; black where there is none.
+    pub fault_colours: &'a [Colour],
     /// What an interpreter sees over it.
     pub interpretation: Option<(&'a DrawnInterpretation<'a>, &'a OverlayLines, SeenOn<'a>)>,
     /// Where other sections run.
@@ -69,7 +71,7 @@ impl SectionContents<'_> {
         let mut group = Group::new(GroupKind::Data, "section").clipped(Path::rect(body)).with(below);
         match self.interpretation {
             None => {
-                let lines = model_lines(self.lines, (self.horizons, ink), self.faults, page);
+                let lines = model_lines(self.lines, (self.horizons, ink), (self.faults, self.fault_colours), page);
                 lines.into_iter().for_each(|line| group.push(line));
             }
             Some((shown, lines, on)) => {
@@ -86,7 +88,7 @@ impl SectionContents<'_> {
 fn model_lines(
     lines: &[CutLine],
     (horizons, ink): (&[NamedColour], Option<Colour>),
-    faults: &[String],
+    (faults, fault_colours): (&[String], &[Colour]),
     page: impl Fn(DVec2) -> DVec2,
 ) -> Vec<Group> {
     let mut rims = Group::new(GroupKind::Annotation, "rims");
@@ -106,7 +108,8 @@ fn model_lines(
             }
             LineKind::Fault { fault, .. } => {
                 let name = faults.get(fault).map_or("", String::as_str);
-                (Group::new(GroupKind::Fault, name), Colour::BLACK, FAULT_PT)
+                let own = || fault_colours.get(fault).copied().unwrap_or(Colour::BLACK);
+                (Group::new(GroupKind::Fault, name), ink.unwrap_or_else(own), FAULT_PT)
             }
         };
         let own = lines.iter().filter(|line| line.kind == kind);

@@ -219,6 +219,7 @@ impl Maker<'_> {
                 lines: &section.lines,
                 horizons: self.inputs.horizons,
                 faults: self.inputs.faults,
+                fault_colours: self.inputs.fault_colours,
                 interpretation: shown
                     .zip(section.overlay.as_ref())
                     .map(|(shown, overlay)| (shown, overlay, section.on.seen_on())),

@@ -95,6 +95,7 @@ impl Fold {
             strata: &self.model.stratigraphy().horizons,
             wells: &[],
             faults: &["F1".to_owned()],
+            fault_colours: &[],
             layers: &self.layers,
             library: Some(&self.library),
             interpretation: None,

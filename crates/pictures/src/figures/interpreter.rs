@@ -9,6 +9,7 @@ use interp::holes::{Hole, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon};
 use project::Project;
 use project::content;
+use project::document::FaultEntry;
 use project::error::ProjectError;
 use project::interpretation::{assembly, proposals};
 use survey::{Progress, SurveyGeometry};
@@ -50,6 +51,7 @@ struct Picked {
 /// A fault with its triangles, voxels.
 struct Mesh {
     name: String,
+    colour: Colour,
     triangles: Vec<[DVec3; 3]>,
 }
 
@@ -81,14 +83,21 @@ impl<'a> InterpreterPicks<'a> {
         }
         let faults = document.faults.iter().map(|entry| {
             let fault = content::read_fault(root, entry)?;
-            Ok(Mesh { name: entry.name.clone(), triangles: content::fault_triangles(&fault, geometry) })
+            Ok(Mesh {
+                name: entry.name.clone(),
+                colour: entry.ink(),
+                triangles: content::fault_triangles(&fault, geometry),
+            })
         });
         let open = proposals::open(root, document).into_iter().filter(|proposal| view.shows(proposal));
         let open = open.map(|proposal| {
             let triangles = content::fault_triangles(&proposal.fault(&proposal.name), geometry);
-            Mesh { name: proposal.name, triangles }
+            Mesh { name: proposal.name, colour: Colour::BLACK, triangles }
         });
-        let made = document.sticks.iter().flat_map(|fault| &fault.sticks).map(|stick| (stick, STICK));
+        let made = document.sticks.iter().flat_map(|fault| {
+            let colour = document.faults.iter().find(|entry| entry.name == fault.fault).map_or(STICK, FaultEntry::ink);
+            fault.sticks.iter().map(move |stick| (stick, colour))
+        });
         let drawn = view.sticks.iter().map(|(stick, colour)| (stick, *colour));
         let sticks = made.chain(drawn).map(|(stick, colour)| Stick { places: voxels(stick, geometry), colour });
         Ok(Self {
@@ -129,7 +138,7 @@ impl Picked {
 
 impl Mesh {
     fn borrowed(&self) -> FaultMesh<'_> {
-        FaultMesh { name: &self.name, triangles: &self.triangles }
+        FaultMesh { name: &self.name, colour: self.colour, triangles: &self.triangles }
     }
 }
 

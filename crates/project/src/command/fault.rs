@@ -9,6 +9,7 @@ use formats::{ImportOptions, ImportReport};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use survey::Progress;
+use ttf::Colour;
 
 /// Reads a fault into the project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -57,6 +58,15 @@ pub struct RenameFault {
     pub to: String,
 }
 
+/// Gives a fault another colour.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SetFaultColour {
+    /// Name of the fault.
+    pub fault: String,
+    /// Colour of its lines on sections and of its sticks.
+    pub colour: Colour,
+}
+
 /// Removes a fault.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RemoveFault {
@@ -95,6 +105,7 @@ impl AddFault {
             file,
             hash,
             source: super::source_of(&self.path, super::horizon::reading(&report))?,
+            colour: None,
         });
         draft.document.check_growth()?;
         rebuild_all(draft, progress)?;
@@ -140,6 +151,14 @@ impl SetFaultExtent {
             grown_m => format!("fault {} reaches {grown_m} m beyond what was drawn", self.fault),
         };
         Ok(Effect::Changed { summary })
+    }
+}
+
+impl SetFaultColour {
+    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
+        let index = draft.document.position(Noun::Fault, &self.fault)?;
+        draft.document.faults[index].colour = Some(self.colour);
+        Ok(Effect::Changed { summary: format!("colour of fault {}", self.fault) })
     }
 }
 

@@ -32,7 +32,7 @@ pub use attribute::{AttributeComputed, AttributeKind, ComputeAttribute};
 pub use contact::SetContact;
 pub use draw::{DrawHorizon, HorizonDrawn};
 pub use extract::{Extract, ProposeFaults};
-pub use fault::{AddFault, FaultAdded, RemoveFault, RenameFault, SetFaultExtent, SetTruncation};
+pub use fault::{AddFault, FaultAdded, RemoveFault, RenameFault, SetFaultColour, SetFaultExtent, SetTruncation};
 pub use fault_pick::{AcceptFault, MoveStickPoint, PickFault};
 pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
 pub use import::{ImportVolume, RemoveVolume, VolumeImported};
@@ -131,6 +131,8 @@ pub enum Command {
     SetTruncation(SetTruncation),
     /// State how far a fault reaches beyond what was drawn.
     SetFaultExtent(SetFaultExtent),
+    /// Give a fault another colour.
+    SetFaultColour(SetFaultColour),
     /// Rename a fault.
     RenameFault(RenameFault),
     /// Remove a fault.
@@ -260,6 +262,7 @@ impl Command {
             Self::RemoveWell(change) => change.execute(draft),
             Self::SetTruncation(change) => change.execute(draft, progress),
             Self::SetFaultExtent(change) => change.execute(draft, progress),
+            Self::SetFaultColour(change) => change.execute(draft),
             Self::RenameFault(change) => change.execute(draft, progress),
             Self::RemoveFault(change) => change.execute(draft, progress),
             Self::SetVelocity(change) => change.execute(draft),

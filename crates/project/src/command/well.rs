@@ -245,6 +245,9 @@ impl RenameWell {
             draft.document.check_new_name(Noun::Well, &self.to)?;
         }
         draft.document.wells[index].name.clone_from(&self.to);
+        // Where a scene hides it, it hides it under its new name.
+        let hidden = draft.document.scenes.iter_mut().flat_map(|entry| &mut entry.scene.hidden_wells);
+        hidden.filter(|name| **name == self.from).for_each(|name| name.clone_from(&self.to));
         Ok(Effect::Changed { summary: format!("well {} is now {}", self.from, self.to) })
     }
 }

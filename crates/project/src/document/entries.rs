@@ -134,9 +134,17 @@ pub struct FaultEntry {
     pub hash: String,
     /// Where it came from.
     pub source: Source,
+    /// Its colour on sections, if it was given one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub colour: Option<Colour>,
 }
 
 impl FaultEntry {
+    /// The colour in which its lines and sticks are drawn: black, unless it was given one.
+    pub fn ink(&self) -> Colour {
+        self.colour.unwrap_or(Colour::BLACK)
+    }
+
     /// What its part in the model depends on: its triangles, where it ends, how far it grows.
     pub fn shape(&self) -> String {
         format!("{} {:?} {}", self.hash, self.truncated_by, self.grown_m)

@@ -8,6 +8,7 @@ use crate::error::RenderError;
 use crate::gpu::Gpu;
 use crate::inputs::CandidateVolume;
 use crate::leaves::FaceData;
+use crate::media::bricks::LayerAppearance;
 use crate::media::field::MediaField;
 use crate::media::light_grid::{LightGrid, cells_from_voxel};
 use crate::media::medium::{FieldMedium, Zone};
@@ -29,7 +30,7 @@ pub struct MediumInfo {
     pub layers: u32,
     pub zone: u32,
     pub coloured: u32,
-    pub padding: u32,
+    pub shades: u32,
 }
 
 /// The media of a scene, in the layout of the shader.
@@ -66,6 +67,8 @@ pub struct MediaParams {
     pub media: [MediumInfo; MAX_MEDIA],
 }
 
+/// Number of words in the record of a part of a layer.
+const SHADE_WORDS: u32 = 5;
 /// Number of words in the record of a horizon.
 pub const HORIZON_WORDS: usize = 12;
 
@@ -188,6 +191,7 @@ pub fn media_params(resolved: &ResolvedScene, grid: Option<&LightGrid>, words: &
     for (info, medium) in params.media.iter_mut().zip(&field.media) {
         let table = add_table(words, &medium.table);
         let layers = medium.layers.as_ref().map_or(NONE, |appearance| add(words, appearance.entries.as_flattened()));
+        let shades = medium.layers.as_ref().map_or(NONE, |appearance| add_shades(words, appearance));
         *info = MediumInfo {
             low: medium.table.low,
             scale: medium.table.scale,
@@ -196,7 +200,7 @@ pub fn media_params(resolved: &ResolvedScene, grid: Option<&LightGrid>, words: &
             layers,
             zone: u32::from(medium.zone == Zone::CutOut),
             coloured: u32::from(medium.layers.as_ref().is_some_and(|appearance| appearance.colours)),
-            padding: 0,
+            shades,
         };
     }
     let [x, y, z] = field.bricks.size.map(|n| n as u32);
@@ -249,6 +253,24 @@ fn add(words: &mut Vec<u32>, values: &[f32]) -> u32 {
 fn add_table(words: &mut Vec<u32>, table: &FunctionTable) -> u32 {
     debug_assert_eq!(table.entries.len(), ENTRIES);
     add(words, table.entries.as_flattened())
+}
+
+/// First word and number of the shades of each layer, and the shades; [`NONE`] if no layer is divided.
+fn add_shades(words: &mut Vec<u32>, appearance: &LayerAppearance) -> u32 {
+    if appearance.shades.iter().all(Vec::is_empty) {
+        return NONE;
+    }
+    let first = words.len() as u32;
+    let mut at = first + 2 * appearance.shades.len() as u32;
+    for shades in &appearance.shades {
+        words.extend([at, shades.len() as u32]);
+        at += SHADE_WORDS * shades.len() as u32;
+    }
+    for shade in appearance.shades.iter().flatten() {
+        let ([low, high], [r, g, b]) = (shade.k, shade.colour);
+        add(words, &[low, high, r, g, b]);
+    }
+    first
 }
 
 fn add_horizons(resolved: &ResolvedScene, field: &MediaField, words: &mut Vec<u32>, params: &mut MediaParams) {

@@ -14,7 +14,8 @@ struct MediumInfo {
     zone: u32,
     // 1 if layers colour it.
     coloured: u32,
-    padding_0: u32,
+    // First words and numbers of the parts of its layers by depth (NONE: no layer is divided).
+    shades: u32,
 }
 
 struct MediaParams {
@@ -98,6 +99,7 @@ const OPAQUE: f32 = 1e4;
 const SPENT: f32 = 1e-3;
 const SOFT: f32 = 0.25;
 const NO_DATA_BELOW: f32 = -1e30;
+const SHADE_WORDS: u32 = 5u;
 const HORIZON_WORDS: u32 = 12u;
 const ISOSURFACE_WORDS: u32 = 8u;
 
@@ -170,6 +172,22 @@ fn table_word(info: MediumInfo, value: f32) -> u32 {
     return info.table + 4u * u32(clamp((value - info.low) * info.scale + 0.5, 0.0, f32(ENTRIES - 1u)));
 }
 
+// The colour of the part of a divided layer at a point; that of the layer where there is none.
+fn shade_of(record: u32, p: vec3<f32>, layer: u32, undivided: vec3<f32>) -> vec3<f32> {
+    let count = relief_map[record + 1u];
+    if count == 0u {
+        return undivided;
+    }
+    let k = flat_exact(p, layer, block_at(p)).ijk.z;
+    for (var n = 0u; n < count; n += 1u) {
+        let shade = relief_map[record] + SHADE_WORDS * n;
+        if k >= word(shade) && k < word(shade + 1u) {
+            return vec3(word(shade + 2u), word(shade + 3u), word(shade + 4u));
+        }
+    }
+    return undivided;
+}
+
 fn of_medium(n: u32, p: vec3<f32>, brick: u32, towards: vec3<f32>) -> Matter {
     var matter: Matter;
     let info = media.media[n];
@@ -192,6 +210,9 @@ fn of_medium(n: u32, p: vec3<f32>, brick: u32, towards: vec3<f32>) -> Matter {
         let opacity = word(appearance + 3u);
         if info.coloured == 1u {
             matter.colour = vec3(word(appearance), word(appearance + 1u), word(appearance + 2u));
+            if info.shades != NONE && lookup == LOOKUP_EXACT {
+                matter.colour = shade_of(info.shades + 2u * layer, p, layer, matter.colour);
+            }
         }
         if opacity != 1.0 {
             matter.extinction = extinction_of((1.0 - exp(-matter.extinction)) * opacity);

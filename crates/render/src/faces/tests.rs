@@ -87,7 +87,7 @@ fn structs_have_the_same_layout() {
     check!(m, ScalarEntry: colour, ink, range, factor, texture, volume, opacity);
     check!(m, StopEntry: colour, at);
     check!(m, Slice: index, side);
-    check!(m, MediumInfo: low, scale, slot, table, layers, zone, coloured);
+    check!(m, MediumInfo: low, scale, slot, table, layers, zone, coloured, shades);
     check!(m, MediaParams: display_x, display_y, display_z, covector_x, covector_y, covector_z, light, phong, cells_x,
         cells_y, cells_z, cells_shift, cells_low, back, right, up, forward, grid, cells, bricks, scales, candidates,
         leaves, slice_units, groups, wells, capsules, media);

@@ -240,6 +240,18 @@ pub struct LayerAppearance {
     pub entries: Vec<[f32; 4]>,
     /// Whether the colour replaces that of the medium.
     pub colours: bool,
+    /// Colours of the parts of layers that are divided by depth, for each layer; empty for others. Where no part is, the
+    /// colour is that of the entry.
+    pub shades: Vec<Vec<Shade>>,
+}
+
+/// The linear colour of a part of a layer, from one k up to another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shade {
+    /// Smallest k, and the k from which on it is not.
+    pub k: [f32; 2],
+    /// Linear colour.
+    pub colour: [f32; 3],
 }
 
 impl LayerAppearance {
@@ -253,9 +265,16 @@ impl LayerAppearance {
     ) -> Option<Self> {
         let model = model?;
         let colours = medium.colour == MediumColour::Layers;
+        let shades: Vec<Vec<Shade>> =
+            (0..model.layer_count()).map(|layer| if colours { shades(tables, layer) } else { Vec::new() }).collect();
         let entry = |layer: usize| {
             let style = tables.layers.get(layer)?;
-            let [r, g, b] = tables.average_colour(layer as u32, 0.5).map(linear_from_srgb);
+            let undivided = tables.average_colour(layer as u32, 0.5);
+            let [r, g, b] = match shades[layer].is_empty() {
+                true => undivided,
+                false => [style.colour[0], style.colour[1], style.colour[2]],
+            }
+            .map(linear_from_srgb);
             let opacity = if medium.layers == LayerOpacity::Followed { style.colour[3] } else { 1.0 };
             Some([r, g, b, opacity])
         };
@@ -264,8 +283,30 @@ impl LayerAppearance {
         if ground_is_shown && let Some(air) = entries.get_mut(usize::from(air_layer(model))) {
             air[3] = 0.0;
         }
-        (colours || entries.iter().any(|entry| entry[3] != 1.0)).then_some(Self { entries, colours })
+        (colours || entries.iter().any(|entry| entry[3] != 1.0)).then_some(Self { entries, colours, shades })
     }
+
+    /// The colour of a layer at a local k.
+    #[inline]
+    pub fn colour(&self, layer: usize, k: f32) -> [f32; 3] {
+        let shade = self.shades[layer].iter().find(|shade| k >= shade.k[0] && k < shade.k[1]);
+        let [r, g, b, _] = self.entries[layer];
+        shade.map_or([r, g, b], |shade| shade.colour)
+    }
+}
+
+/// The colours of the parts of a layer; none if it is not divided.
+fn shades(tables: &TtfTables, layer: usize) -> Vec<Shade> {
+    let Some(style) = tables.layers.get(layer) else { return Vec::new() };
+    let first = style.first_interval as usize;
+    let intervals = &tables.intervals[first..first + style.interval_count as usize];
+    let is_whole = |interval: &ttf::tables::IntervalEntry| interval.k == [f32::MIN, f32::MAX];
+    if intervals.iter().all(is_whole) {
+        return Vec::new();
+    }
+    // Inside an interval one colour holds; its lower end belongs to it.
+    let shade = |k: [f32; 2]| Shade { k, colour: tables.average_colour(layer as u32, k[0]).map(linear_from_srgb) };
+    intervals.iter().map(|interval| shade(interval.k)).collect()
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use crate::camera::View;
 use crate::error::RenderError;
 use crate::inputs::{Inputs, NamedVolume};
 use glam::{Mat3, Vec3};
-use model::StructuralModel;
+use model::{Region, StructuralModel};
 use ttf::TtfTables;
 
 /// The optical properties of a point.
@@ -201,14 +201,22 @@ impl<'a> MediaField<'a> {
         Matter { extinction, colour, emission: Vec3::ZERO }
     }
 
-    /// The appearance of the layer at a point. The layer is known for the brick, or looked up in the model.
+    /// The appearance of the layer at a point. The layer is known for the brick, or looked up in the model; of a layer
+    /// that is divided by depth, k there tells which part it is.
     fn layer_entry(&self, appearance: &LayerAppearance, p: Vec3, word: u32) -> [f32; 4] {
         let hint = (word >> 16 & 255) as u8;
         let layer = match (hint, self.model) {
             (MIXED, Some(model)) => usize::from(model.region_at(p).layer),
             (hint, _) => usize::from(hint),
         };
-        *appearance.entries.get(layer).expect("every layer of the model has an appearance")
+        let entry = *appearance.entries.get(layer).expect("every layer of the model has an appearance");
+        let Some(StratigraphicDepth { model, param }) = self.depths.filter(|_| !appearance.shades[layer].is_empty())
+        else {
+            return entry;
+        };
+        let region = Region { layer: layer as u16, block: model.block_at(p) };
+        let [r, g, b] = appearance.colour(layer, param.lookup_in(model, p, region).0.k);
+        [r, g, b, entry[3]]
     }
 
     /// Several media, horizons and isosurfaces at a point.

@@ -12,8 +12,8 @@ use render::{
 use survey::Progress;
 use synth::{SynthSettings, Synthetic};
 use ttf::{
-    Colour, ColourMap, LayerStyle, LayerTtf, RawColour, RgbaFunction, RgbaStop, TextureLibrary, TransferFunctions,
-    symmetric_clip,
+    Colour, ColourMap, DepthInterval, LayerStyle, LayerTtf, RawColour, RgbaFunction, RgbaStop, TextureLibrary,
+    TransferFunctions, symmetric_clip,
 };
 
 /// Distances to some horizons of the synthetic survey, as an extraction would give them.
@@ -238,6 +238,16 @@ fn gpu_and_cpu_render_media_alike() {
     let styles = names.iter().enumerate().map(|(n, name)| {
         let mut style = LayerStyle::plain(name, colours[n % 3]);
         style.opacity = [0.0, 1.0, 0.6][n % 3];
+        if n % 3 == 1 {
+            let part = |k: [f32; 2], colour: Colour| DepthInterval {
+                k,
+                texture: "limestone".into(),
+                opacity: 1.0,
+                frequency: None,
+                colour: Some(colour),
+            };
+            style.intervals = vec![part([0.0, 0.4], Colour::new(30, 60, 160)), part([0.4, 1.0], colours[1])];
+        }
         style
     });
     let functions = TransferFunctions {

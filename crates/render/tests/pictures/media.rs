@@ -11,7 +11,10 @@ use render::{
 };
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 use synth::closed_form::ClosedForm;
-use ttf::{Colour, LayerStyle, LayerTtf, RgbaFunction, RgbaStop, TextureLibrary, TransferFunctions, srgb_from_linear};
+use ttf::{
+    Colour, DepthInterval, LayerStyle, LayerTtf, RgbaFunction, RgbaStop, TextureLibrary, TransferFunctions,
+    srgb_from_linear,
+};
 
 /// A function with one colour and opacity for every value.
 pub fn constant(colour: Colour, opacity: f32) -> RgbaFunction {
@@ -194,6 +197,53 @@ fn a_layer_extrudes_into_the_cut_out_and_air_does_not() {
             assert_eq!([red, green], [255, 255], "row {y}, z {z}");
         }
     }
+}
+
+/// A layer whose lower half is red and whose upper half is green, with a boundary in the middle of its thickness.
+#[test]
+fn parts_of_a_layer_by_depth_have_their_own_colours_in_a_medium() {
+    let geometry = SurveyGeometry::regular([41, 31, 41], 10.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::flat(&geometry, &[10.0, 27.0]);
+    let names = closed.stratigraphy.layer_names_bottom_up();
+    let (red, green) = (Colour::new(200, 0, 0), Colour::new(0, 150, 0));
+    let part = |k: [f32; 2], colour: Colour| DepthInterval {
+        k,
+        texture: "limestone".into(),
+        opacity: 0.0,
+        frequency: None,
+        colour: Some(colour),
+    };
+    let styles = names.iter().enumerate().map(|(n, name)| {
+        let mut style = LayerStyle::plain(name, Colour::new(10, 20, 30));
+        if n == 1 {
+            style.intervals = vec![part([0.0, 0.5], red), part([0.5, 1.0], green)];
+        }
+        style
+    });
+    let functions = TransferFunctions { layers: LayerTtf { styles: styles.collect() }, ..TransferFunctions::default() };
+    let block = Block::of(&closed, &functions, &TextureLibrary::builtin().unwrap());
+    let volume = Volume::filled([41, 31, 41], 0.5f32);
+    let volumes = [NamedVolume::whole("v", &volume)];
+    let rock = Medium { colour: MediumColour::Layers, ..medium("v", constant(Colour::WHITE, 1.0)) };
+    let media = Media { faces: Faces::None, surroundings: vec![rock], ..Media::default() };
+    let scene = head_on([160, 160], media);
+    let image = draw(&scene, &block.inputs(&volumes));
+    let view = scene.view(&geometry);
+    let [top, bottom] = [0.0, 40.0].map(|z| view.project(DVec3::new(20.0, 0.0, z)).y);
+    let mut seen = [0; 3];
+    for y in 0..160 {
+        let z = 40.0 * (f64::from(y) + 0.5 - top) / (bottom - top);
+        let expected = match z {
+            10.1..18.3 => green.rgb,
+            18.7..26.9 => red.rgb,
+            0.1..9.9 | 27.1..39.9 => [10, 20, 30],
+            _ => continue,
+        };
+        let found = image.get_pixel(80, y).0;
+        assert!((0..3).all(|c| found[c].abs_diff(expected[c]) <= 1), "row {y}, z {z}: {found:?}, {expected:?}");
+        seen[usize::from(expected == red.rgb) + 2 * usize::from(expected == green.rgb)] += 1;
+    }
+    assert!(seen.iter().all(|rows| *rows > 20), "{seen:?}");
 }
 
 /// A medium that is transparent except in a thin plane of constant y at `at`, which is opaque for x below

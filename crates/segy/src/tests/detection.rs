@@ -64,21 +64,122 @@ fn line_numbers_at_any_two_fields_are_found_where_coordinates_confirm_them() {
         t.i32(1, index as i32 + 1);
         t.i32(13, index as i32 % 6 + 1);
     });
-    // Which of the two is the inline cannot be seen.
-    let (problem, sentence) = odd.refusal();
-    let SegyProblem::AmbiguousLines { readings } = problem else { panic!("{sentence}") };
-    let found: Vec<[u16; 2]> = readings.iter().map(|r| [r.inline_byte, r.crossline_byte]).collect();
-    assert_eq!(found, [[5, 25], [25, 5]], "{sentence}");
-    assert!(readings.iter().all(|reading| reading.residual_bins.unwrap() < 1e-3));
-    let half = SegyOptions { inline_byte: Some(5), ..SegyOptions::default() };
-    let info = odd.scan(&half).unwrap();
+    // Which of the two is the inline cannot be seen: the order of the bytes tells, and the other reading is shown.
+    let info = odd.info();
     assert_eq!((bytes(&info), info.byte_positions.x), ([5, 25], Some(73)));
-    // Without coordinates nothing tells a lattice of counters from lines.
+    assert!(info.candidates[0].residual_bins.unwrap() < 1e-3);
+    let said = "the lower byte is taken as the inline, as in every convention (if not, state: inline byte 25 and crossline byte 5";
+    assert!(has(&info.assumptions, said), "{:?}", info.assumptions);
+    let half = SegyOptions { inline_byte: Some(25), ..SegyOptions::default() };
+    let info = odd.scan(&half).unwrap();
+    assert_eq!((bytes(&info), info.byte_positions.x), ([25, 5], Some(73)));
+    assert!(!has(&info.assumptions, "lower byte"));
+    // Without coordinates nothing tells a lattice of counters from lines: the user decides.
     let bare = odd.each(|_, t| {
         t.i32(73, 0);
         t.i32(77, 0);
     });
-    assert!(bare.scan(&SegyOptions::default()).is_err());
+    let (problem, sentence) = bare.refusal();
+    let SegyProblem::AmbiguousLines { readings } = problem else { panic!("{sentence}") };
+    let found: Vec<[u16; 2]> = readings.iter().map(|r| [r.inline_byte, r.crossline_byte]).collect();
+    assert_eq!(found, [[5, 25], [25, 5]], "{sentence}");
+}
+
+#[test]
+fn line_numbers_of_any_type_at_any_place_are_found() {
+    // 2-byte integers between two fields of the standard, and floats where nobody looks.
+    let narrow = moved(9, 21).each(|index, t| {
+        t.i32(9, 0);
+        t.i32(21, 0);
+        [93, 149].into_iter().for_each(|byte| t.i16(byte, (index * 7 % 13) as i16));
+        t.i16(95, t.inline as i16);
+        t.i16(151, t.crossline as i16);
+    });
+    let info = narrow.info();
+    assert_eq!((bytes(&info), counts(&info)), ([95, 151], [4, 6]));
+    assert!(has(&info.evidence, "as i16"), "{:?}", info.evidence);
+    let floats = moved(49, 57).each(|_, t| {
+        t.i32(49, (t.inline as f32).to_bits().cast_signed());
+        t.i32(57, (t.crossline as f32).to_bits().cast_signed());
+    });
+    let info = floats.info();
+    assert_eq!((bytes(&info), counts(&info)), ([49, 57], [4, 6]));
+    assert!(has(&info.evidence, "as f32"), "{:?}", info.evidence);
+    let between = moved(9, 21).each(|_, t| {
+        t.i32(9, 0);
+        t.i32(21, 0);
+        t.i32(31, 1000 * t.inline);
+        t.i32(35, 7000 * t.crossline);
+        t.i16(29, 1);
+    });
+    assert_eq!(bytes(&between.info()), [31, 35]);
+}
+
+#[test]
+fn bytes_of_lines_that_the_text_header_names_are_followed_or_contradicted() {
+    // It says which of both is the inline, also against the order of the bytes and of the standard.
+    let mut named = moved(57, 49);
+    named.say(3, "INLINE NUMBER: BYTES 57-60   CROSSLINE NUMBER: BYTES 49-52");
+    let info = named.info();
+    assert_eq!((bytes(&info), counts(&info)), ([57, 49], [4, 6]));
+    assert!(has(&info.evidence, "named by the text header") && !has(&info.assumptions, "lower byte"));
+    let mut swapped = grid();
+    swapped.say(3, "INLINE BYTES 193-196, XLINE BYTES 189-192");
+    assert_eq!(counts(&swapped.info()), [6, 4]);
+    // What is named and holds no lines is told; what holds them is taken.
+    let mut wrong = grid();
+    wrong.say(3, "INLINE BYTES 9-12, CROSSLINE BYTES 21-24");
+    let info = wrong.info();
+    assert_eq!(bytes(&info), [189, 193]);
+    assert!(has(&info.warnings, "names bytes that are not taken: bytes 9 and 21: all zero"), "{:?}", info.warnings);
+    // The user's word stands above it.
+    let mut both = grid().each(|_, t| {
+        t.i32(9, 3 * t.inline);
+        t.i32(21, 2 * t.crossline);
+    });
+    both.say(3, "INLINE BYTES 9-12, CROSSLINE BYTES 21-24");
+    let info = both.info();
+    assert_eq!((bytes(&info), info.inlines.first), ([9, 21], 303));
+    assert!(has(&info.evidence, "another reading fits too: bytes 189 and 193"), "{:?}", info.evidence);
+    assert_eq!(bytes(&both.scan(&lines(189, 193)).unwrap()), [189, 193]);
+}
+
+#[test]
+fn coordinates_are_found_at_any_two_neighbouring_fields() {
+    let far = grid().each(|index, t| {
+        t.i32(181, 0);
+        t.i32(185, 0);
+        t.place(213, 217);
+        t.i32(1, index as i32 + 1);
+        t.i32(5, index as i32 % 6 + 1);
+    });
+    let info = far.info();
+    assert_eq!([info.byte_positions.x, info.byte_positions.y], [Some(213), Some(217)]);
+    assert!(has(&info.assumptions, "where no convention has them"), "{:?}", info.assumptions);
+    assert!((info.geometry.inline_vector[0] - 25.0 * 30_f64.to_radians().cos()).abs() < 1e-2);
+    // They win over line numbers at the usual place, as integers, scaled or as floats, and over counters.
+    let numbers: [fn(&mut Trace); 4] = [
+        |t| (t.i32(181, t.inline), t.i32(185, t.crossline)).0,
+        |t| (t.i32(181, 100 * t.crossline), t.i32(185, 100 * t.inline)).0,
+        |t| {
+            t.i32(181, (t.inline as f32).to_bits().cast_signed());
+            t.i32(185, (t.crossline as f32).to_bits().cast_signed());
+        },
+        |t| (t.i32(181, t.inline - 100), t.i32(185, t.crossline - 6)).0,
+    ];
+    for (n, number) in numbers.into_iter().enumerate() {
+        let info = far.clone().each(|_, t| number(t)).info();
+        assert_eq!(info.byte_positions.x, Some(213), "{n}: {:?} {:?}", info.assumptions, info.warnings);
+        // Where nothing else is there, what looks like coordinates is doubted, or the place is assumed.
+        let alone = grid().each(|_, t| number(t)).info();
+        let is_told = has(&alone.warnings, "doubtful")
+            || has(&alone.warnings, "which no survey has")
+            || has(&alone.assumptions, "the survey lies at 0, 0");
+        assert!(is_told, "{n}: {:?} {:?}", alone.assumptions, alone.warnings);
+    }
+    // One of both that repeats line numbers is doubted too.
+    let half = grid().each(|_, t| t.i32(181, t.inline));
+    assert!(has(&half.info().warnings, "X is a line number once more"), "{:?}", half.info().warnings);
 }
 
 #[test]
@@ -94,10 +195,12 @@ fn the_swapped_reading_is_shown_and_can_be_chosen() {
 
 #[test]
 fn two_readings_without_a_convention_that_wins_are_an_error_that_lists_them() {
-    let (problem, sentence) = moved(197, 205).refusal();
+    // Nothing tells which of two fields of lines is meant.
+    let several = moved(197, 205).each(|_, t| t.i32(213, 2 * t.crossline));
+    let (problem, sentence) = several.refusal();
     let SegyProblem::AmbiguousLines { readings } = problem else { panic!("{sentence}") };
     let found: Vec<[u16; 2]> = readings.iter().map(|r: &Candidate| [r.inline_byte, r.crossline_byte]).collect();
-    assert_eq!(found, [[197, 205], [205, 197]]);
+    assert_eq!(found, [[197, 205], [205, 197], [197, 213], [213, 197]]);
     assert!(sentence.contains("bytes 205 and 197 for 6 (7..12) inlines"), "{sentence}");
     assert!(sentence.contains("or inline byte 205 and crossline byte 197"), "{sentence}");
     assert_eq!(counts(&moved(197, 205).scan(&lines(205, 197)).unwrap()), [6, 4]);
@@ -457,6 +560,12 @@ fn gathers_are_pre_stack() {
         t.i32(21, t.crossline);
     });
     assert!(offsets(line).refusal().1.contains("CDP gathers"));
+    // Also where the writer left the inline out, and where there are no offsets either.
+    let unnumbered = Built::grid(&[0], &many).each(|_, t| t.i32(21, 0));
+    assert!(offsets(unnumbered).refusal().1.contains("39 crosslines"));
+    let plain = offsets(Built::grid(&[5], &many)).each(|_, t| t.i32(37, 0));
+    let (problem, sentence) = plain.refusal();
+    assert!(matches!(problem, SegyProblem::PreStack { may_repeat: true, .. }), "{sentence}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::super::{
     ByteOrder, FileUnit, LengthUnit, LineSource, NumberType, SampleFormat, SegyOptions, SegyProblem, TextEncoding,
     TraceWeight, scan,
 };
-use super::built::{Built, SAMPLES, with_file};
+use super::built::{Built, SAMPLES, Trace, with_file};
 use survey::progress::Progress;
 use survey::remedy::{Note, Setting};
 
@@ -88,12 +88,36 @@ fn extended_text_headers_by_count_and_by_end_stanza() {
 }
 
 #[test]
+fn text_headers_that_the_file_does_not_announce_rightly_are_no_traces() {
+    let text = |lines: usize| {
+        let block = |n: usize| {
+            format!("((SEG: Location Data ver 1.0)) part {n}, with words to the end of the line ").repeat(60)
+        };
+        (0..lines).flat_map(|n| block(n).into_bytes().into_iter().take(3200)).collect::<Vec<u8>>()
+    };
+    // The stride of a trace divides a text header, so that the length of the file does not tell.
+    let whole = |_: usize, t: &mut Trace| {
+        t.i16(115, 20);
+        t.floats(&[1.5; 20]);
+    };
+    for announced in [0_i16, 1, 7, 300, i16::MAX, -1, -2] {
+        let mut file = built().each(whole);
+        file.binary(3221, 20);
+        file.extended = text(3);
+        file.binary(3505, announced.cast_unsigned());
+        let info = file.info();
+        assert_eq!((info.traces, info.extended_text.len()), (12, 120), "{announced}: {:?}", info.warnings);
+        assert!(has(&info.warnings, "3505"), "{announced}: {:?}", info.warnings);
+    }
+}
+
+#[test]
 fn announced_text_headers_that_are_not_there_are_noticed() {
     let mut file = built();
     file.binary(3505, 1);
     let info = file.info();
     assert_eq!((info.traces, info.extended_text.len()), (12, 0));
-    assert!(has(&info.warnings, "file's length fits"), "{:?}", info.warnings);
+    assert!(has(&info.warnings, "announces 1 extended text headers, and 0 are there"), "{:?}", info.warnings);
 }
 
 #[test]

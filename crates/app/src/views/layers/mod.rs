@@ -12,7 +12,8 @@ use super::tiles::Tiles;
 use crate::state::{Action, Choice, Dialogue, Panel, Place, Session, State};
 use crate::work::{Rocks, Swatches};
 use eframe::egui::{
-    Button, ComboBox, Frame, Grid, Key, Response, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, WidgetInfo, vec2,
+    Button, ComboBox, Frame, Grid, Key, Label, Response, RichText, Role, ScrollArea, Sense, Stroke, TextEdit, Ui,
+    WidgetInfo, vec2,
 };
 use legibility::Legibility;
 use project::command::{Command, ResetLayer, SetContact, SetLayer};
@@ -232,7 +233,7 @@ fn row(
                 let (rect, _) = ui.allocate_exact_size(vec2(SWATCH[0], SWATCH[1]), Sense::hover());
                 tiles.paint(ui, swatches, style, rect);
                 ui.vertical(|ui| {
-                    ui.strong(name);
+                    ui.add(Label::new(RichText::new(name).strong()).truncate().selectable(false));
                     let patterns: Vec<&str> =
                         style.intervals.iter().map(|interval| interval.texture.as_str()).collect();
                     ui.weak(if patterns.is_empty() { "plain".to_owned() } else { patterns.join(", ") });
@@ -242,10 +243,14 @@ fn row(
         .response;
     let response = ui.interact(response.rect, ui.scope_id().with(("layer", name)), Sense::click());
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, format!("Layer {name}")));
-    if response.clicked() {
+    // A name too long for the panel is read whole here.
+    if response.on_hover_text(name).clicked() {
         actions.push(Action::Layer((!is_chosen).then(|| name.to_owned())));
     }
 }
+
+/// Width that the contact beside the name of a horizon takes, points.
+const BESIDE_HORIZON: f32 = 130.0;
 
 /// The horizon between two layers, and its contact.
 fn boundary(ui: &mut Ui, index: usize, horizon: &HorizonEntry, actions: &mut Vec<Action>) {
@@ -253,7 +258,11 @@ fn boundary(ui: &mut Ui, index: usize, horizon: &HorizonEntry, actions: &mut Vec
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(SWATCH[0] + 8.0, 16.0), Sense::hover());
         ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(2.5, entry_colour(horizon, index)));
-        ui.small(name);
+        let room = (ui.available_width() - BESIDE_HORIZON).max(40.0);
+        ui.scope(|ui| {
+            ui.set_max_width(room);
+            ui.add(Label::new(RichText::new(name).small()).truncate());
+        });
         let mut chosen = contact;
         let combo = ComboBox::from_id_salt(("contact", name)).selected_text(contact_name(contact)).width(96.0);
         ui.name_inputs(format!("Contact of {name}"), |ui| {

@@ -1,11 +1,11 @@
 //! The panel of faults: drawn from sticks, proposed, accepted.
 
-use super::go;
+use super::{go, palette};
 use crate::state::{Action, PickingStep, Session, Tool};
 use crate::work::{Interpreted, RunningLine};
-use eframe::egui::{Button, TextEdit, Ui};
+use eframe::egui::{Button, Label, TextEdit, Ui};
 use interp::faults::Proposal;
-use project::command::{AcceptFault, Command};
+use project::command::{AcceptFault, Command, SetFaultColour};
 use std::collections::HashMap;
 use survey::SurveyGeometry;
 use widgets::obstacle::{needs, unless};
@@ -72,7 +72,14 @@ impl FaultsPanel {
             });
         }
         for entry in &session.document.faults {
-            ui.label(&entry.name).on_hover_text(&entry.source.reading);
+            ui.horizontal(|ui| {
+                if let Some(colour) = palette(ui, entry.ink(), &format!("Colour of fault {}", entry.name)) {
+                    let command = SetFaultColour { fault: entry.name.clone(), colour };
+                    actions.push(Action::Apply(Box::new(Command::SetFaultColour(command))));
+                }
+                ui.add(Label::new(&entry.name).truncate())
+                    .on_hover_text(format!("{}: {}", entry.name, entry.source.reading));
+            });
         }
         let is_looking = running.iter().any(|line| line.title == "Proposing faults");
         let can = !session.document.horizons.is_empty() && !is_looking;

@@ -158,7 +158,11 @@ impl HorizonList {
         if let Some(overlap) = &report.overlap {
             ui.colored_label(
                 ui.visuals().warn_fg_color,
-                format!("Overlaps itself at {} traces, by up to {:.0} samples.", overlap.traces, overlap.apart),
+                format!(
+                    "Overlaps itself at {}, by up to {}.",
+                    counted(overlap.traces, "trace"),
+                    counted(overlap.apart.round() as usize, "sample")
+                ),
             );
             if ui.button("Show the overlap").clicked() {
                 go(geometry, overlap.at, actions);
@@ -351,6 +355,11 @@ fn row(
             }
         }
     });
+}
+
+/// A number of things, in words.
+fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
 fn apply(command: Command) -> Action {

@@ -6,6 +6,7 @@ mod horizons;
 mod palette;
 
 pub(super) use horizons::swatch;
+pub(super) use palette::palette;
 
 use super::candidates::CandidatesPanel;
 use super::{notices, overlay::Overlay};

@@ -9,7 +9,7 @@ use ttf::Colour;
 const MORE_COLOURS: [[u8; 3]; 4] = [[0xb8, 0xa8, 0x00], [0xc0, 0x18, 0x2c], [0x1b, 0x78, 0x37], [0x30, 0x30, 0x30]];
 
 /// A button in the present colour that opens a palette of others.
-pub(super) fn palette(ui: &mut Ui, colour: Colour, name: &str) -> Option<Colour> {
+pub(in crate::views) fn palette(ui: &mut Ui, colour: Colour, name: &str) -> Option<Colour> {
     let paint = |rgb: [u8; 3]| Color32::from_rgb(rgb[0], rgb[1], rgb[2]);
     let mut chosen = None;
     let button = Button::new("").fill(paint(colour.rgb)).min_size(vec2(16.0, 16.0));

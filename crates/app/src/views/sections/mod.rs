@@ -30,6 +30,7 @@ use figure::draw::section::{SectionContents, Zoom};
 use freehand::Freehand;
 use glam::DVec2;
 use image::RgbaImage;
+use project::document::FaultEntry;
 use project::styles;
 use render::FaceData;
 use std::borrow::Cow;
@@ -238,7 +239,8 @@ impl Pane {
         if let (Some((pixels, lines)), Some(texture)) = (&self.shown, &self.texture) {
             let lines = if is_interpreting { Cow::Borrowed(&[][..]) } else { lines::visible(session, lines) };
             let horizons = pictures::figures::horizons(&session.document);
-            let contents = contents(pixels, &lines, &horizons, extent, session, kind);
+            let faults: Vec<_> = session.document.faults.iter().map(FaultEntry::ink).collect();
+            let contents = contents(pixels, &lines, (&horizons, &faults), extent, session, kind);
             canvas::paint(&painter, &contents.drawn(seen, on_page), Some(texture.id()));
         }
         if is_interpreting {
@@ -343,13 +345,13 @@ impl Pane {
 fn contents<'a>(
     image: &'a Arc<RgbaImage>,
     lines: &'a [CutLine],
-    horizons: &'a [NamedColour],
+    (horizons, fault_colours): (&'a [NamedColour], &'a [ttf::Colour]),
     extent: DVec2,
     session: &Session,
     kind: SectionKind,
 ) -> SectionContents<'a> {
     let marks = lines::marks(session, kind);
-    SectionContents { image, extent, lines, horizons, faults: &[], interpretation: None, marks }
+    SectionContents { image, extent, lines, horizons, faults: &[], fault_colours, interpretation: None, marks }
 }
 
 /// Name and number of the section; the number can be typed and dragged.

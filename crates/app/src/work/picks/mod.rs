@@ -62,6 +62,8 @@ pub struct InterpretedHorizon {
 pub struct ShownFault {
     /// Its name.
     pub name: String,
+    /// Its colour.
+    pub colour: Colour,
     /// Its triangles.
     pub triangles: Vec<[DVec3; 3]>,
 }
@@ -120,7 +122,7 @@ impl Interpreted {
 
 impl ShownFault {
     fn mesh(&self) -> FaultMesh<'_> {
-        FaultMesh { name: &self.name, triangles: &self.triangles }
+        FaultMesh { name: &self.name, colour: self.colour, triangles: &self.triangles }
     }
 }
 
@@ -426,7 +428,10 @@ impl Keeper {
             }
         });
         let horizons = horizons.collect();
-        let faults = document.faults.iter().map(|entry| Ok(shown(&content::read_fault(root, entry)?, geometry)));
+        let faults = document
+            .faults
+            .iter()
+            .map(|entry| Ok(ShownFault { colour: entry.ink(), ..shown(&content::read_fault(root, entry)?, geometry) }));
         let faults = faults.collect::<Result<_, ProjectError>>()?;
         let (proposals, unit) = proposed(root, document, geometry);
         self.number += 1;
@@ -450,7 +455,7 @@ fn hashes(document: &Document) -> Vec<String> {
 }
 
 fn shown(fault: &Fault, geometry: &SurveyGeometry) -> ShownFault {
-    ShownFault { name: fault.name.clone(), triangles: content::fault_triangles(fault, geometry) }
+    ShownFault { name: fault.name.clone(), colour: Colour::BLACK, triangles: content::fault_triangles(fault, geometry) }
 }
 
 /// The proposals for the present horizons without those that were accepted, and the unit of their throws.

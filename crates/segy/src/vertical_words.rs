@@ -1,0 +1,267 @@
+//! What a textual header says about the vertical axis, and how much each sentence weighs.
+//!
+//! A sentence about the axis itself (`TIME MIN 0`, `DOMAIN: DEPTH`, `OUTPUT IN TIME`) weighs more than the name of a
+//! method (`PSDM`, `TIME MIGRATION`), and that more than a mention (`DEPTH`, `500 MS`). Depths of the acquisition
+//! (`CABLE DEPTH 7 M`, `COMMON DEPTH POINT`), names of files and templates that offer both weigh nothing.
+
+use super::info::FileUnit;
+
+/// How much a sentence weighs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Weight {
+    /// A word somewhere.
+    Mention = 1,
+    /// A method whose result usually is in that domain.
+    Method,
+    /// A statement about the axis.
+    Axis,
+}
+
+/// A sentence, and its weight.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Said {
+    pub weight: Weight,
+    pub quote: String,
+}
+
+/// The weightiest sentences of a textual header.
+#[derive(Debug, Default)]
+pub(super) struct Words {
+    /// A unit beside the number that is the sample interval.
+    pub interval: Option<(FileUnit, String)>,
+    pub time: Option<Said>,
+    pub depth: Option<Said>,
+}
+
+/// Words beside TIME or DEPTH that make it the vertical axis.
+const AXIS: [&str; 12] =
+    ["DOMAIN", "AXIS", "RANGE", "MIN", "MAX", "MINIMUM", "MAXIMUM", "SECTION", "STEP", "UNIT", "UNITS", "STRETCHED"];
+/// Words before TIME or DEPTH that make it the domain of the result.
+const INTO: [&str; 3] = ["IN", "TO", "INTO"];
+/// What is measured in depth by those who acquire data.
+const GEAR: [&str; 24] = [
+    "WATER",
+    "SOURCE",
+    "SOURCES",
+    "GUN",
+    "GUNS",
+    "AIRGUN",
+    "CABLE",
+    "STREAMER",
+    "STREAMERS",
+    "RECEIVER",
+    "RECEIVERS",
+    "HYDROPHONE",
+    "TOW",
+    "TOWING",
+    "TOWED",
+    "SHOT",
+    "CHARGE",
+    "HOLE",
+    "UPHOLE",
+    "SEABED",
+    "TARGET",
+    "WELL",
+    "PENETRATION",
+    "LAYBACK",
+];
+
+/// What has a length of its own, which may by chance be that between two samples.
+const SPREAD: [&str; 10] = ["BIN", "BINS", "SPACING", "GROUP", "OFFSET", "GRID", "CDP", "CMP", "INLINE", "CROSSLINE"];
+
+impl Words {
+    /// Reads the lines of a header; `interval` is the sample interval as the file holds it, in thousandths.
+    pub fn find<'a>(lines: impl Iterator<Item = &'a String>, interval: f64) -> Self {
+        let mut found = Self::default();
+        let mut contradicted = false;
+        for line in lines {
+            let upper = line.to_ascii_uppercase();
+            let said: Vec<&str> = upper.split_whitespace().filter(|piece| !is_file_name(piece)).collect();
+            let words = words(&said.join(" "));
+            let words: Vec<&str> = words.iter().map(String::as_str).collect();
+            let is_of_gear = words.iter().any(|word| GEAR.contains(word) || SPREAD.contains(word));
+            for index in 0..words.len() {
+                let next = words.get(index + 1).copied().unwrap_or("");
+                if let (Ok(number), Some((unit, factor))) = (words[index].parse::<f64>(), unit_word(next))
+                    && (unit == FileUnit::Milliseconds || !is_of_gear)
+                    && (number * factor - interval).abs() < 1e-6 * interval
+                {
+                    contradicted |= found.interval.as_ref().is_some_and(|(other, _)| *other != unit);
+                    found.interval.get_or_insert((unit, line.clone()));
+                }
+            }
+            note(&mut found.time, time(&words), line);
+            note(&mut found.depth, depth(&words), line);
+        }
+        if contradicted {
+            found.interval = None;
+        }
+        found
+    }
+}
+
+fn note(best: &mut Option<Said>, weight: Option<Weight>, line: &str) {
+    if let Some(weight) = weight
+        && best.as_ref().is_none_or(|said| said.weight < weight)
+    {
+        *best = Some(Said { weight, quote: line.to_owned() });
+    }
+}
+
+/// The words of a line; a number and its unit are two, also where nothing is between them (`4MS`).
+fn words(line: &str) -> Vec<String> {
+    let mut words = Vec::new();
+    let pieces = line.split(|c: char| !c.is_ascii_alphanumeric() && c != '.').map(|word| word.trim_matches('.'));
+    for piece in pieces.filter(|piece| !piece.is_empty()) {
+        let digits = piece.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(piece.len());
+        let (number, unit) = piece.split_at(digits);
+        if !number.is_empty() && unit_word(unit).is_some() {
+            words.extend([number.to_owned(), unit.to_owned()]);
+        } else {
+            words.push(piece.to_owned());
+        }
+    }
+    words
+}
+
+/// The word at a place, counted from another one.
+fn beside<'a>(words: &[&'a str], index: usize, by: isize) -> &'a str {
+    index.checked_add_signed(by).and_then(|index| words.get(index)).copied().unwrap_or("")
+}
+
+/// Whether a line offers both to whoever fills it in (`Trace start time/depth`).
+fn offers_both(words: &[&str]) -> bool {
+    let is_beside = |by: isize| {
+        move |(index, word): (usize, &&str)| {
+            word.starts_with("TIME") && (beside(words, index, by) == "DEPTH" || beside(words, index, 2 * by) == "DEPTH")
+        }
+    };
+    words.iter().enumerate().any(is_beside(1)) || words.iter().enumerate().any(is_beside(-1))
+}
+
+/// Whether the word at a place is named as the axis by the words around it.
+fn is_axis(words: &[&str], index: usize) -> bool {
+    let [before, after] = [-1, 1].map(|by| beside(words, index, by));
+    AXIS.contains(&before)
+        || AXIS.contains(&after)
+        || INTO.contains(&before)
+        || before == "IS" && words.contains(&"AXIS")
+}
+
+/// What a line says for time.
+fn time(words: &[&str]) -> Option<Weight> {
+    let template = offers_both(words);
+    let weight = |(index, word): (usize, &&str)| {
+        let [before, after] = [-1, 1].map(|by| beside(words, index, by));
+        match *word {
+            "TIME" | "TWT" | "TWTT" if !template && is_axis(words, index) => Some(Weight::Axis),
+            "TWT" | "TWTT" | "PSTM" => Some(Weight::Method),
+            "TIME" if !template && (after.starts_with("MIGRAT") || before == "WAY") => Some(Weight::Method),
+            // A template that was not filled in has units without numbers.
+            word if unit_word(word).is_some_and(|(unit, _)| unit == FileUnit::Milliseconds)
+                && before.parse::<f64>().is_ok() =>
+            {
+                Some(Weight::Mention)
+            }
+            _ => None,
+        }
+    };
+    words.iter().enumerate().filter_map(weight).max()
+}
+
+/// What a line says for depth.
+fn depth(words: &[&str]) -> Option<Weight> {
+    let is_of_gear = words.iter().any(|word| GEAR.contains(word));
+    let template = offers_both(words);
+    let weight = |(index, word): (usize, &&str)| {
+        let after = beside(words, index, 1);
+        match *word {
+            "TVD" | "TVDSS" | "PSDM" => Some(Weight::Method),
+            "DEPTH" if template || after.starts_with("POINT") => None,
+            "DEPTH" if is_axis(words, index) => Some(Weight::Axis),
+            "DEPTH" if after.starts_with("MIGRAT") || after.starts_with("CONVER") || after == "STACK" => {
+                Some(Weight::Method)
+            }
+            "DEPTH" if !is_of_gear => Some(Weight::Mention),
+            _ => None,
+        }
+    };
+    words.iter().enumerate().filter_map(weight).max()
+}
+
+/// Whether a piece of a line is the name of a file: it has an ending, or is of many parts.
+fn is_file_name(piece: &str) -> bool {
+    let piece = piece.trim_matches(|c: char| !c.is_ascii_alphanumeric());
+    [".SGY", ".SEGY", ".SEG", ".VT", ".ZGY"].iter().any(|ending| piece.ends_with(ending))
+        || piece.matches('_').count() >= 2
+        || piece.contains(['/', '\\']) && piece.contains('.')
+}
+
+/// The unit that a word names, and what a number in it is multiplied by.
+fn unit_word(word: &str) -> Option<(FileUnit, f64)> {
+    Some(match word {
+        "MS" | "MSEC" | "MSECS" | "MILLISECOND" | "MILLISECONDS" => (FileUnit::Milliseconds, 1.0),
+        "US" | "USEC" | "MICROSECOND" | "MICROSECONDS" | "MICROSEC" => (FileUnit::Milliseconds, 1e-3),
+        "S" | "SEC" | "SECS" | "SECOND" | "SECONDS" => (FileUnit::Milliseconds, 1e3),
+        "M" | "METER" | "METERS" | "METRE" | "METRES" => (FileUnit::Metres, 1.0),
+        "FT" | "FEET" | "FOOT" => (FileUnit::Feet, 1.0),
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn weights(line: &str) -> [Option<Weight>; 2] {
+        let words = Words::find([line.to_owned()].iter(), 4.0);
+        [words.time, words.depth].map(|said| said.map(|said| said.weight))
+    }
+
+    #[test]
+    fn sentences_weigh_by_what_they_are_about() {
+        use Weight::{Axis, Mention, Method};
+        for (line, expected) in [
+            ("TIME MIN: 0 MAX: 4000", [Some(Axis), None]),
+            ("VERTICAL DOMAIN: TIME (MS)", [Some(Axis), None]),
+            ("Z-DOMAIN: DEPTH (M)", [None, Some(Axis)]),
+            ("VERTICAL AXIS IS DEPTH", [None, Some(Axis)]),
+            ("KIRCHHOFF PSDM, STRETCHED BACK TO TWT", [Some(Axis), Some(Method)]),
+            ("PRESTACK DEPTH MIGRATION", [None, Some(Method)]),
+            ("OUTPUT IN TIME", [Some(Axis), None]),
+            ("PRESTACK TIME MIGRATION", [Some(Method), None]),
+            ("AGC 500 MS", [Some(Mention), None]),
+            ("RECORD LENGTH 6 SECONDS", [Some(Mention), None]),
+            ("FINAL VOLUME, DEPTH", [None, Some(Mention)]),
+            // Of the acquisition, and of nothing at all.
+            ("CABLE: LENGTH 6000 M, DEPTH 7 M", [None, None]),
+            ("COMMON DEPTH POINT STACK", [None, None]),
+            ("TARGET DEPTH 2500 M", [None, None]),
+            ("TRACE START TIME/DEPTH", [None, None]),
+            ("SAMPLE INTERVAL (TIME OR DEPTH)", [None, None]),
+            ("DATE 2011-01-01 TIME 12:00:00", [None, None]),
+            ("/DATA/R2900_PSDM_FULL-T.SGY", [None, None]),
+        ] {
+            assert_eq!(weights(line), expected, "{line}");
+        }
+    }
+
+    #[test]
+    fn the_unit_beside_the_interval_is_found_however_it_is_written() {
+        for (line, unit) in [
+            ("SAMPLE INTERVAL 4 MS", FileUnit::Milliseconds),
+            ("SAMPLE INTERVAL: 4MS", FileUnit::Milliseconds),
+            ("SAMPLE RATE 4000 MICROSECONDS", FileUnit::Milliseconds),
+            ("SAMPLE RATE: 0.004 S", FileUnit::Milliseconds),
+            ("DEPTH STEP: 4.0m", FileUnit::Metres),
+            ("STEP 4 FEET", FileUnit::Feet),
+        ] {
+            let words = Words::find([line.to_owned()].iter(), 4.0);
+            assert_eq!(words.interval.map(|(unit, _)| unit), Some(unit), "{line}");
+        }
+        for line in ["SOURCE DEPTH 4 M", "BIN SIZE 4 M"] {
+            assert!(Words::find([line.to_owned()].iter(), 4.0).interval.is_none(), "{line}");
+        }
+        assert!(Words::find(["4 MS".to_owned(), "4 M".to_owned()].iter(), 4.0).interval.is_none());
+    }
+}
