@@ -68,7 +68,7 @@ override with_raw: u32 = 1u;
 override with_scalars: u32 = 1u;
 
 const NONE: u32 = 0xffffffffu;
-const MAP_ONLY_SIN_SQ: f32 = 0.0954915;
+const MAP_ONLY_SIN_SQ: f32 = 0.1654347;
 const NO_MAP_SIN_SQ: f32 = 0.25;
 const ACROSS_ONLY_SHARE: f32 = 0.35;
 const ALONG_ONLY_SHARE: f32 = 0.65;
