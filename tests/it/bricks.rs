@@ -35,12 +35,13 @@ fn left(at: &Path) -> Vec<String> {
 
 #[test]
 fn stated_memory_gives_the_bytes_of_one_piece_and_a_kill_costs_little() {
-    let folder = imported();
-    let at = folder.path();
+    let (once, again) = (imported(), tempfile::tempdir().unwrap());
+    crate::program::copy(once.path(), again.path());
+    let at = once.path();
     let whole = run_in(at, "extract p.petro --min-leaf-triangles 100 --memory 4G --json").done().json();
     let wanted = candidates(at);
     assert!(wanted.len() > 10 && whole["leaves"].as_u64().unwrap() > 20);
-    fs::remove_dir_all(at.join("p.petro/derived")).unwrap();
+    let at = again.path();
     // Killed later and later, it goes on where it was; at last it is done.
     let mut went_on = 0;
     for after_ms in [400, 900, 1500, 2500, 4000, 60_000, 120_000] {
@@ -87,8 +88,7 @@ fn memory_that_is_too_little_and_damaged_samples_are_sentences() {
     let at = folder.path();
     run_in(at, "extract p.petro --memory 25M").failed(&["too few", "state at least"]);
     run_in(at, "extract p.petro --memory 48M --method paper").failed(&["published method", "one piece"]);
-    let shard = at.join("p.petro/volumes/seismic-1.zarr/0/c/0/0/0");
-    let shard = if shard.exists() { shard } else { first_shard(&at.join("p.petro/volumes")) };
+    let shard = first_shard(&at.join("p.petro/volumes"));
     let mut content = fs::read(&shard).unwrap();
     content[100] ^= 1;
     fs::write(&shard, content).unwrap();

@@ -152,6 +152,12 @@ pub(super) fn create_volume<T: StoredSample + Sample>(
     })
 }
 
+/// Whether the chunks of the array `name` are stored as [`create_volume`] stores them.
+#[cfg(feature = "remote")]
+pub(super) fn is_plain(group: &Path, name: &str) -> bool {
+    plain_shards(group, name, &[0; 3]).is_some()
+}
+
 /// The division of the array `name` into shards, if its chunks are stored as [`create_volume`] stores them.
 fn plain_shards(group: &Path, name: &str, shape: &[usize]) -> Option<ShardGrid> {
     let metadata: Value = serde_json::from_slice(&std::fs::read(group.join(name).join("zarr.json")).ok()?).ok()?;

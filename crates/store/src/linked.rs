@@ -166,6 +166,13 @@ fn copy_small(group: &Path, url: &str, progress: &Progress) -> Result<(), StoreE
     let mut level = 0;
     loop {
         let metadata = document(&copy(&format!("{level}/zarr.json"))?, "zarr.json")?;
+        if !super::array::is_plain(group, &level.to_string()) {
+            let reason =
+                "its bricks are not stored as this program stores them (in shards, without compression); import \
+                          the volume instead"
+                    .to_owned();
+            return Err(StoreError::Remote { url: url.to_owned(), reason });
+        }
         copy(&format!("minmax/{level}/zarr.json"))?;
         copy(&format!("minmax/{level}/c/0/0/0/0"))?;
         level += 1;

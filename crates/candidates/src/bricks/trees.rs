@@ -95,7 +95,8 @@ impl Bricks<'_> {
         }
         let whole = members.len() == 1;
         if !whole {
-            corners.sort_unstable_by_key(|corner| corner.index);
+            // Those of each brick ascend, which a stable sort makes use of.
+            corners.sort_by_key(|corner| corner.index);
         }
         let mut finder = Finder { corners: &corners, near: [0; 2] };
         for corner in triangles.as_flattened_mut() {
@@ -103,10 +104,13 @@ impl Bricks<'_> {
         }
         if !whole {
             // All triangles of one cell are of one brick, in their order.
-            triangles.sort_by_cached_key(|triangle| {
+            let trace = |triangle: [u32; 3]| {
                 let [a, b, c] = triangle.map(|v| corners[v as usize]);
-                [a.x.min(b.x).min(c.x), a.y.min(b.y).min(c.y)]
-            });
+                u32::from(a.x.min(b.x).min(c.x)) << 16 | u32::from(a.y.min(b.y).min(c.y))
+            };
+            let mut placed: Vec<(u32, [u32; 3])> = triangles.into_iter().map(|own| (trace(own), own)).collect();
+            placed.sort_by_key(|(trace, _)| *trace);
+            triangles = placed.into_iter().map(|(_, own)| own).collect();
         }
         let vertices = corners.iter().map(|corner| Vertex { x: corner.x, y: corner.y, z: corner.z }).collect();
         Ok((vertices, triangles))
