@@ -125,11 +125,11 @@ fn random_figure(random: &mut Random, has_all: bool) -> Figure {
         BlockPart { scene, comparison: Comparison::None }.into()
     };
     let part = |random: &mut Random| match random.below(if has_all { 9 } else { 1 }) {
-        1 => section(random, SectionKind::Inline, [0.0, 30.0]),
-        2 => section(random, SectionKind::Crossline, [0.0, 24.0]),
+        1 => section(random, SectionKind::Inline, [1.0, 31.0]),
+        2 => section(random, SectionKind::Crossline, [1.0, 25.0]),
         3 => section(random, SectionKind::Slice, [0.0, 160.0]),
         4 | 5 => {
-            let corner = |random: &mut Random| [random.between(0.0, 30.0), random.between(0.0, 24.0)];
+            let corner = |random: &mut Random| [random.between(1.0, 31.0), random.between(1.0, 25.0)];
             let corners = (0..2 + random.below(3)).map(|_| corner(random)).collect();
             Part::Fence(FencePart { corners, show: FaceData::Rock, blend: Some(0.5 * random.below(3) as f32) })
         }
