@@ -53,14 +53,7 @@ impl State {
                 }
                 return picking.accept().into_iter().collect();
             }
-            PickingStep::GiveUp => {
-                if picking.stick.is_empty() && picking.pick.is_none() && picking.line.is_empty() {
-                    picking.tool = Tool::Pick;
-                }
-                picking.stick.clear();
-                picking.line.clear();
-                picking.pick = None;
-            }
+            PickingStep::GiveUp => picking.give_up(),
             PickingStep::Begin => return picking.turn_to(None, document),
             PickingStep::Choose(name) => return picking.turn_to(Some(name), document),
             PickingStep::Name(name) => picking.horizon = Some(name),
@@ -132,6 +125,16 @@ impl State {
 }
 
 impl Picking {
+    /// Forgets what was begun; if nothing was, the pointer picks again.
+    fn give_up(&mut self) {
+        if self.stick.is_empty() && self.pick.is_none() && self.line.is_empty() {
+            self.tool = Tool::Pick;
+        }
+        self.stick.clear();
+        self.line.clear();
+        self.pick = None;
+    }
+
     /// A click at a place in line numbers: selects the leaf there, accepts the previous selection first, or removes the
     /// leaf, as `how` says.
     fn click(&mut self, at: [f64; 3], how: How) -> Vec<Task> {

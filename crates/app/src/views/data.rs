@@ -194,7 +194,11 @@ impl Data {
                         actions.push(Action::Apply(Box::new(Command::RenameWell(command))));
                         // What is hidden stays so under its new name.
                         let mut scene = session.view.scene.clone();
-                        scene.hidden_wells.iter_mut().filter(|name| **name == entry.name).for_each(|name| name.clone_from(to));
+                        scene
+                            .hidden_wells
+                            .iter_mut()
+                            .filter(|name| **name == entry.name)
+                            .for_each(|name| name.clone_from(to));
                         actions.push(Action::Show(Box::new(scene)));
                     }
                     if renamed != Renamed::Typing {

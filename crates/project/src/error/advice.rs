@@ -38,9 +38,7 @@ impl ProjectError {
             }
             Self::Geometry(_) => "check the header bytes or bounds from which the geometry is made",
             Self::CircularTruncation { .. } => "remove one of these truncations",
-            Self::BadFigure { .. } => {
-                "correct it under [[figures]] in project.toml, then try again; nothing was written"
-            }
+            Self::BadFigure { .. } => "correct it under [[figures]] in project.toml; nothing was written",
             Self::NoFigures => {
                 "write them into project.toml: [[figures]], then file = \"block.pdf\", scene = \"corner\", legend = true"
             }
@@ -51,7 +49,6 @@ impl ProjectError {
             Self::OverBudget { .. } => {
                 "allow more (--size-limit, --triangles), or show less: fewer scenes (--scene), sections (--sections) or cut-outs"
             }
-
             Self::BadNote(_) => {
                 "list the notes and their numbers with `petroglyph note list`, and the survey's lines with `petroglyph info`"
             }
