@@ -26,7 +26,9 @@ impl SparseHorizon {
     /// What there is to know before a picture is believed.
     pub fn sentence(&self) -> String {
         let percent = (100.0 * self.share).round();
-        format!("horizon {} was picked on {percent:.0} % of its traces; the rest is filled or extrapolated", self.name)
+        // "Horizon 1" is its name already.
+        let noun = if self.name.to_lowercase().starts_with("horizon") { "" } else { "horizon " };
+        format!("{noun}{} was picked on {percent:.0} % of its traces; the rest is filled or extrapolated", self.name)
     }
 }
 

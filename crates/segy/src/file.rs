@@ -212,13 +212,7 @@ fn understand(path: &Path, bytes: Bytes, options: &SegyOptions, progress: &Progr
     check_bytes(options, frame.header_bytes)?;
     let traces = frame.traces(&bytes);
     let named = NamedBytes::find(frame.text.iter().chain(&frame.extended_text));
-    let mut wanted = fields(options, HeaderLayout { bytes: frame.header_bytes, named });
-    wanted.push(Field::I32(at::TRACE_IN_RECORD));
-    wanted.push(Field::I32(at::OFFSET));
-    wanted.push(Field::U16(at::INTERVAL));
-    let short =
-        [at::TRACE_ID, at::COORDINATE_SCALAR, at::COORDINATE_UNIT, at::LAG_A, at::DELAY, at::WEIGHT, at::TIME_SCALAR];
-    wanted.extend(short.map(Field::I16));
+    let wanted = wanted_fields(options, HeaderLayout { bytes: frame.header_bytes, named });
     let columns = Columns::read(&traces, &wanted, None, named, progress)?;
     let count = traces.count;
 
@@ -307,6 +301,16 @@ fn understand(path: &Path, bytes: Bytes, options: &SegyOptions, progress: &Progr
         weights,
         factor_2,
     })
+}
+
+/// Fields that are read of every file.
+fn wanted_fields(options: &SegyOptions, layout: HeaderLayout) -> Vec<Field> {
+    let mut wanted = fields(options, layout);
+    wanted.extend([Field::I32(at::TRACE_IN_RECORD), Field::I32(at::OFFSET), Field::U16(at::INTERVAL)]);
+    let short =
+        [at::TRACE_ID, at::COORDINATE_SCALAR, at::COORDINATE_UNIT, at::LAG_A, at::DELAY, at::WEIGHT, at::TIME_SCALAR];
+    wanted.extend(short.map(Field::I16));
+    wanted
 }
 
 /// Whether the stated bytes lie in a trace header of that length.

@@ -33,6 +33,9 @@ fn from_left() -> Layout {
 /// Width of the buttons beside the path of a new project, points.
 const BUTTONS: f32 = 190.0;
 
+/// Room between the form and its scroll bar, points.
+const BESIDE_BAR: f32 = 12.0;
+
 /// Width of the labels in front of the fields, points: one column for all of them.
 const LABELS: f32 = 118.0;
 
@@ -82,7 +85,10 @@ impl Import {
                     .auto_shrink([true, false])
                     .max_height(height)
                     .min_scrolled_height(height)
-                    .show(left, |ui| ui.with_layout(from_left(), |ui| self.form(ui)));
+                    .show(left, |ui| {
+                        ui.set_max_width(ui.available_width() - BESIDE_BAR);
+                        ui.with_layout(from_left(), |ui| self.form(ui))
+                    });
                 ScrollArea::vertical()
                     .id_salt("evidence")
                     .auto_shrink([true, false])

@@ -23,6 +23,9 @@ use widgets::keyboard::is_entered;
 use widgets::obstacle::{needs, unless};
 use widgets::theme;
 
+/// Width of the labels in front of the fields, points: one column for all of them.
+const LABELS: f32 = 134.0;
+
 /// Room of the preview beside the form, points.
 const ROOM: Vec2 = vec2(470.0, 352.0);
 /// Degrees that the block turns for each point the hand moves.
@@ -141,7 +144,11 @@ impl ShareView {
                 ui.selectable_value(&mut next.kind, kind, name).on_hover_text(hint);
             }
         });
-        Grid::new("share").num_columns(2).spacing([14.0, 8.0]).show(ui, |ui| rows(ui, session, &mut next));
+        Grid::new("share")
+            .num_columns(2)
+            .min_col_width(LABELS)
+            .spacing([14.0, 8.0])
+            .show(ui, |ui| rows(ui, session, &mut next));
         ui.separator();
         match next.kind {
             ShareKind::Page => self.notes(ui, session, actions),
@@ -232,7 +239,7 @@ impl ShareView {
         }
         let place = self.note.at.unwrap_or_else(|| place_of(geometry, session.view.slices.into()));
         let mut at = place;
-        Grid::new("note").num_columns(2).spacing([14.0, 8.0]).show(ui, |ui| {
+        Grid::new("note").num_columns(2).min_col_width(LABELS).spacing([14.0, 8.0]).show(ui, |ui| {
             let label = ui.label("New note");
             let text = TextEdit::singleline(&mut self.note.text).char_limit(500).desired_width(300.0);
             ui.add(text).labelled_by(label.id);

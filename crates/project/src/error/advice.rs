@@ -38,9 +38,7 @@ impl ProjectError {
             }
             Self::Geometry(_) => "check the header bytes or bounds from which the geometry is made",
             Self::CircularTruncation { .. } => "remove one of these truncations",
-            Self::BadFigure { .. } => {
-                "correct it under [[figures]] in project.toml, then try again; nothing was written"
-            }
+            Self::BadFigure { .. } => "correct it under [[figures]] in project.toml; nothing was written",
             Self::NoFigures => {
                 "write them into project.toml: [[figures]], then file = \"block.pdf\", scene = \"corner\", legend = true"
             }

@@ -2,7 +2,7 @@
 
 use crate::block::Block;
 use crate::compare::compare;
-use crate::media::medium;
+use crate::media::{medium, part};
 use render::media::{Colouring, LayerOpacity, MediumColour, Paint, white_ramp};
 use render::{
     Background, Camera, CandidateVolume, DrawnWell, FaceData, Faces, Ground, Interleaved, Isosurface, IsosurfaceSource,
@@ -12,8 +12,8 @@ use render::{
 use survey::Progress;
 use synth::{SynthSettings, Synthetic};
 use ttf::{
-    Colour, ColourMap, DepthInterval, LayerStyle, LayerTtf, RawColour, RgbaFunction, RgbaStop, TextureLibrary,
-    TransferFunctions, symmetric_clip,
+    Colour, ColourMap, LayerStyle, LayerTtf, RawColour, RgbaFunction, RgbaStop, TextureLibrary, TransferFunctions,
+    symmetric_clip,
 };
 
 /// Distances to some horizons of the synthetic survey, as an extraction would give them.
@@ -239,14 +239,7 @@ fn gpu_and_cpu_render_media_alike() {
         let mut style = LayerStyle::plain(name, colours[n % 3]);
         style.opacity = [0.0, 1.0, 0.6][n % 3];
         if n % 3 == 1 {
-            let part = |k: [f32; 2], colour: Colour| DepthInterval {
-                k,
-                texture: "limestone".into(),
-                opacity: 1.0,
-                frequency: None,
-                colour: Some(colour),
-            };
-            style.intervals = vec![part([0.0, 0.4], Colour::new(30, 60, 160)), part([0.4, 1.0], colours[1])];
+            style.intervals = vec![part([0.0, 0.4], Colour::new(30, 60, 160), 1.0), part([0.4, 1.0], colours[1], 1.0)];
         }
         style
     });

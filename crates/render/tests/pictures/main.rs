@@ -6,6 +6,7 @@ mod compare;
 mod gpu;
 mod gpu_media;
 mod gpu_shapes;
+mod ground;
 mod kept;
 mod media;
 mod scene;

@@ -22,6 +22,11 @@ pub fn constant(colour: Colour, opacity: f32) -> RgbaFunction {
     RgbaFunction { domain: [0.0, 1.0], stops: vec![stop(0.0), stop(1.0)] }
 }
 
+/// A part of a layer by depth.
+pub fn part(k: [f32; 2], colour: Colour, opacity: f32) -> DepthInterval {
+    DepthInterval { k, texture: "limestone".into(), opacity, frequency: None, colour: Some(colour) }
+}
+
 pub fn medium(volume: &str, function: RgbaFunction) -> Medium {
     Medium { volume: volume.to_owned(), function, layers: LayerOpacity::Ignored, colour: MediumColour::Function }
 }
@@ -206,17 +211,10 @@ fn parts_of_a_layer_by_depth_have_their_own_colours_in_a_medium() {
     let closed = ClosedForm::flat(&geometry, &[10.0, 27.0]);
     let names = closed.stratigraphy.layer_names_bottom_up();
     let (red, green) = (Colour::new(200, 0, 0), Colour::new(0, 150, 0));
-    let part = |k: [f32; 2], colour: Colour| DepthInterval {
-        k,
-        texture: "limestone".into(),
-        opacity: 0.0,
-        frequency: None,
-        colour: Some(colour),
-    };
     let styles = names.iter().enumerate().map(|(n, name)| {
         let mut style = LayerStyle::plain(name, Colour::new(10, 20, 30));
         if n == 1 {
-            style.intervals = vec![part([0.0, 0.5], red), part([0.5, 1.0], green)];
+            style.intervals = vec![part([0.0, 0.5], red, 0.0), part([0.5, 1.0], green, 0.0)];
         }
         style
     });
@@ -233,15 +231,15 @@ fn parts_of_a_layer_by_depth_have_their_own_colours_in_a_medium() {
     let mut seen = [0; 3];
     for y in 0..160 {
         let z = 40.0 * (f64::from(y) + 0.5 - top) / (bottom - top);
-        let expected = match z {
-            10.1..18.3 => green.rgb,
-            18.7..26.9 => red.rgb,
-            0.1..9.9 | 27.1..39.9 => [10, 20, 30],
+        let (n, expected) = match z {
+            10.1..18.3 => (0, green.rgb),
+            18.7..26.9 => (1, red.rgb),
+            0.1..9.9 | 27.1..39.9 => (2, [10, 20, 30]),
             _ => continue,
         };
         let found = image.get_pixel(80, y).0;
         assert!((0..3).all(|c| found[c].abs_diff(expected[c]) <= 1), "row {y}, z {z}: {found:?}, {expected:?}");
-        seen[usize::from(expected == red.rgb) + 2 * usize::from(expected == green.rgb)] += 1;
+        seen[n] += 1;
     }
     assert!(seen.iter().all(|rows| *rows > 20), "{seen:?}");
 }

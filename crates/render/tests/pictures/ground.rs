@@ -1,0 +1,67 @@
+//! The march to the ground beside short steps that evaluate the model itself.
+
+use glam::Vec3;
+use model::{ModelSettings, StructuralModel};
+use render::ground::{Relief, is_air};
+use render::visible::Ray;
+use render::{Ground, Scene, VoxelBox};
+use survey::horizon::Horizon;
+use survey::stratigraphy::{Contact, StratigraphicHorizon};
+use survey::{Progress, SurveyGeometry, VerticalUnit};
+use synth::closed_form::ClosedForm;
+use synth::shapes::Diapir;
+use synth::{SynthSettings, Synthetic};
+
+#[test]
+fn it_agrees_with_walking() {
+    let quiet = Progress::silent();
+    let settings = SynthSettings { size: [40, 36, 48], ..SynthSettings::default() };
+    let s = Synthetic::generate(&settings, &quiet).unwrap();
+    let settings = ModelSettings::default();
+    let model =
+        StructuralModel::build(&s.geometry, &s.stratigraphy, &s.horizons, &s.faults, &settings, &quiet).unwrap();
+    agrees_with_walking(&s.geometry, &model);
+}
+
+/// A salt dome that stands out of flat ground and overhangs it.
+#[test]
+fn it_agrees_with_walking_around_an_overhang() {
+    let geometry = SurveyGeometry::regular([41, 33, 41], 25.0, 20.0, VerticalUnit::Metres);
+    let mut flat = ClosedForm::flat(&geometry, &[22.0, 30.0]);
+    flat.horizons.push(Horizon::of_surface("salt", Diapir::fitting(&geometry).mesh(&geometry, 48)));
+    flat.stratigraphy.horizons.push(StratigraphicHorizon { name: "salt".into(), contact: Contact::Intrusive });
+    let (settings, quiet) = (ModelSettings::default(), Progress::silent());
+    let model = StructuralModel::build(&geometry, &flat.stratigraphy, &flat.horizons, &[], &settings, &quiet);
+    agrees_with_walking(&geometry, &model.unwrap());
+}
+
+/// Compares the march with short steps along rays that evaluate the model itself, and layers with the rock that is met.
+fn agrees_with_walking(geometry: &SurveyGeometry, model: &StructuralModel) {
+    let relief = Relief::new(&Ground::default(), &Scene::default(), geometry, model);
+    let whole = VoxelBox::of_size(geometry.size());
+    let mut other = 0;
+    let (mut hits, mut far) = (0, 0);
+    for n in 0..1600 {
+        let turn = n as f32 * 0.7;
+        let direction = Vec3::new(turn.cos(), turn.sin(), 0.15 + 0.9 * (n % 7) as f32 / 7.0).normalize();
+        let through = whole.low().as_vec3().lerp(whole.high().as_vec3(), (n % 23) as f32 / 23.0);
+        let from = Vec3::new(through.x, through.y, 0.0);
+        let ray = Ray { origin: from, direction };
+        if is_air(model, from) {
+            let inside = |t: f32| whole.high().as_vec3().cmpge(ray.at(t)).all() && ray.at(t).cmpge(Vec3::ZERO).all();
+            let end = (0..).map(|s| s as f32 * 0.01).find(|t| !inside(*t)).unwrap();
+            let walked = (0..(end * 50.0) as usize).map(|s| s as f32 * 0.02).find(|t| !is_air(model, ray.at(*t)));
+            let hit = relief.march(model, &ray, 0.0, end);
+            let found = hit.map(|hit| hit.t);
+            hits += usize::from(walked.is_some());
+            // A ray may miss rock that is thinner than the shortest step.
+            far += usize::from((walked.unwrap_or(end) - found.unwrap_or(end)).abs() > 0.1);
+            if let (Some(hit), Some(t)) = (hit, walked) {
+                other += usize::from(model.region_at(ray.at(t + 0.04)).layer != hit.region.layer);
+            }
+        }
+    }
+    assert!(hits > 100, "{hits}");
+    assert!(far * 100 <= hits, "{far} of {hits}");
+    assert!(other * 100 <= 2 * hits, "{other} of {hits} have another layer");
+}
