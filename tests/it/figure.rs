@@ -282,7 +282,9 @@ fn a_figure_is_written_as_paths_and_text() {
     // Of the rock they are paths, a group for each layer.
     run_in(at, "render p.petro rock.svg --inline 120 --section-blend 0 --size-cm 12x8 --annotate all").done();
     let rock = fs::read_to_string(at.join("rock.svg")).unwrap();
-    assert!(!rock.contains("<image") && rock.contains("inkscape:label=\"above Alpha\"") && rock.contains(">Contact</text>"));
+    assert!(
+        !rock.contains("<image") && rock.contains("inkscape:label=\"above Alpha\"") && rock.contains(">Contact</text>")
+    );
     // Words of the page are found in it.
     run_in(at, "render p.petro words.svg --size-cm 12x9 --north-arrow --title Basin --caption folded").done();
     let words = fs::read_to_string(at.join("words.svg")).unwrap();

@@ -101,7 +101,9 @@ impl Figure {
     /// Whether a section or fence shows rock, if only in part.
     pub fn has_rock_sections(&self) -> bool {
         self.parts.iter().any(|part| match part {
-            Part::Section(SectionPart { blend, .. }) | Part::Fence(FencePart { blend, .. }) => blend.is_some_and(|b| b < 1.0),
+            Part::Section(SectionPart { blend, .. }) | Part::Fence(FencePart { blend, .. }) => {
+                blend.is_some_and(|b| b < 1.0)
+            }
             _ => false,
         })
     }

@@ -5,8 +5,8 @@ use figure::draw::NamedColour;
 use figure::draw::block::Comparison;
 use figure::list::{DisplayList, Text};
 use figure::{
-    Annotation, BlockPart, CorrelationPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part, Rect,
-    SectionKind, SectionPart, make,
+    Annotation, BlockPart, CorrelationPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part,
+    Rect, SectionKind, SectionPart, make,
 };
 use glam::DVec2;
 use image::RgbaImage;
@@ -28,7 +28,8 @@ fn model(throw: f64) -> StructuralModel {
     let geometry = geometry();
     let closed = ClosedForm::flat(&geometry, &[10.0, 26.0]).with_fault(60.0, throw);
     let (settings, quiet) = (ModelSettings::default(), Progress::silent());
-    StructuralModel::build(&geometry, &closed.stratigraphy, &closed.horizons, &closed.faults, &settings, &quiet).unwrap()
+    StructuralModel::build(&geometry, &closed.stratigraphy, &closed.horizons, &closed.faults, &settings, &quiet)
+        .unwrap()
 }
 
 /// A vertical well with two tops.

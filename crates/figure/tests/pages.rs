@@ -6,8 +6,8 @@ use figure::draw::block::Comparison;
 use figure::draw::moved::{LabelChange, changed, movable};
 use figure::list::{DisplayList, Text};
 use figure::{
-    BlockPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part, Rect, SectionKind,
-    SectionPart, make, raster,
+    BlockPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part, Rect, SectionKind, SectionPart,
+    make, raster,
 };
 use glam::DVec2;
 use image::{Rgba, RgbaImage};
@@ -71,7 +71,14 @@ fn made_of(
 }
 
 fn section(kind: SectionKind, at: f64) -> Part {
-    Part::Section(SectionPart { kind, at, show: FaceData::Rock, blend: None, zoom: Default::default(), proportions: None })
+    Part::Section(SectionPart {
+        kind,
+        at,
+        show: FaceData::Rock,
+        blend: None,
+        zoom: Default::default(),
+        proportions: None,
+    })
 }
 
 fn figure(parts: Vec<Part>) -> Figure {
@@ -82,7 +89,11 @@ fn parts() -> Vec<Part> {
     vec![
         section(SectionKind::Inline, 12.0),
         section(SectionKind::Slice, 80.0),
-        Part::Fence(FencePart { corners: vec![[2.0, 3.0], [20.0, 9.0], [30.0, 24.0]], show: FaceData::Rock, blend: None }),
+        Part::Fence(FencePart {
+            corners: vec![[2.0, 3.0], [20.0, 9.0], [30.0, 24.0]],
+            show: FaceData::Rock,
+            blend: None,
+        }),
         Part::Map(MapPart { horizon: "Top".into(), thickness_to: Some("Base".into()) }),
     ]
 }

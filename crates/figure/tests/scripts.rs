@@ -74,7 +74,9 @@ fn joined_letters_stay_on_one_line_and_what_is_not_joined_follows_the_curve() {
         page.items.push(bent().into());
         svg(&page, "t").unwrap()
     });
-    assert!(drawn.contains("aria-label=\"حجر جيري\"") && drawn.matches("<text").count() == 3 && drawn.contains(">حجر<"));
+    assert!(
+        drawn.contains("aria-label=\"حجر جيري\"") && drawn.matches("<text").count() == 3 && drawn.contains(">حجر<")
+    );
 }
 
 #[test]

@@ -90,9 +90,10 @@ mod tests {
         let at = |horizons: &[usize]| horizons.iter().fold(Below::default(), |below, h| below.with(*h, true));
         let places = [at(&[3, 64, 200]), at(&[3, 64]), at(&[3, 70, 200])];
         let first = |from| Below::first_between(places.each_ref(), from);
-        assert_eq!([0, 64, 65, 70, 71, 200, 201].map(first), [
-            Some(64), Some(64), Some(70), Some(70), Some(200), Some(200), None
-        ]);
+        assert_eq!(
+            [0, 64, 65, 70, 71, 200, 201].map(first),
+            [Some(64), Some(64), Some(70), Some(70), Some(200), Some(200), None]
+        );
         let mut taken = places[0];
         taken.take_from(65, &places[2]);
         assert_eq!(taken, at(&[3, 64, 70, 200]));

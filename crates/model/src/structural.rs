@@ -85,7 +85,8 @@ fn span(sheet: &ExtendedSheet) -> [f32; 2] {
     let low = z.iter().copied().fold(f32::INFINITY, f32::min);
     let high = z.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     // A little more than it can be, for rounding.
-    let (middle, reach) = (0.5 * (low + high), 0.5 * MOST_WEIGHT * (high - low) + 1e-3 * (1.0 + high.abs().max(low.abs())));
+    let (middle, reach) =
+        (0.5 * (low + high), 0.5 * MOST_WEIGHT * (high - low) + 1e-3 * (1.0 + high.abs().max(low.abs())));
     [middle - reach, middle + reach]
 }
 

@@ -376,7 +376,8 @@ fn a_thousand_horizons_are_told_apart() {
         let stratigraphy = Stratigraphy { horizons: (0..count).map(horizon).collect(), layer_names: Vec::new() };
         let depth = |n: usize, x: usize| 10.0 * (5.0 + 0.05 * n as f32 + 0.2 * x as f32);
         let sheet = |n: usize| Sheet::new(grid, (0..36).map(|node| depth(n, node / 6)).collect(), Quality::Picked);
-        let horizons: Vec<Horizon> = (0..count).map(|n| Horizon::new(format!("H{n}").as_str(), vec![sheet(n)])).collect();
+        let horizons: Vec<Horizon> =
+            (0..count).map(|n| Horizon::new(format!("H{n}").as_str(), vec![sheet(n)])).collect();
         let settings = ModelSettings::default();
         StructuralModel::build(&geometry, &stratigraphy, &horizons, &[], &settings, &Progress::silent())
     };
@@ -394,6 +395,8 @@ fn a_thousand_horizons_are_told_apart() {
         0.5 * twice.abs()
     };
     let between = section.layers.iter().filter(|layer| (1..1000).contains(&layer.layer));
-    assert!(between.clone().count() == 999 && between.into_iter().all(|layer| (area(&layer.rings) - 0.25).abs() < 1e-3));
+    assert!(
+        between.clone().count() == 999 && between.into_iter().all(|layer| (area(&layer.rings) - 0.25).abs() < 1e-3)
+    );
     assert!(matches!(built(1025), Err(ModelError::TooMany { found: 1025, limit: 1024, .. })));
 }

@@ -10,8 +10,7 @@ use crate::correlation::{Column, LogCurve, Marker, place_of_layer, place_of_surf
 use crate::error::FigureError;
 use crate::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright};
 use crate::style::{
-    FRAME_PT, HORIZON_PT, INK, NUMBER_PT, QUIET_INK, RIM_OPACITY, RULE_INK, TEXT_PT, TITLE_PT,
-    horizon_colour,
+    FRAME_PT, HORIZON_PT, INK, NUMBER_PT, QUIET_INK, RIM_OPACITY, RULE_INK, TEXT_PT, TITLE_PT, horizon_colour,
 };
 use glam::DVec2;
 use ttf::{Colour, LayerStyle, TextureLibrary};

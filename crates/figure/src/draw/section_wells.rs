@@ -123,7 +123,9 @@ impl WellOnSection {
                 text.haloed(RIM_PT, rim).anchored(across, Upright::Middle)
             };
             let is_left = at.x > body.centre().x;
-            group.items.extend([side(is_left), side(!is_left)].into_iter().find(|text| room.try_take(text)).map(Item::from));
+            group
+                .items
+                .extend([side(is_left), side(!is_left)].into_iter().find(|text| room.try_take(text)).map(Item::from));
         }
         let name = Text::new(head, &self.name).sized(TEXT_PT).inked(INK).haloed(RIM_PT, rim);
         let half = 0.5 * name.width() + RIM_PT;

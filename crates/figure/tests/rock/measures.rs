@@ -106,9 +106,8 @@ fn patterns(svg: &str) -> Vec<Pattern> {
 /// How far a place lies beyond an outline, points; 0 within, by the even-odd rule.
 fn beyond(rings: &[Vec<DVec2>], p: DVec2) -> f64 {
     let sides = || rings.iter().flat_map(|ring| (0..ring.len()).map(|n| (ring[n], ring[(n + 1) % ring.len()])));
-    let crossed = sides().filter(|(a, b)| {
-        (a.y <= p.y) != (b.y <= p.y) && a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) > p.x
-    });
+    let crossed =
+        sides().filter(|(a, b)| (a.y <= p.y) != (b.y <= p.y) && a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) > p.x);
     if crossed.count() % 2 == 1 {
         return 0.0;
     }

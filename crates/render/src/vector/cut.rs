@@ -58,9 +58,9 @@ impl<'a> Outline<'a> {
     /// Whether a place lies within.
     fn holds(&self, p: DVec2) -> bool {
         let Some(row) = self.rows_between(p.y, p.y).next() else { return false };
-        let crossed = self.rows[row].iter().filter(|[a, b]| {
-            (a.y <= p.y) != (b.y <= p.y) && a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) > p.x
-        });
+        let crossed = self.rows[row]
+            .iter()
+            .filter(|[a, b]| (a.y <= p.y) != (b.y <= p.y) && a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) > p.x);
         crossed.count() % 2 == 1
     }
 
@@ -141,8 +141,7 @@ impl<'a> Outline<'a> {
         if !sides.into_iter().any(|(a, b)| !self.crossings(a, b).is_empty()) {
             // It may lie around a piece of the outline.
             let (low, high) = bounds(points);
-            let is_around =
-                || self.rings.iter().flatten().any(|p| p.cmpgt(low).all() && p.cmplt(high).all());
+            let is_around = || self.rings.iter().flatten().any(|p| p.cmpgt(low).all() && p.cmplt(high).all());
             return if self.holds(first) || is_around() { vec![area] } else { Vec::new() };
         }
         if points.len() > MOST_CORNERS {
@@ -255,16 +254,22 @@ mod tests {
         let outline = Outline::new(&rings);
         let cut = |line: Polyline| {
             let parts = outline.cut_line(line);
-            parts.iter().map(|part| [part.points[0].to_array(), part.points[part.points.len() - 1].to_array()]).collect::<Vec<_>>()
+            parts
+                .iter()
+                .map(|part| [part.points[0].to_array(), part.points[part.points.len() - 1].to_array()])
+                .collect::<Vec<_>>()
         };
-        assert_eq!(cut(line(&[[-10.0, 45.0], [100.0, 45.0]])), [
-            [[0.0, 45.0], [30.0, 45.0]],
-            [[60.0, 45.0], [90.0, 45.0]]
-        ]);
+        assert_eq!(
+            cut(line(&[[-10.0, 45.0], [100.0, 45.0]])),
+            [[[0.0, 45.0], [30.0, 45.0]], [[60.0, 45.0], [90.0, 45.0]]]
+        );
         assert_eq!(cut(line(&[[5.0, 5.0], [20.0, 9.0]])), [[[5.0, 5.0], [20.0, 9.0]]]);
-        assert!(cut(line(&[[35.0, 35.0], [50.0, 50.0]])).is_empty() && cut(line(&[[95.0, 1.0], [99.0, 80.0]])).is_empty());
+        assert!(
+            cut(line(&[[35.0, 35.0], [50.0, 50.0]])).is_empty() && cut(line(&[[95.0, 1.0], [99.0, 80.0]])).is_empty()
+        );
         // A closed line that leaves and comes back is one open line that goes on over its beginning.
-        let square = Polyline { points: ring(&[[80.0, 10.0], [80.0, 20.0], [100.0, 20.0], [100.0, 10.0]]), closed: true };
+        let square =
+            Polyline { points: ring(&[[80.0, 10.0], [80.0, 20.0], [100.0, 20.0], [100.0, 10.0]]), closed: true };
         let parts = outline.cut_line(square);
         assert_eq!(parts.len(), 1);
         assert_eq!(parts[0].points, ring(&[[90.0, 10.0], [80.0, 10.0], [80.0, 20.0], [90.0, 20.0]]));

@@ -83,13 +83,7 @@ impl FaceWriter<'_> {
         written
     }
 
-    fn faults(
-        &self,
-        faces: &[SeenSection],
-        room: &mut LabelRoom,
-        written: &mut Vec<Item>,
-        beside: &mut Vec<Beside>,
-    ) {
+    fn faults(&self, faces: &[SeenSection], room: &mut LabelRoom, written: &mut Vec<Item>, beside: &mut Vec<Beside>) {
         let runs = faults::runs(self.model, faces, self.page_from_voxel, self.page, self.air);
         let lines: Vec<Vec<DVec2>> = runs.iter().map(faults::FaultRun::line).collect();
         let mut named = Vec::new();
@@ -116,13 +110,7 @@ impl FaceWriter<'_> {
         }
     }
 
-    fn layers(
-        &self,
-        faces: &[SeenSection],
-        room: &mut LabelRoom,
-        written: &mut Vec<Item>,
-        beside: &mut Vec<Beside>,
-    ) {
+    fn layers(&self, faces: &[SeenSection], room: &mut LabelRoom, written: &mut Vec<Item>, beside: &mut Vec<Beside>) {
         let pieces = names::pieces(faces, self.page_from_voxel, self.page, self.air);
         for layer in (0..self.model.layer_count() as u16).rev() {
             let name = self.names.layer(layer);

@@ -102,9 +102,10 @@ mod tests {
         let line = |to: f64| [DVec2::new(20.0, 50.0), DVec2::new(0.5 * (20.0 + to), 50.0), DVec2::new(to, 50.0)];
         assert!(marks(&line(40.0), &mut room).is_empty());
         let found = marks(&line(350.0), &mut room);
-        assert_eq!(found.iter().map(|text| text.at).collect::<Vec<_>>(), [75.0, 185.0, 295.0].map(|x| {
-            DVec2::new(x, 50.0)
-        }));
+        assert_eq!(
+            found.iter().map(|text| text.at).collect::<Vec<_>>(),
+            [75.0, 185.0, 295.0].map(|x| { DVec2::new(x, 50.0) })
+        );
         // Where something stands already, beside it.
         let again = marks(&line(350.0), &mut room);
         assert!(again.len() == 3 && again.iter().all(|text| text.at.x.rem_euclid(110.0) != 75.0));
