@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Draws README's first picture, and the same in black and white, from the project of `petroglyph demo` (`make demo`),
-# and the blocks with salt and with an overturned limb from synthetic surveys that it makes in a temporary folder:
+# Draws README's first picture, a section of the same rock, and the block in black and white, from the project of
+# `petroglyph demo` (`make demo`), and the blocks with salt and with an overturned limb from synthetic surveys that it makes in a temporary folder:
 #   docs/readme.sh out/demo/demo.petro [FOLDER]
 set -euo pipefail
 project=$1
@@ -11,7 +11,9 @@ petroglyph=${PETROGLYPH:-target/debug/petroglyph}
     --title "A folded and faulted basin below an unconformity" \
     --caption "Block diagram with a corner cut away. The sandstone and marl above the unconformity lie on an eroded \
 fold of sandstone, limestone and shale. Half-arrows show which side of each fault went down, and numbers its throw \
-on the face on which they stand."
+on the face on which they stand; where a contact is dotted and queried it was continued beyond the data."
+"$petroglyph" render "$project" "$folder/section-rock.png" --crossline 560 --section-blend 0 --annotate all \
+    --size-cm 17x9 --dpi 150 --credit "synthetic survey"
 
 "$petroglyph" render "$project" "$folder/cut-fence.png" --size 1080x720 --samples 4 --azimuth 335 --zoom 1.05 \
     --cut-fence 101,545 150,585 205,560 260,600 --cut-smooth

@@ -23,6 +23,7 @@ use crate::visible::Ray;
 use glam::{DVec3, Mat3, Vec2, Vec3};
 use model::{Below, Region, StructuralModel};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use survey::SurveyGeometry;
 
 /// Shortest step near the ground, voxels. Ridges thinner than this can be missed.
@@ -360,15 +361,16 @@ struct HeightRow {
     ranges: Vec<[f32; 2]>,
     /// Steepest slope per node.
     slopes: Vec<f32>,
-    /// Bit h is set if horizon h forms the ground or nearly does.
-    horizons: u64,
+    /// The horizons that form the ground or nearly do.
+    horizons: BTreeSet<usize>,
 }
 
 impl HeightRow {
     /// Evaluates the nodes at `x`. Only the part of a sheet that lies in its own block counts; sheets that
     /// are extended beyond it may be steep.
     fn of(model: &StructuralModel, x: f32, ys: &[f32]) -> Self {
-        let mut row = Self { ranges: vec![[f32::MAX, f32::MIN]; ys.len()], slopes: vec![0.0; ys.len()], horizons: 0 };
+        let ranges = vec![[f32::MAX, f32::MIN]; ys.len()];
+        let mut row = Self { ranges, slopes: vec![0.0; ys.len()], horizons: BTreeSet::new() };
         for block in 0..model.block_count() as u16 {
             for ((&y, range), steepest) in ys.iter().zip(&mut row.ranges).zip(&mut row.slopes) {
                 let ground = |x: f32, y: f32| model.horizon_z(0, block, x, y);
@@ -380,14 +382,14 @@ impl HeightRow {
                 // A body may stand out of the ground.
                 for h in (0..model.stratigraphy().horizons.len()).filter(|&h| model.is_body(h)) {
                     let top = model.sheet(h, block).z_at(x, y);
-                    row.horizons |= u64::from(top <= z + HEIGHT_MARGIN) << h;
+                    row.horizons.extend((top <= z + HEIGHT_MARGIN).then_some(h));
                     range[0] = range[0].min(top);
                 }
                 let slope = (ground(x + 1.0, y) - z).hypot(ground(x, y + 1.0) - z);
                 *steepest = steepest.max(slope);
                 for h in 0..model.stratigraphy().horizons.len() {
                     let near = HEIGHT_MARGIN + STRIDE as f32 * slope;
-                    row.horizons |= u64::from((model.sheet(h, block).z_at(x, y) - z).abs() <= near) << h;
+                    row.horizons.extend(((model.sheet(h, block).z_at(x, y) - z).abs() <= near).then_some(h));
                 }
             }
         }
@@ -428,9 +430,8 @@ impl Heights {
         let [factor, more] = STEEPER;
         let slope = |n: usize| beside(n).map(|cell| own_slopes[cell]).fold(0.0, f32::max);
         let slopes = (0..own.len()).map(|n| (slope(n) * factor + more).min(STEEPEST)).collect();
-        let mask = rows.iter().fold(0, |mask, row| mask | row.horizons);
-        let mut horizons: Vec<usize> =
-            (0..model.stratigraphy().horizons.len()).filter(|h| mask >> h & 1 == 1).collect();
+        let found: BTreeSet<usize> = rows.iter().flat_map(|row| row.horizons.iter().copied()).collect();
+        let mut horizons: Vec<usize> = found.into_iter().collect();
         if horizons.is_empty() && !model.stratigraphy().horizons.is_empty() {
             horizons.push(0);
         }

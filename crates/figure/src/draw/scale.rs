@@ -98,48 +98,5 @@ pub fn block_caption(scene: &Scene, geometry: &SurveyGeometry) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bars_have_round_lengths() {
-        for (longest, said) in [(1.0, 1.0), (1.99, 1.0), (4.9, 2.0), (7.0, 5.0), (1234.0, 1000.0), (0.3, 0.2)] {
-            assert!((round_length(longest) - said).abs() < 1e-9, "{longest}");
-        }
-        assert_eq!([length_text(500.0), length_text(2000.0)], ["500 m", "2 km"]);
-    }
-
-    #[test]
-    fn a_bar_is_as_long_on_paper_as_it_says() {
-        let strip = Rect::sized(DVec2::ZERO, DVec2::new(400.0, STRIP_PT));
-        let group = drawn(strip, Some(0.1), None, "");
-        let crate::list::Item::Path(bar) = &group.items[0] else { panic!("no bar") };
-        // 120 points are 1200 m: 1 km is 100 points.
-        assert!((bar.path.bounds().unwrap().width() - 100.0).abs() < 1e-9);
-        let texts: Vec<_> = group.items.iter().filter(|item| matches!(item, crate::list::Item::Text(_))).collect();
-        assert_eq!(texts.len(), 2);
-        // Of 21 points, 20 are 200 ms at a tenth of a point each.
-        let both = drawn(strip, Some(0.1), Some((0.1, "ms")), "vertical exaggeration 2");
-        let bars: Vec<Rect> = both
-            .items
-            .iter()
-            .filter_map(|item| match item {
-                crate::list::Item::Path(bar) => bar.path.bounds(),
-                _ => None,
-            })
-            .collect();
-        assert!(bars.len() == 4 && (bars[2].height() - 20.0).abs() < 1e-9 && strip.contains(bars[2].max));
-        let said =
-            |text: &str| both.items.iter().any(|item| matches!(item, crate::list::Item::Text(own) if own.text == text));
-        assert!(said("200 ms") && said("1 km"));
-        // Seen from straight above a block has no height.
-        assert_eq!(drawn(strip, Some(0.1), Some((0.0, "m")), "").items.len(), group.items.len());
-    }
-
-    #[test]
-    fn the_caption_says_what_time_was_turned_into_depth_with() {
-        let geometry = SurveyGeometry::regular([9, 9, 9], 25.0, 4.0, VerticalUnit::Milliseconds);
-        let scene = Scene { exaggeration: 2.5, ..Scene::default() };
-        assert_eq!(block_caption(&scene, &geometry), "vertical exaggeration 2.5 at 2000 m/s");
-    }
-}
+#[path = "../../tests/unit/scale.rs"]
+mod tests;

@@ -66,7 +66,7 @@ impl SectionContents<'_> {
     }
 
     /// The same over other items than the picture; `ink` is the colour of all horizons, absent: each has its own.
-    fn drawn_over(&self, body: Rect, image: Rect, below: Vec<Item>, ink: Option<Colour>) -> Group {
+    fn drawn_over(&self, body: Rect, image: Rect, below: Vec<Item>, ink: Option<&SectionInk>) -> Group {
         let page = |st: DVec2| image.min + st / self.extent * image.size();
         let mut group = Group::new(GroupKind::Data, "section").clipped(Path::rect(body)).with(below);
         match self.interpretation {
@@ -87,7 +87,7 @@ impl SectionContents<'_> {
 /// Lines of the model on a page, a group for each horizon and fault, rims under all of them.
 fn model_lines(
     lines: &[CutLine],
-    (horizons, ink): (&[NamedColour], Option<Colour>),
+    (horizons, ink): (&[NamedColour], Option<&SectionInk>),
     (faults, fault_colours): (&[String], &[Colour]),
     page: impl Fn(DVec2) -> DVec2,
 ) -> Vec<Group> {
@@ -102,14 +102,17 @@ fn model_lines(
             LineKind::Horizon { horizon } => {
                 let known = horizons.get(horizon);
                 let own = || crate::style::horizon_colour(known.map(|known| known.colour), horizon);
-                // Lines between patterns are as thin as on blocks.
-                let width = if ink.is_some() { 0.7 * HORIZON_PT } else { HORIZON_PT };
-                (Group::new(GroupKind::Horizon, known.map_or("", |known| &known.name)), ink.unwrap_or_else(own), width)
+                let (colour, width) = match ink {
+                    // Lines between patterns are as thin as on blocks.
+                    Some(ink) => (ink.colour, contact_pt(ink.unconformities.contains(&horizon))),
+                    None => (own(), HORIZON_PT),
+                };
+                (Group::new(GroupKind::Horizon, known.map_or("", |known| &known.name)), colour, width)
             }
             LineKind::Fault { fault, .. } => {
                 let name = faults.get(fault).map_or("", String::as_str);
                 let own = || fault_colours.get(fault).copied().unwrap_or(Colour::BLACK);
-                (Group::new(GroupKind::Fault, name), ink.unwrap_or_else(own), FAULT_PT)
+                (Group::new(GroupKind::Fault, name), ink.map_or_else(own, |ink| ink.colour), FAULT_PT)
             }
         };
         let own = lines.iter().filter(|line| line.kind == kind);
@@ -223,7 +226,21 @@ pub struct SectionPanel<'a> {
     /// Length of a unit of the vertical axis down the section, with its symbol; of a section from above there is none.
     pub down: Option<(f64, &'a str)>,
     /// The ink of horizons between patterns; absent: each has its own colour.
-    pub ink: Option<Colour>,
+    pub ink: Option<SectionInk>,
+}
+
+/// How horizons are drawn between patterns.
+#[derive(Debug, Clone)]
+pub struct SectionInk {
+    /// Their colour.
+    pub colour: Colour,
+    /// Those that are erosional and so drawn heavier.
+    pub unconformities: Vec<usize>,
+}
+
+/// Width of contacts and unconformities between patterns, points.
+pub(crate) fn contact_pt(is_unconformity: bool) -> f64 {
+    if is_unconformity { 1.15 * HORIZON_PT } else { 0.7 * HORIZON_PT }
 }
 
 /// What is drawn of rock below the lines of a section, and written on it: from where the section is seen, and where the
@@ -262,7 +279,7 @@ impl SectionPanel<'_> {
         self.axes[0].at = [image.min.x, image.max.x];
         self.axes[1].at = [image.min.y, image.max.y];
         group.push(match painter.below(body, image)? {
-            Some(below) => self.contents.drawn_over(body, image, below, self.ink),
+            Some(below) => self.contents.drawn_over(body, image, below, self.ink.as_ref()),
             None => self.contents.drawn(body, image),
         });
         let page = |st: DVec2| image.min + st / self.contents.extent * image.size();

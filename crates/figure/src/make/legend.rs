@@ -7,7 +7,7 @@ use crate::cut::CutLine;
 use crate::draw::NamedColour;
 use crate::draw::block::Comparison;
 use crate::draw::legend::{Legend, LegendLine};
-use crate::draw::section::{Zoom, quality_stroke};
+use crate::draw::section::{Zoom, contact_pt, quality_stroke};
 use crate::draw::seen::{Seen, seen};
 use crate::draw::water::colour_on_paper;
 use crate::list::{GroupKind, Stroke};
@@ -185,9 +185,10 @@ impl Maker<'_> {
         }
         let is_inked = section.blend <= 0.0;
         let pen = |width: f64, colour: Colour| Stroke::new(width, colour);
-        let (contact, fault) = (pen(0.7 * HORIZON_PT, INK), pen(FAULT_PT, Colour::BLACK));
+        let [contact, unconformity] = [false, true].map(|is_heavy| pen(contact_pt(is_heavy), INK));
+        let fault = pen(FAULT_PT, Colour::BLACK);
         if is_inked {
-            listed.add_lines(self.contacts(&seen, &contact, &contact));
+            listed.add_lines(self.contacts(&seen, &contact, &unconformity));
         } else {
             horizons.extend(&seen.horizons);
         }

@@ -10,7 +10,7 @@ use crate::draw::axes::Axis;
 use crate::draw::block::BlockPainter;
 use crate::draw::overlay::{OverlayLines, SeenOn};
 use crate::draw::scale;
-use crate::draw::section::{Marks, SectionContents, SectionPanel, Zoom};
+use crate::draw::section::{Marks, SectionContents, SectionInk, SectionPanel, Zoom};
 use crate::draw::section_wells::WellOnSection;
 use crate::error::FigureError;
 use crate::list::Group;
@@ -20,6 +20,7 @@ use glam::DVec2;
 use image::RgbaImage;
 use model::section::{LineKind, SectionPlane};
 use std::sync::Arc;
+use survey::Contact;
 
 /// What a part shows.
 pub(super) enum Prepared {
@@ -132,6 +133,12 @@ impl Maker<'_> {
         })
     }
 
+    /// The erosional horizons.
+    fn unconformities(&self) -> Vec<usize> {
+        let strata = self.inputs.strata.iter().enumerate();
+        strata.filter(|(_, horizon)| horizon.contact == Contact::Erosional).map(|(index, _)| index).collect()
+    }
+
     /// The wells near a section or a fence, where wells are named.
     fn wells_where(&self, near: impl Fn(&survey::Well) -> Option<WellOnSection>) -> Vec<WellOnSection> {
         let is_hidden = |well: &&survey::Well| {
@@ -233,7 +240,7 @@ impl Maker<'_> {
             is_plan: section.is_plan,
             caption: self.figure.scale_bar.then_some(caption),
             down: (!section.is_plan).then(|| (unit_m, vertical.unit.symbol())),
-            ink: (section.blend <= 0.0).then_some(INK),
+            ink: (section.blend <= 0.0).then(|| SectionInk { colour: INK, unconformities: self.unconformities() }),
         }
         .drawn(room, &mut rock)?;
         if drawn.items.is_empty() {

@@ -147,4 +147,5 @@ impl Refs {
 }
 
 #[cfg(test)]
+#[path = "../../tests/unit/pdf.rs"]
 mod tests;

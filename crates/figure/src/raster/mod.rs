@@ -9,6 +9,7 @@ mod glyphs;
 mod paths;
 mod pictures;
 #[cfg(test)]
+#[path = "../../tests/unit/raster.rs"]
 mod tests;
 mod tiff;
 

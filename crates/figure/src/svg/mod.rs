@@ -207,4 +207,5 @@ fn base64(bytes: &[u8]) -> String {
 }
 
 #[cfg(test)]
+#[path = "../../tests/unit/svg.rs"]
 mod tests;

@@ -47,10 +47,26 @@ fn each_place_of_a_section_shows_its_layer_on_turned_and_mirrored_surveys() {
         let length = legs[0].distance(legs[1]) + legs[1].distance(legs[2]);
         let along = |s: f64| figure::cut::place(&legs, s);
         let kinds: [(Part, DVec2, Box<dyn Fn(DVec2) -> DVec3>); 5] = [
-            (section(SectionKind::Inline, 18.0, 0.0), DVec2::new(30.0, 40.0), Box::new(|st| DVec3::new(17.0, st.x, st.y))),
-            (section(SectionKind::Inline, 41.0, 0.0), DVec2::new(30.0, 40.0), Box::new(|st| DVec3::new(40.0, st.x, st.y))),
-            (section(SectionKind::Crossline, 1.0, 0.0), DVec2::new(40.0, 40.0), Box::new(|st| DVec3::new(st.x, 0.0, st.y))),
-            (section(SectionKind::Slice, 250.0, 0.0), DVec2::new(40.0, 30.0), Box::new(|st| DVec3::new(st.x, st.y, 20.0))),
+            (
+                section(SectionKind::Inline, 18.0, 0.0),
+                DVec2::new(30.0, 40.0),
+                Box::new(|st| DVec3::new(17.0, st.x, st.y)),
+            ),
+            (
+                section(SectionKind::Inline, 41.0, 0.0),
+                DVec2::new(30.0, 40.0),
+                Box::new(|st| DVec3::new(40.0, st.x, st.y)),
+            ),
+            (
+                section(SectionKind::Crossline, 1.0, 0.0),
+                DVec2::new(40.0, 40.0),
+                Box::new(|st| DVec3::new(st.x, 0.0, st.y)),
+            ),
+            (
+                section(SectionKind::Slice, 250.0, 0.0),
+                DVec2::new(40.0, 30.0),
+                Box::new(|st| DVec3::new(st.x, st.y, 20.0)),
+            ),
             (Part::Fence(fence), DVec2::new(length, 40.0), Box::new(move |st| along(st.x).extend(st.y))),
         ];
         for (part, extent, voxel) in kinds {
@@ -64,7 +80,8 @@ fn each_place_of_a_section_shows_its_layer_on_turned_and_mirrored_surveys() {
                     let place = voxel(share * extent);
                     // Near a boundary lines are drawn.
                     let layer = fold.model.region_at(place.as_vec3()).layer;
-                    let around = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [place + axis, place - axis]);
+                    let around =
+                        [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [place + axis, place - axis]);
                     let mut around = around.map(|p| p.clamp(DVec3::ZERO, DVec3::new(40.0, 30.0, 40.0)));
                     if around.any(|p| fold.model.region_at(p.as_vec3()).layer != layer) {
                         continue;

@@ -414,4 +414,5 @@ impl Waiting {
 }
 
 #[cfg(test)]
+#[path = "../../tests/unit/slices.rs"]
 mod tests;
