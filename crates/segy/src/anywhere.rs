@@ -69,7 +69,7 @@ impl Sweep {
     pub fn line_fields(self, columns: &Columns, number_type: NumberType) -> Vec<u16> {
         let mut spans: Vec<(i64, u16)> = self
             .bytes(number_type)
-            .filter(|byte| !is_coordinate(*byte) && !(*byte > 2 && is_coordinate(*byte - 2)))
+            .filter(|byte| !(is_coordinate(*byte) || *byte > 2 && is_coordinate(*byte - 2)))
             .filter_map(|byte| {
                 let column = columns.numbers(byte, number_type);
                 let [low, high] = column.range;

@@ -247,7 +247,7 @@ impl Search<'_> {
 
     /// The reading of the bytes that the textual header names, where it is one and the user states nothing else.
     fn named(&self, findings: &mut Findings) -> Option<Candidate> {
-        let Some(bytes) = self.columns.layout().named.lines else { return None };
+        let bytes = self.columns.layout().named.lines?;
         let options = self.options;
         if options.inline_byte.is_some() || options.crossline_byte.is_some() || options.line_type.is_some() {
             return None;

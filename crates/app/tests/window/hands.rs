@@ -131,7 +131,7 @@ fn a_point_of_a_stick_is_dragged_in_front_of_the_block() {
     let view = state::camera::view(&session.view.scene, &geometry, size);
     let at = view.project(glam::DVec3::new(6.0, 16.0, 24.0));
     let from = pane.min + vec2(at.x as f32, at.y as f32);
-    let camera = session.view.scene.camera.clone();
+    let camera = session.view.scene.camera;
     at_once(&mut harness, [Event::PointerMoved(from), button(from, true)]);
     at_once(&mut harness, [Event::PointerMoved(from + vec2(12.0, -20.0))]);
     at_once(&mut harness, [Event::PointerMoved(from + vec2(20.0, -40.0))]);

@@ -4,8 +4,11 @@
 use figure::{DisplayList, Figure, FigureError};
 use survey::Progress;
 
+/// What takes a part out of a figure.
+type Omission = fn(&mut Figure);
+
 /// What is left out, in this order, and how.
-const LEFT_OUT: [(&str, fn(&mut Figure)); 3] = [
+const LEFT_OUT: [(&str, Omission); 3] = [
     ("the legend", |figure| figure.legend = false),
     ("title, caption, scale bars and north arrow", |figure| {
         (figure.title, figure.caption) = (None, None);

@@ -93,7 +93,7 @@ pub(super) fn intervals(ui: &mut Ui, layer: &str, style: &mut LayerStyle, action
     for index in (0..style.intervals.len()).rev() {
         let count = style.intervals.len();
         let ordinal = index + 1;
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let name = style.intervals[index].texture.clone();
             let button = ui.button(format!("{name}…")).on_hover_text("Choose another pattern");
             if button.clicked() {

@@ -62,7 +62,7 @@ pub fn axis_name(geometry: &SurveyGeometry, axis: usize) -> String {
 pub fn name_across(ui: &Ui, whole: Rect, body: Rect, name: &str) {
     let at = pos2(body.left() - 15.0, body.top() - 4.0);
     let colour = ui.visuals().text_color().gamma_multiply(0.8);
-    ui.painter_at(whole).text(at, Align2::RIGHT_BOTTOM, name, FontId::proportional(10.0), colour);
+    ui.painter_at(whole).text(at, Align2::RIGHT_BOTTOM, name, FontId::proportional(9.5), colour);
 }
 
 /// Shares of a view that a section takes at the chosen proportions; a slice has the proportions of the map.
