@@ -174,14 +174,7 @@ impl TryFrom<Action> for Request {
                 command: Command::Import(interpretation::import(typed)?),
             },
             Action::Attribute(typed) => interpretation::attribute(typed)?,
-            Action::Volume(VolumeAction::List { project }) => Self::List { project, what: Listing::Volumes },
-            Action::Volume(VolumeAction::Link { project, url, name }) => {
-                let link = LinkVolume { url, name, polarity: Polarity::default() };
-                Self::Import { project, command: Command::LinkVolume(link) }
-            }
-            Action::Volume(VolumeAction::Remove { project, name }) => {
-                change(project, Command::RemoveVolume(RemoveVolume { name }))
-            }
+            Action::Volume(action) => volume(action),
             Action::Horizon(action) => interpretation::horizon(action)?,
             Action::Fault(action) => interpretation::fault(action)?,
             Action::Well(action) => well::well(action)?,
@@ -523,4 +516,18 @@ pub(super) fn counts<const N: usize>(option: &str, text: &str) -> Result<[usize;
     parsed
         .and_then(|values| values.try_into().ok())
         .ok_or_else(|| format!("{option} {text}: expected {N} counts such as {}", ["64"; N].join("x")))
+}
+
+/// What is asked for about volumes.
+fn volume(action: VolumeAction) -> Request {
+    match action {
+        VolumeAction::List { project } => Request::List { project, what: Listing::Volumes },
+        VolumeAction::Link { project, url, name } => {
+            let link = LinkVolume { url, name, polarity: Polarity::default() };
+            Request::Import { project, command: Command::LinkVolume(link) }
+        }
+        VolumeAction::Remove { project, name } => {
+            Request::Change { project, command: Command::RemoveVolume(RemoveVolume { name }) }
+        }
+    }
 }

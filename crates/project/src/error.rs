@@ -564,13 +564,11 @@ impl From<::time::TimeError> for ProjectError {
 
 impl From<interp::InterpError> for ProjectError {
     fn from(error: interp::InterpError) -> Self {
+        use interp::InterpError::{Arrays, Cancelled, Sink, Source};
         match error {
-            interp::InterpError::Cancelled(cancelled) => Self::Cancelled(cancelled),
-            interp::InterpError::Sink(e) | interp::InterpError::Arrays(e) | interp::InterpError::Source(e) => {
-                match e.downcast() {
-                    Ok(error) => Self::Store(*error),
-                    Err(e) => Self::Interp(interp::InterpError::Sink(e)),
-                }
+            Cancelled(cancelled) => Self::Cancelled(cancelled),
+            Sink(error) | Arrays(error) | Source(error) => {
+                error.downcast().map_or_else(|error| Self::Interp(Sink(error)), |own| Self::Store(*own))
             }
             other => Self::Interp(other),
         }

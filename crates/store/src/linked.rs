@@ -20,23 +20,15 @@ mod tests;
 
 use super::error::StoreError;
 use super::placed::ArrayFiles;
-use super::volume::StoredVolume;
 use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::Arc;
+#[cfg(feature = "remote")]
 use survey::progress::Progress;
 
 /// The file that says where the bricks are.
 const LINK: &str = "link.json";
-
-/// Beginnings of addresses in object storage.
-const SCHEMES: [&str; 8] = ["s3://", "s3a://", "gs://", "az://", "azure://", "abfss://", "http://", "https://"];
-
-/// Whether an address is one of object storage, and not a path.
-pub fn is_remote(address: &str) -> bool {
-    SCHEMES.iter().any(|scheme| address.starts_with(scheme))
-}
 
 /// What `link.json` says.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -107,33 +99,9 @@ impl Link {
     }
 }
 
-/// Makes the volume at `path` a link to the one at `url` in object storage: copies what is small. Its bricks are read
-/// when they are needed.
-///
-/// # Errors
-/// [`StoreError::Remote`] when the storage does not answer or has no volume there; `path` is then what it was before.
-#[cfg(feature = "remote")]
-pub fn link_volume(path: &Path, url: &str, progress: &Progress) -> Result<StoredVolume, StoreError> {
-    let replacement = super::replacement::Replacement::of(path)?;
-    copy_small(replacement.path(), url, progress)?;
-    // Whether it is a volume, of bricks that can be read.
-    drop(StoredVolume::open(replacement.path())?);
-    replacement.commit()?;
-    StoredVolume::open(path)
-}
-
-/// Says that the program was built without object storage.
-///
-/// # Errors
-/// [`StoreError::WithoutRemote`].
-#[cfg(not(feature = "remote"))]
-pub fn link_volume(_: &Path, url: &str, _: &Progress) -> Result<StoredVolume, StoreError> {
-    Err(StoreError::WithoutRemote { url: url.to_owned() })
-}
-
 /// Copies all of a volume but its bricks to the folder `group`, with a link to them.
 #[cfg(feature = "remote")]
-fn copy_small(group: &Path, url: &str, progress: &Progress) -> Result<(), StoreError> {
+pub(super) fn copy_small(group: &Path, url: &str, progress: &Progress) -> Result<(), StoreError> {
     use serde_json::Value;
     let remote = remote::Remote::open(url)?;
     let mut sums = Vec::new();

@@ -3,7 +3,7 @@
 use super::Bricks;
 use super::tiles::{Area, Tiling};
 use super::trees::Cell;
-use crate::distance::{CellTriangle, columns_among};
+use crate::distance::{CandidateColumns, CellTriangle, columns_among};
 use crate::error::InterpError;
 use bytemuck::Zeroable;
 use std::ops::Range;
@@ -77,13 +77,12 @@ impl Bricks<'_> {
         self.columns().count()
     }
 
-    /// First inline and crossline of a column and how many there are, its coded distances and its leaf ids
-    /// `[inline][crossline][sample]`, once the stage has run.
+    /// A column, once the stage has run.
     ///
     /// # Errors
     /// An array cannot be read.
-    pub fn column(&self, column: usize) -> Result<([Range<usize>; 2], Vec<u8>, Vec<u32>), InterpError> {
+    pub fn column(&self, column: usize) -> Result<CandidateColumns, InterpError> {
         let Area { x, y } = self.columns().area(column);
-        Ok(([x, y], self.read("distance", column)?, self.read("leaf", column)?))
+        Ok(CandidateColumns { x, y, distance: self.read("distance", column)?, leaf: self.read("leaf", column)? })
     }
 }

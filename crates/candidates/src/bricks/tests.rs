@@ -64,7 +64,7 @@ fn compare(bricks: &Bricks, whole: &Extraction, what: &str) {
     assert!(found == wanted, "{what}: tables");
     let [_, ny, nz] = bricks.size;
     for column in 0..bricks.column_count() {
-        let ([xs, ys], distance, leaf) = bricks.column(column).unwrap();
+        let crate::CandidateColumns { x: xs, y: ys, distance, leaf } = bricks.column(column).unwrap();
         for (n, (x, y)) in xs.clone().flat_map(|x| ys.clone().map(move |y| (x, y))).enumerate() {
             let (own, all) = (n * nz..(n + 1) * nz, (x * ny + y) * nz..(x * ny + y + 1) * nz);
             assert!(distance[own.clone()] == whole.candidates.distance[all.clone()], "{what}: distances {x} {y}");

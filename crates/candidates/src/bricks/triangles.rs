@@ -56,6 +56,9 @@ pub(crate) struct Member {
     pub(crate) triangles: [u32; 2],
 }
 
+/// A surface while its parts are gathered: its first vertex, counts of vertices and triangles, and its members.
+type Whole = (Option<Vertex>, [u64; 2], Vec<Member>);
+
 impl Bricks<'_> {
     /// The vertices and triangles of a brick.
     pub(crate) fn triangles(&self, brick: usize) -> Result<(), InterpError> {
@@ -65,10 +68,10 @@ impl Bricks<'_> {
             let (indices, own) = (patch.indices(), patch.is_own());
             let mut used = vec![false; labels.len()];
             let mut triangles: Vec<(u32, [u32; 3])> = Vec::new();
-            for v in 0..labels.len() {
+            for (v, is_own) in own.into_iter().enumerate() {
                 for triangle in CellTriangles::new(&patch.extrema, &links, &labels, v as u32).triangles() {
                     triangle.iter().for_each(|&corner| used[corner as usize] = true);
-                    if own[v] {
+                    if is_own {
                         triangles.push((labels[triangle[0] as usize], triangle.map(|corner| indices[corner as usize])));
                     }
                 }
@@ -117,7 +120,7 @@ impl Bricks<'_> {
     /// and which are built together.
     pub(crate) fn order(&self) -> Result<(), InterpError> {
         // By kind and label: the first vertex, counts, and members.
-        let mut all: BTreeMap<(usize, u32), (Option<Vertex>, [u64; 2], Vec<Member>)> = BTreeMap::new();
+        let mut all: BTreeMap<(usize, u32), Whole> = BTreeMap::new();
         for kind in 0..self.kinds.len() {
             for brick in 0..self.tiles.count() {
                 for Group { label, vertices, triangles, first: [x, y, z] } in

@@ -94,9 +94,9 @@ impl Noise {
         mut changes: impl FnMut(usize, usize) -> Median,
     ) -> Self {
         let mut noise = Self { places: [0.0; _], steps, changes: [[0.0; _]; _] };
-        for dip in 0..DIP_CLASSES {
+        for (dip, place) in places.into_iter().enumerate() {
             let before = dip.checked_sub(1).map(|before| noise.places[before]);
-            noise.places[dip] = places[dip].sigma_or(before);
+            noise.places[dip] = place.sigma_or(before);
             for height in 0..HEIGHT_CLASSES {
                 let before = match (dip, height) {
                     (1.., _) => Some(noise.changes[height][dip - 1]),

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::surfaces::{Extremum, Surface, Vertex};
+use crate::{GrowSettings, Method, grow_surfaces};
 use model::FaultNetwork;
 use survey::Progress;
 use synth::{SynthSettings, Synthetic};

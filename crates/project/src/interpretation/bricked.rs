@@ -4,7 +4,7 @@
 use crate::derived::{RESUMABLE, Scratch};
 use crate::error::ProjectError;
 use interp::bricks::{BrickSettings, Bricks};
-use interp::{ExtractReport, ExtractSettings, InterpError, StageSeconds};
+use interp::{CandidateColumns, ExtractReport, ExtractSettings, InterpError, StageSeconds};
 use rayon::prelude::*;
 use std::path::Path;
 use std::time::Instant;
@@ -68,8 +68,8 @@ impl BrickedExtraction<'_> {
         let count = bricks.column_count();
         progress.begin("storing candidates", count as u64);
         (0..count).into_par_iter().with_max_len(1).try_for_each(|column| {
-            let (lines, distance, leaf) = bricks.column(column)?;
-            writer.write_column(lines, &distance, &leaf, progress)?;
+            let CandidateColumns { x, y, distance, leaf } = bricks.column(column)?;
+            writer.write_column([x, y], &distance, &leaf, progress)?;
             Ok::<(), ProjectError>(progress.step(1)?)
         })?;
         let info = CandidateInfo {
