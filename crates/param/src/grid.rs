@@ -17,9 +17,10 @@
 
 use crate::metric::Metric;
 use crate::touched::RegionColumns;
+use crate::tricubic;
 use crate::unfold::Unfolding;
 use crate::{LayerModel, Region};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use std::sync::Arc;
 use survey::HeightField;
 
@@ -174,13 +175,17 @@ impl RegionGrid {
         (if self.is_calm() { v } else { v.clamp(0.0, 1.0) }, slope)
     }
 
-    /// k between surfaces of any shape, and its voxel derivative: the share of the distances from both, or of the
-    /// reference thickness where one is missing.
-    fn level_k<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3) -> (f32, Vec3) {
+    /// k between surfaces of any shape, continued beyond them, and its voxel derivative: the share of the distances from
+    /// both, or of the reference thickness where one is missing.
+    pub(crate) fn level_k<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3) -> (f32, Vec3) {
         let block = self.region.block;
         let below = |sheet: &SheetRef| match sheet.of {
             SheetSource::Horizon(horizon) => Some(match model.level(horizon, block) {
-                Some(level) => level.sample_m(p),
+                // Regions are told by the trilinear field, whose slopes jump from cell to cell.
+                Some(level) => {
+                    let (value, slope) = tricubic::sample(&level.field, p);
+                    ((value - level.at) * level.scale_m, slope * level.scale_m)
+                }
                 None => {
                     let (z, [x, y]) = sheet.sample(model, block, p.x, p.y);
                     let vertical = model.metric().z_axis.length() as f32;
@@ -197,19 +202,12 @@ impl RegionGrid {
                 if sum.abs() < PINCHED {
                     return (0.5, Vec3::ZERO);
                 }
-                ((-bottom / sum).clamp(0.0, 1.0), (to_top * bottom - to_bottom * top) / (sum * sum))
+                (-bottom / sum, (to_top * bottom - to_bottom * top) / (sum * sum))
             }
             (Some((bottom, slope)), None) => (-bottom / thickness, -slope / thickness),
             (None, Some((top, slope))) => (1.0 - top / thickness, -slope / thickness),
             (None, None) => (0.5, Vec3::ZERO),
         }
-    }
-
-    /// The metric direction in which k rises at a voxel place.
-    pub(crate) fn rise<M: LayerModel + ?Sized>(&self, model: &M, metric: &Metric, p: Vec3) -> Option<DVec3> {
-        let (_, slope) = self.level_k(model, p);
-        let rise = metric.scaled_from_voxel().inverse().transpose() * slope.as_dvec3();
-        rise.try_normalize()
     }
 
     /// How fast k rises at places of the region, per metre.
@@ -295,9 +293,11 @@ impl RegionGrid {
         p: Vec3,
     ) -> (FlatPoint, [[f32; 3]; 3]) {
         let (k, k_slope) = self.level_k(model, p);
+        let is_closed = [&self.bottom, &self.top].iter().all(|sheet| matches!(sheet.of, SheetSource::Horizon(_)));
+        let k = if is_closed { k.clamp(0.0, 1.0) } else { k };
         let [(i, i_slope), (j, j_slope)] = [0, 1].map(|axis: usize| {
             let unit = 1.0 / volume[axis].saturating_sub(1).max(1) as f32;
-            let (value, slope) = unfolded[axis].sample(p);
+            let (value, slope) = tricubic::sample(&unfolded[axis], p);
             (value * unit, slope * unit)
         });
         let flat = FlatPoint { i, j, k, region: self.region };

@@ -84,6 +84,7 @@
 //! ```
 
 pub mod accuracy;
+mod carried;
 mod closest;
 mod compute;
 mod error;
@@ -102,6 +103,7 @@ mod settings;
 mod surface;
 mod touched;
 mod trace;
+mod tricubic;
 mod unfold;
 mod voxels;
 

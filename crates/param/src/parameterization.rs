@@ -58,9 +58,9 @@ impl Parameterization {
             planned.push((grid, method));
             touched.push(columns);
         }
-        let up = |p: Vec3, at: Region| {
-            let (grid, _) = &planned[usize::from(at.block) * layers + usize::from(at.layer)];
-            grid.rise(model, &metric, p)
+        let rise = |p: Vec3, of: Region| {
+            let (grid, _) = &planned[usize::from(of.block) * layers + usize::from(of.layer)];
+            grid.level_k(model, p)
         };
         let is_unfolded = |layer: &u16| {
             let of_layer = planned.iter().skip(usize::from(*layer)).step_by(layers);
@@ -81,7 +81,7 @@ impl Parameterization {
             .collect();
         // [layer][block]
         let mut unfolded = vec![Vec::new(); layers];
-        for (&layer, of_layer) in folded.iter().zip(unfold::unfold(model, &metric, &folded, up, progress)?) {
+        for (&layer, of_layer) in folded.iter().zip(unfold::unfold(model, &metric, &folded, rise, progress)?) {
             unfolded[usize::from(layer)] = of_layer;
         }
         let mut cost = ComputeCost::default();

@@ -127,19 +127,33 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
 
     /// [`Planner::farthest`] from a surface of any shape: metres as vertical voxels.
     fn farthest_unfolded(&self, region: Region, touched: &RegionColumns) -> f32 {
-        let horizon = match horizons(self.model, usize::from(region.layer)) {
+        let horizon = match self.measured_from(region) {
             (Some(h), None) | (None, Some(h)) => h,
             _ => return 0.0,
         };
-        let Some(level) = self.model.level(horizon, region.block) else { return 0.0 };
+        let vertical = self.model.metric().z_axis.length() as f32;
+        let offset_m = |p: Vec3| match self.model.level(horizon, region.block) {
+            Some(level) => level.offset_m(p),
+            None => (p.z - self.model.sheet(horizon, region.block).z_at(p.x, p.y)) * vertical,
+        };
         let last = self.model.size()[2].saturating_sub(1) as f32;
         let columns = touched.columns().step_by(7);
         let offsets = columns.flat_map(|(_, [x, y], _)| {
             let place = move |n: usize| Vec3::new(x as f32, y as f32, (n * 4) as f32);
             let inside = (0..=(last / 4.0) as usize).map(place).filter(|&p| self.model.region_at(p) == region);
-            inside.map(|p| level.offset_m(p).abs())
+            inside.map(|p| offset_m(p).abs())
         });
-        offsets.fold(0.0, f32::max) / self.model.metric().z_axis.length() as f32
+        offsets.fold(0.0, f32::max) / vertical
+    }
+
+    /// The horizons at the bottom and the top of a layer between surfaces of any shape from which its k is measured: both,
+    /// or the one to which it is parallel.
+    fn measured_from(&self, region: Region) -> (Option<usize>, Option<usize>) {
+        match (horizons(self.model, usize::from(region.layer)), self.definition(region)) {
+            ((Some(bottom), Some(_)), Some(KDefinition::ParallelToBottom)) => (Some(bottom), None),
+            ((Some(_), Some(top)), Some(KDefinition::ParallelToTop)) => (None, Some(top)),
+            (both, _) => both,
+        }
     }
 
     /// The empty grid of a region and the method that fills it. `reach` is the largest of [`Planner::farthest`] over
@@ -155,7 +169,7 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
         let plane = |shift| SheetRef { of: SheetSource::Plane, shift };
         let (method, bottom, top) = match (self.sheets(region), definition) {
             _ if is_unfolded(self.model, region) => {
-                let (bottom, top) = horizons(self.model, usize::from(region.layer));
+                let (bottom, top) = self.measured_from(region);
                 let sheet =
                     |h: Option<usize>| h.map_or(plane(0.0), |h| SheetRef { of: SheetSource::Horizon(h), shift: 0.0 });
                 (Method::Unfolded, sheet(bottom), sheet(top))
@@ -183,7 +197,7 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
                 (Method::Closest(LayerKind::AboveBottom(thickness)), bottom.clone(), shifted(&bottom, -reach))
             }
         };
-        let is_open = matches!(horizons(self.model, usize::from(region.layer)), (Some(_), None) | (None, Some(_)));
+        let is_open = matches!(self.measured_from(region), (Some(_), None) | (None, Some(_)));
         let is_vertical = method == Method::Closest(LayerKind::Vertical);
         let thickness = if is_vertical { last.max(1.0) * self.metric.vertical_step() } else { thickness };
         let is_parallel =

@@ -13,26 +13,34 @@
 //! the direction that the normals have least of. Faults break u and v, beyond their tips they are one
 //! ([`model::CutLattice`]).
 //!
+//! That keeps lengths, but least squares weigh them against angles. So it is taken in the middle of the layer alone, and
+//! carried from there along ∇k ([`crate::carried`]).
+//!
 //! Lengths are in metres, u and v are stored in voxels along x and y.
 
+use crate::carried::{self, Held};
 use crate::metric::Metric;
+use crate::tricubic;
 use crate::{LayerModel, Region};
 use glam::{DMat3, DVec3, Vec3};
-use model::{CutLattice, Equations, FaultNetwork, resampled};
+use model::{CutLattice, Equations, FaultNetwork};
 use rayon::prelude::*;
 use std::sync::Arc;
 use survey::LevelField;
 use survey::progress::{Cancelled, Progress};
 
-/// The unfolded place of every voxel of a region: i·(Nx − 1) and j·(Ny − 1). Memory: 1 byte a voxel.
+/// The unfolded place of every voxel of a region: i·(Nx − 1) and j·(Ny − 1). Memory: 8 bytes a node of [`FINE_NODES`].
 pub type Unfolding = Arc<[LevelField; 2]>;
 
 /// Nodes of the lattice around the volume; a layer is solved on those that it holds.
-const NODES: f64 = 200_000.0;
+const NODES: f64 = 100_000.0;
 /// Nodes around the layer that are solved with it.
-const AROUND: usize = 2;
-/// Voxels between the nodes of an unfolding.
-const STEP: f32 = 2.0;
+const AROUND: usize = 3;
+/// Nodes of an unfolding around the volume, at most; they are no closer than [`FINEST`] cube roots of a voxel.
+const FINE_NODES: f64 = 1_000_000.0;
+const FINEST: f64 = 0.7;
+/// Voxels around the volume in which the levels of horizons are defined.
+const MARGIN: f32 = 4.0;
 /// Weight w of what changes across the layering.
 const ACROSS: f64 = 6.0;
 /// Weight of second differences, in units of slope.
@@ -47,66 +55,106 @@ const TOLERANCE: f64 = 1e-3;
 /// Normals nearer to the fold axis than this (sine) say nothing about the direction along the layer.
 const ALONG_AXIS: f64 = 0.2;
 
-/// The unfolding of each of `layers` in each block. `up` is the metric direction of k at a voxel place of a region.
+/// What was solved for a layer.
+struct Solved {
+    lattice: CutLattice,
+    /// u and v in metres at the nodes of the lattice, for each block.
+    fields: [Vec<LevelField>; 2],
+}
+
+/// The unfolding of each of `layers` in each block. `rise` is k and its derivatives per voxel at a voxel place, of a region
+/// and continued beyond it.
 pub fn unfold<M: LayerModel + ?Sized>(
     model: &M,
     metric: &Metric,
     layers: &[u16],
-    up: impl Fn(Vec3, Region) -> Option<DVec3> + Sync,
+    rise: impl Fn(Vec3, Region) -> (f32, Vec3) + Sync,
     progress: &Progress,
 ) -> Result<Vec<Vec<Unfolding>>, Cancelled> {
-    let none = FaultNetwork::none();
-    let faults = model.faults().unwrap_or(&none);
+    if layers.is_empty() {
+        return Ok(Vec::new());
+    }
     let metres = metric.scaled_from_voxel() * metric.unit_m;
     let size = model.size();
     let last = Vec3::from_array(size.map(|n| n as f32 - 1.0));
     let region_near = |p: Vec3| model.region_at(p.clamp(Vec3::ZERO, last));
-    let mut found: Vec<Option<[Vec<LevelField>; 2]>> = vec![None; layers.len()];
+    let solved = solve(model, metric, layers, &rise, progress)?;
+    let voxels = size.iter().product::<usize>() as f64;
+    let count = FINE_NODES.min(voxels / FINEST.powi(3));
+    let fine = CutLattice::nodes_between(Vec3::splat(-MARGIN), last + MARGIN, metres, count, 1.0, 0.5);
+    let held = Held::of(fine, region_near);
+    // A step from node to node.
+    let longest = metric.length_squared(fine.step / 3.0f32.sqrt()).sqrt();
+    let lengths = [0, 1].map(|axis| metres.col(axis).length() as f32);
+    progress.begin("carrying", layers.len() as u64);
+    let of_layer = |(&layer, solved): (&u16, &Solved)| {
+        let of_block = |block: usize| {
+            let region = Region { layer, block: block as u16 };
+            let on_lattice = |p: Vec3| {
+                [0, 1].map(|which: usize| tricubic::sample(&solved.fields[which][block], p).0 / lengths[which])
+            };
+            let is_known = |p: Vec3| solved.lattice.is_known(block, p);
+            let in_middle = |p: Vec3| on_lattice(carried::middle(metric, longest, p, |p| rise(p, region), is_known));
+            Arc::new(held.fields(region, in_middle, on_lattice))
+        };
+        let unfoldings = (0..model.block_count()).into_par_iter().map(of_block).collect();
+        progress.step(1)?;
+        Ok(unfoldings)
+    };
+    layers.par_iter().zip(&solved).map(of_layer).collect()
+}
+
+/// u and v by least squares, for each layer.
+fn solve<M: LayerModel + ?Sized>(
+    model: &M,
+    metric: &Metric,
+    layers: &[u16],
+    rise: &(impl Fn(Vec3, Region) -> (f32, Vec3) + Sync),
+    progress: &Progress,
+) -> Result<Vec<Solved>, Cancelled> {
+    let none = FaultNetwork::none();
+    let faults = model.faults().unwrap_or(&none);
+    let metres = metric.scaled_from_voxel() * metric.unit_m;
+    let covector = metres.inverse().transpose();
+    let last = Vec3::from_array(model.size().map(|n| n as f32 - 1.0));
+    let mut found: Vec<Option<Solved>> = layers.iter().map(|_| None).collect();
     progress.begin("unfolding", layers.len() as u64 * u64::from(COARSER + 1));
     for level in (0..=COARSER).rev() {
-        let nodes = CutLattice::nodes_around(size, metres, NODES, f64::from(1u32 << level));
-        let of_node: Vec<Region> =
-            (0..nodes.count()).into_par_iter().map(|node| region_near(nodes.place(node))).collect();
-        found = layers
-            .par_iter()
-            .zip(found)
-            .map(|(&layer, before)| {
-                let holds = |node: usize| (of_node[node].layer == layer).then(|| of_node[node].block);
-                let near = CutLattice::near_blocks(faults, nodes, AROUND, holds);
-                let lattice = CutLattice::of(faults, nodes, |block, node| near[block][node]);
-                let normal = |block: usize, node: usize| {
-                    let p = lattice.middle(node);
-                    let inside = p.cmpge(Vec3::ZERO).all() && p.cmple(last).all();
-                    let region = inside.then(|| model.region_at(p))?;
-                    (region == Region { layer, block: block as u16 }).then(|| up(p, region)).flatten()
-                };
-                let of_block = |block: usize| {
-                    let normal = &normal;
-                    lattice.cells(block).map(move |node| (block, node, normal(block, node)))
-                };
-                let cells: Vec<Cell> = (0..lattice.blocks).flat_map(of_block).collect();
-                let frame = Frame::of(metres, cells.iter().filter_map(|(_, _, normal)| *normal));
-                let problem = Problem { lattice: &lattice, cells: &cells, frame: &frame, metres };
-                let solved = problem.solve(before.as_ref(), progress)?;
-                progress.step(1)?;
-                Ok(Some([0, 1].map(|which| lattice.spread(&solved, which))))
-            })
-            .collect::<Result<_, Cancelled>>()?;
+        let nodes = CutLattice::nodes_around(model.size(), metres, NODES, f64::from(1u32 << level));
+        let of_node: Vec<Region> = (0..nodes.count())
+            .into_par_iter()
+            .map(|node| model.region_at(nodes.place(node).clamp(Vec3::ZERO, last)))
+            .collect();
+        let of_layer = |(&layer, before): (&u16, Option<Solved>)| {
+            let holds = |node: usize| (of_node[node].layer == layer).then(|| of_node[node].block);
+            let near = CutLattice::near_blocks(faults, nodes, AROUND, holds);
+            let lattice = CutLattice::of(faults, nodes, |block, node| near[block][node]);
+            let normal = |block: usize, node: usize| {
+                let p = lattice.middle(node);
+                if !(p.cmpge(Vec3::ZERO).all() && p.cmple(last).all()) {
+                    return None;
+                }
+                let (own, at) = (Region { layer, block: block as u16 }, model.region_at(p));
+                // Beyond its faults a layer is continued.
+                let (k, slope) = rise(p, own);
+                let is_within = at == own || (at.block != own.block && (0.0..=1.0).contains(&k));
+                is_within.then(|| (covector * slope.as_dvec3()).try_normalize()).flatten()
+            };
+            let of_block = |block: usize| {
+                let normal = &normal;
+                lattice.cells(block).map(move |node| (block, node, normal(block, node)))
+            };
+            let cells: Vec<Cell> = (0..lattice.blocks).flat_map(of_block).collect();
+            let frame = Frame::of(metres, cells.iter().filter_map(|(_, _, normal)| *normal));
+            let problem = Problem { lattice: &lattice, cells: &cells, frame: &frame, metres };
+            let solved = problem.solve(before.as_ref().map(|before| &before.fields), progress)?;
+            progress.step(1)?;
+            let fields = [0, 1].map(|which| lattice.spread(&solved, which));
+            Ok(Some(Solved { lattice, fields }))
+        };
+        found = layers.par_iter().zip(found).map(of_layer).collect::<Result<_, Cancelled>>()?;
     }
-    let unfolding = |layer: u16, found: &[Vec<LevelField>; 2], block: usize| {
-        let holds = |p: Vec3| region_near(p) == Region { layer, block: block as u16 };
-        Arc::new([0, 1].map(|n: usize| {
-            let mut field = resampled(&found[n][block], size, STEP, holds);
-            let length = metres.col(n).length() as f32;
-            field.values.iter_mut().for_each(|value| *value /= length);
-            field
-        }))
-    };
-    let of_layer = |(&layer, found): (&u16, &Option<[Vec<LevelField>; 2]>)| {
-        let blocks = found.as_ref().map_or(0, |found| found[0].len());
-        (0..blocks).flat_map(|block| found.as_ref().map(|found| unfolding(layer, found, block))).collect()
-    };
-    Ok(layers.par_iter().zip(&found).map(of_layer).collect())
+    Ok(found.into_iter().flatten().collect())
 }
 
 /// A cell of the lattice: block, first node, and the metric normal of the layering at its middle.

@@ -202,9 +202,7 @@ impl Level {
             for j in first..=i {
                 let from = first.max(j.saturating_sub(band));
                 let (row_i, row_j) = (i * width + band - i, j * width + band - j);
-                let dot: f64 =
-                    a[row_i + from..row_i + j].iter().zip(&a[row_j + from..row_j + j]).map(|(p, q)| p * q).sum();
-                let value = a[row_i + j] - dot;
+                let value = a[row_i + j] - dot(&a[row_i + from..row_i + j], &a[row_j + from..row_j + j]);
                 a[row_i + j] = if j == i { value.max(1e-12).sqrt() } else { value / a[row_j + j] };
             }
         }
@@ -293,6 +291,22 @@ impl Level {
             }
         }
     }
+}
+
+/// Numbers that are multiplied side by side.
+const LANES: usize = 8;
+
+/// The dot product, in [`LANES`] sums of their own: one sum after the other would wait for each addition.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; LANES];
+    let (a, b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(p, q)| p * q).sum();
+    for (a, b) in a.zip(b) {
+        for lane in 0..LANES {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
 }
 
 /// Value at fine index `j` of a line of `count` coarse values, by cubic interpolation; linear beyond the

@@ -134,6 +134,14 @@ impl CutLattice {
         [0, 1, y, y + 1, x, x + 1, x + y, x + y + 1].map(|offset| self.unknown(block, node + offset))
     }
 
+    /// Whether all nodes around a voxel position have an unknown of a block.
+    pub fn is_known(&self, block: usize, p: Vec3) -> bool {
+        let NodeBox { origin, step, size } = self.nodes;
+        let at = (p - origin) / step;
+        let end = Vec3::from_array(size.map(|n| (n - 1) as f32));
+        at.cmpge(Vec3::ZERO).all() && at.cmple(end).all() && !self.corners(block, self.cell(p).0).contains(&NONE)
+    }
+
     /// The value of a block at a voxel position, trilinear. All nodes around it must be wanted.
     pub fn value(&self, block: usize, p: Vec3) -> Terms {
         let (node, f) = self.cell(p);

@@ -5,9 +5,16 @@
 //! IEEE TVCG 11(3), 2005). Where the closest point lies on the border of an open surface, the value is the distance from
 //! its tangent plane there, so that the surface continues straight on.
 //!
-//! Near the surface the closest triangle is looked for in a tree, elsewhere only at every [`COARSE`]th node. Between
-//! these it is followed downhill on the surface from those of the coarse nodes around, because far from a flat surface
-//! a tree has to look at all triangles that are nearly as close.
+//! Near the surface the closest triangle is looked for in a tree, elsewhere only at every [`COARSE`]th node, because far
+//! from a flat surface a tree has to look at all triangles that are nearly as close. Between coarse nodes whose gradients
+//! g are alike the distance d is
+//!
+//! ```text
+//! d(p) = Σ wₙ (dₙ + ½ gₙ·(p − pₙ)),   w: trilinear weights
+//! ```
+//!
+//! which is exact where d is quadratic. Where they are not (around a crease), the closest triangle is followed downhill
+//! on the surface from those of the coarse nodes around.
 
 use super::tree::Tree;
 use glam::{DMat3, DVec3, Vec3};
@@ -18,9 +25,11 @@ use survey::progress::{Cancelled, Progress};
 use survey::topology::OrientedMesh;
 
 /// Nodes from one for which the closest triangle is looked for in the tree to the next, along each axis.
-const COARSE: usize = 4;
+const COARSE: usize = 5;
 /// Nodes that may be nearer to the surface than so many diagonals of a cell are looked for in the tree, too.
 const NEAR: f64 = 1.5;
+/// Least cosine between the gradients at the corners of a coarse cell in which distances are interpolated.
+const ALIKE: f64 = 0.98;
 
 /// A surface in metric space, ready for closest points.
 pub(super) struct Surface {
@@ -147,6 +156,18 @@ impl Surface {
         at(a + ab * (vb * scale) + ac * (vc * scale), 6)
     }
 
+    /// The gradient of the signed distance at a point whose closest point lies on a triangle.
+    fn gradient(&self, triangle: usize, p: DVec3) -> DVec3 {
+        let Closest { point, feature } = self.closest(triangle, p);
+        let normal = if feature == 6 { self.normals[triangle] } else { self.around[triangle][feature] };
+        let away = p - point;
+        let is_border = feature < 6 && self.border[triangle] >> feature & 1 == 1;
+        if is_border || away.length_squared() == 0.0 {
+            return -normal.normalize_or_zero();
+        }
+        away.normalize_or_zero() * if away.dot(normal) > 0.0 { -1.0 } else { 1.0 }
+    }
+
     /// Metres from a point to its closest point on a triangle, positive on the side that the normals point away from.
     fn signed(&self, triangle: usize, p: DVec3) -> f64 {
         let Closest { point, feature } = self.closest(triangle, p);
@@ -208,6 +229,14 @@ impl NodeBox {
         })
     }
 
+    /// The corners of the cell around a voxel position, or of the cell nearest to it.
+    pub fn around(&self, p: Vec3) -> impl Iterator<Item = usize> + use<> {
+        let size = self.size;
+        let at = ((p - self.origin) / self.step).max(Vec3::ZERO);
+        let [x, y, z] = [0, 1, 2].map(|axis: usize| (at[axis] as usize).min(size[axis].saturating_sub(2)));
+        (0..8).map(move |n| ((x + (n >> 2)) * size[1] + y + (n >> 1 & 1)) * size[2] + z + (n & 1))
+    }
+
     /// Voxel position of a node.
     pub fn place(&self, node: usize) -> Vec3 {
         self.origin + Vec3::from_array(self.index(node).map(|n| n as f32)) * self.step
@@ -234,7 +263,12 @@ pub(super) fn signed_distance(
         for (z, value) in values.iter_mut().enumerate() {
             let node = column * height + z;
             let p = metric * nodes.place(node).as_dvec3();
-            let around = coarse.around(nodes.index(node), p);
+            let index = nodes.index(node);
+            if let Some(between) = coarse.between(index, p) {
+                *value = between as f32;
+                continue;
+            }
+            let around = coarse.around(index, p);
             triangle = surface.descend(around.best(surface, triangle, p), p);
             let mut signed = surface.signed(triangle, p);
             // Far from the surface a node lies on the side of the nodes around it; if not, it was followed to a wrong
@@ -257,6 +291,10 @@ struct Coarse {
     lines: [Vec<usize>; 3],
     /// Metric place, closest triangle and signed distance of each, `[x][y][z]`.
     found: Vec<(DVec3, usize, f64)>,
+    /// The gradient of the signed distance at each.
+    gradients: Vec<DVec3>,
+    /// Whether the distance in the cell that begins at each is interpolated.
+    is_smooth: Vec<bool>,
     /// Metres within which the surface is near.
     near: f64,
 }
@@ -309,13 +347,62 @@ impl Coarse {
         })?;
         let cell = [0, 1, 2].map(|axis| metric.col(axis) * f64::from(nodes.step[axis]));
         let diagonal = cell.map(|edge| edge.length_squared()).iter().sum::<f64>().sqrt();
-        Ok(Self { lines, found, near: NEAR * diagonal })
+        let gradients = found.par_iter().map(|&(p, triangle, _)| surface.gradient(triangle, p)).collect();
+        let mut coarse = Self { lines, found, gradients, is_smooth: Vec::new(), near: NEAR * diagonal };
+        coarse.is_smooth = (0..coarse.found.len()).into_par_iter().map(|first| coarse.is_smooth_cell(first)).collect();
+        Ok(coarse)
+    }
+
+    /// Whether the corners of the cell that begins at a coarse node lie away from the surface, on one side of it, with
+    /// gradients that are alike.
+    fn is_smooth_cell(&self, first: usize) -> bool {
+        let [nx, ny, nz] = [0, 1, 2].map(|axis: usize| self.lines[axis].len());
+        let at = [first / (ny * nz), first / nz % ny, first % nz];
+        if (0..3).any(|axis| at[axis] + 1 == [nx, ny, nz][axis]) {
+            return false;
+        }
+        let corners = [0, 1, nz, nz + 1, ny * nz, ny * nz + 1, (ny + 1) * nz, (ny + 1) * nz + 1].map(|n| first + n);
+        let (_, _, distance) = self.found[first];
+        let is_away = |n: &usize| self.found[*n].2.abs() > self.near && (self.found[*n].2 < 0.0) == (distance < 0.0);
+        let mean = corners.iter().map(|&n| self.gradients[n]).sum::<DVec3>().normalize_or_zero();
+        corners.iter().all(is_away) && corners.iter().all(|&n| self.gradients[n].dot(mean) > ALIKE)
+    }
+
+    /// The first coarse node of the cell around the node `index` of the box.
+    fn cell(&self, index: [usize; 3]) -> [usize; 3] {
+        [0, 1, 2].map(|axis: usize| (index[axis] / COARSE).min(self.lines[axis].len() - 2))
+    }
+
+    /// The distance of the node `index` of the box, at the metric place `p`, from those of the coarse nodes around; `None`
+    /// where these are no smooth function.
+    fn between(&self, index: [usize; 3], p: DVec3) -> Option<f64> {
+        let low = self.cell(index);
+        let [_, ny, nz] = [0, 1, 2].map(|axis: usize| self.lines[axis].len());
+        let first = (low[0] * ny + low[1]) * nz + low[2];
+        if !self.is_smooth[first] {
+            return None;
+        }
+        let share = |axis: usize| {
+            let [from, to] = [0, 1].map(|n| self.lines[axis][low[axis] + n] as f64);
+            (index[axis] as f64 - from) / (to - from)
+        };
+        let shares = [share(0), share(1), share(2)];
+        let weight = |corner: usize| {
+            let of = |axis: usize| if corner >> (2 - axis) & 1 == 1 { shares[axis] } else { 1.0 - shares[axis] };
+            of(0) * of(1) * of(2)
+        };
+        let term = |corner: usize| {
+            let n = first + ((corner >> 2) * ny + (corner >> 1 & 1)) * nz + (corner & 1);
+            let (at, _, distance) = self.found[n];
+            weight(corner) * (distance + 0.5 * self.gradients[n].dot(p - at))
+        };
+        Some((0..8).map(term).sum())
     }
 
     /// What the nodes around the node `index` of the box, at the metric place `p`, tell of it.
     fn around(&self, index: [usize; 3], p: DVec3) -> Around {
-        let [nx, ny, nz] = [0, 1, 2].map(|axis: usize| self.lines[axis].len());
-        let low = [(0, nx), (1, ny), (2, nz)].map(|(axis, count)| (index[axis] / COARSE).min(count - 2));
+        let [_, ny, nz] = [0, 1, 2].map(|axis: usize| self.lines[axis].len());
+        let low = self.cell(index);
         let node = |corner: usize| {
             let [x, y, z] = [low[0] + (corner >> 2), low[1] + (corner >> 1 & 1), low[2] + (corner & 1)];
             &self.found[(x * ny + y) * nz + z]

@@ -123,8 +123,8 @@ fn level_k(grid: GridInfo, p: vec3<f32>) -> vec4<f32> {
 // The twin of `RegionGrid::lookup_unfolded`.
 fn flat_unfolded(grid: GridInfo, p: vec3<f32>) -> FlatSample {
     let unit = model.unit_from_voxel;
-    let i = level_sample(grid.unfolded_i, p) * unit.x;
-    let j = level_sample(grid.unfolded_j, p) * unit.y;
+    let i = level_cubic(grid.unfolded_i, p) * unit.x;
+    let j = level_cubic(grid.unfolded_j, p) * unit.y;
     let k = level_k(grid, p);
     return FlatSample(vec3(i.w, j.w, k.w), i.xyz, j.xyz, k.xyz);
 }

@@ -1,7 +1,7 @@
 //! Names of faults beside their lines, the throw measured there, and half-arrows that say which side went down.
 //!
 //! On a face, a horizon meets a fault from each side at a place of its own, its cut-offs. They are found on the fault's
-//! line from the horizon's sheets in the two blocks beside it; the throw is the difference of their depths or times,
+//! line from the horizon in the two blocks beside it; the throw is the difference of their depths or times,
 //! taken at the horizon whose cut-offs lie nearest to the middle of what is seen of the fault.
 
 use super::room::{LabelRoom, outlines};
@@ -27,8 +27,6 @@ const RIM_OPACITY: f32 = 0.85;
 const SHORTEST_PT: f64 = 16.0;
 /// How far beside a fault its blocks are looked up, voxels.
 const BESIDE: f64 = 0.75;
-/// Sheets that differ less than this lie on one another, samples.
-const SAME: f32 = 0.05;
 /// Throws below this are not stated, samples.
 const LEAST_THROW: f64 = 0.25;
 /// Where along its line a name or an arrow may stand, in shares on both sides of the middle.
@@ -45,6 +43,16 @@ pub(super) struct FaultRun<'a> {
     face: &'a SeenSection,
     /// The parts of its face that are seen, on the page.
     seen: Vec<Vec<DVec2>>,
+}
+
+/// Where a horizon ends at a fault.
+struct CutOff {
+    /// Where along the run, in places.
+    at: f64,
+    /// Voxel z.
+    z: f64,
+    /// Whether the older rock lies below.
+    is_upright: bool,
 }
 
 /// What is known of a fault at a place.
@@ -112,23 +120,27 @@ impl FaultRun<'_> {
             return None;
         }
         let last = (self.places.len() - 1).max(1) as f64;
-        let throw = |horizon: usize| {
-            let [behind, ahead] = blocks.map(|block| self.cut_off(model, horizon, block));
-            let ((behind_at, behind_z), (ahead_at, ahead_z)) = (behind?, ahead?);
-            let [from, to] = [behind_z, ahead_z].map(|z| value_at(geometry, 2, z));
-            let share = 0.5 * (behind_at + ahead_at) / last;
-            let is_seen = (ahead_z - behind_z).abs() >= LEAST_THROW;
-            is_seen.then_some(Throw { size: (to - from).abs(), share, is_ahead_down: ahead_z > behind_z })
+        let throws = |horizon: usize| {
+            let [behind, ahead] = blocks.map(|block| self.cut_offs(model, horizon, block));
+            // A limb that is upside down is paired with one that is.
+            let pair = |from: &CutOff| {
+                let same = ahead.iter().filter(|to| to.is_upright == from.is_upright);
+                let to = same.min_by(|a, b| (a.at - from.at).abs().total_cmp(&(b.at - from.at).abs()))?;
+                let [above, below] = [from.z, to.z].map(|z| value_at(geometry, 2, z));
+                let is_seen = (to.z - from.z).abs() >= LEAST_THROW;
+                let share = 0.5 * (from.at + to.at) / last;
+                is_seen.then_some(Throw { size: (below - above).abs(), share, is_ahead_down: to.z > from.z })
+            };
+            behind.iter().filter_map(pair).collect::<Vec<_>>()
         };
-        let horizons = 0..model.stratigraphy().horizons.len();
-        horizons.filter_map(throw).min_by(|a, b| (a.share - 0.5).abs().total_cmp(&(b.share - 0.5).abs()))
+        let horizons = (0..model.stratigraphy().horizons.len()).filter(|&horizon| !model.is_body(horizon));
+        horizons.flat_map(throws).min_by(|a, b| (a.share - 0.5).abs().total_cmp(&(b.share - 0.5).abs()))
     }
 
-    /// Where a horizon ends at the fault within a block: the place along the run, and voxel z.
-    fn cut_off(&self, model: &StructuralModel, horizon: usize, block: u16) -> Option<(f64, f64)> {
-        let sheet = model.sheet(horizon, block);
-        let off = |p: DVec3| p.z - f64::from(sheet.z_at(p.x as f32, p.y as f32));
-        self.places.windows(2).enumerate().find_map(|(n, pair)| {
+    /// Where a horizon ends at the fault within a block, limb by limb.
+    fn cut_offs(&self, model: &StructuralModel, horizon: usize, block: u16) -> Vec<CutOff> {
+        let off = |p: DVec3| f64::from(model.offset(horizon, block, p.as_vec3()));
+        let crossing = |(n, pair): (usize, &[(DVec3, DVec2)])| {
             let [a, b] = [pair[0].0, pair[1].0];
             let (off_a, off_b) = (off(a), off(b));
             if (off_a < 0.0) == (off_b < 0.0) {
@@ -136,10 +148,13 @@ impl FaultRun<'_> {
             }
             let share = off_a / (off_a - off_b);
             let p = a.lerp(b, share);
-            let (x, y) = (p.x as f32, p.y as f32);
-            let is_there = (model.horizon_z(horizon, block, x, y) - sheet.z_at(x, y)).abs() < SAME;
-            is_there.then_some((n as f64 + share, p.z))
-        })
+            // Elsewhere something younger has cut it off.
+            let (own, below) = (1 << horizon, model.below_at(p.as_vec3(), block));
+            let is_there = model.rules().layer(below | own) != model.rules().layer(below & !own);
+            let is_upright = (off_b > off_a) == (b.z > a.z);
+            is_there.then_some(CutOff { at: n as f64 + share, z: p.z, is_upright })
+        };
+        self.places.windows(2).enumerate().filter_map(crossing).collect()
     }
 
     /// The place on the page at a share of the run, and the direction of growing depth there.
