@@ -25,11 +25,11 @@ use survey::progress::{Cancelled, Progress};
 use survey::topology::OrientedMesh;
 
 /// Nodes from one for which the closest triangle is looked for in the tree to the next, along each axis.
-const COARSE: usize = 5;
+const COARSE: usize = 4;
 /// Nodes that may be nearer to the surface than so many diagonals of a cell are looked for in the tree, too.
 const NEAR: f64 = 1.5;
 /// Least cosine between the gradients at the corners of a coarse cell in which distances are interpolated.
-const ALIKE: f64 = 0.98;
+const ALIKE: f64 = 0.999;
 
 /// A surface in metric space, ready for closest points.
 pub(super) struct Surface {
