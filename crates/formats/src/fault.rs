@@ -112,6 +112,7 @@ pub(super) fn build(
         multivalued: 0,
         notes,
         warnings,
+        off_map: None,
     };
     Ok((Fault::new(name, mesh), report))
 }

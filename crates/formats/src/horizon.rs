@@ -48,6 +48,8 @@ struct Nodes {
     warnings: Vec<Note>,
     /// What it is instead of sheets.
     surface: Option<TriangleMesh>,
+    /// Points far off a map through their neighbours.
+    off_map: Option<(usize, Note)>,
 }
 
 impl Nodes {
@@ -61,6 +63,7 @@ impl Nodes {
             notes: note.map(str::to_owned).into_iter().collect(),
             warnings: Vec::new(),
             surface: Some(surface),
+            off_map: None,
         }
     }
 }
@@ -118,6 +121,7 @@ pub(super) fn build(
         multivalued: nodes.multivalued,
         notes,
         warnings,
+        off_map: nodes.off_map,
     };
     Ok((Horizon { name, sheets: nodes.sheets, surface: nodes.surface }, report))
 }
@@ -145,6 +149,7 @@ fn from_grid(
         notes: Vec::new(),
         warnings: Vec::new(),
         surface: None,
+        off_map: None,
     })
 }
 
@@ -207,7 +212,7 @@ fn from_points(
                     gridded.repeated
                 ));
             }
-            let warnings = gridded.outliers.iter().map(|o| Note::from(o.sentence(geometry.vertical.unit))).collect();
+            let off_map = gridded.outliers.map(|o| (o.count, Note::from(o.sentence(geometry.vertical.unit))));
             let count = |q| gridded.sheets.iter().flat_map(|s| &s.quality).filter(|k| **k == q).count();
             let (picked, filled) = (count(Quality::Picked), count(Quality::Filled));
             return Ok(Nodes {
@@ -216,8 +221,9 @@ fn from_points(
                 sheets: gridded.sheets,
                 outside: placed.outside,
                 notes,
-                warnings,
+                warnings: off_map.iter().map(|(_, note)| note.clone()).collect(),
                 surface: any_shape(Vec::new(), None).surface,
+                off_map,
             });
         };
         let (u, v) = (lattice.grid.u_step, lattice.grid.v_step);
@@ -236,7 +242,16 @@ fn from_points(
     if twice > 0 {
         notes.push(format!("{twice} points repeat the depth of another at the same node and were averaged with it"));
     }
-    Ok(Nodes { sheets, gridding, outside: placed.outside, multivalued, notes, warnings: Vec::new(), surface: None })
+    Ok(Nodes {
+        sheets,
+        gridding,
+        outside: placed.outside,
+        multivalued,
+        notes,
+        warnings: Vec::new(),
+        surface: None,
+        off_map: None,
+    })
 }
 
 /// Puts points on their nodes; several depths at a node make several sheets. Also counts such nodes, and repeated
@@ -325,5 +340,6 @@ fn from_mesh(
         notes: Vec::new(),
         warnings: Vec::new(),
         surface: None,
+        off_map: None,
     })
 }

@@ -149,6 +149,9 @@ pub struct ImportReport {
     pub notes: Vec<String>,
     /// What the user should check, one sentence each.
     pub warnings: Vec<Note>,
+    /// How many scattered points lie far off a map through their neighbours, and the warning that says so.
+    #[serde(skip)]
+    pub off_map: Option<(usize, Note)>,
 }
 
 impl fmt::Display for ImportReport {

@@ -25,11 +25,11 @@ use survey::progress::{Cancelled, Progress};
 use survey::topology::OrientedMesh;
 
 /// Nodes from one for which the closest triangle is looked for in the tree to the next, along each axis.
-const COARSE: usize = 5;
+const COARSE: usize = 4;
 /// Nodes that may be nearer to the surface than so many diagonals of a cell are looked for in the tree, too.
 const NEAR: f64 = 1.5;
 /// Least cosine between the gradients at the corners of a coarse cell in which distances are interpolated.
-const ALIKE: f64 = 0.98;
+const ALIKE: f64 = 0.999;
 
 /// A surface in metric space, ready for closest points.
 pub(super) struct Surface {
@@ -227,6 +227,14 @@ impl NodeBox {
             let after = (index[axis] + 1 < size[axis]).then(|| node + strides[axis]);
             before.into_iter().chain(after)
         })
+    }
+
+    /// The corners of the cell around a voxel position, or of the cell nearest to it.
+    pub fn around(&self, p: Vec3) -> impl Iterator<Item = usize> + use<> {
+        let size = self.size;
+        let at = ((p - self.origin) / self.step).max(Vec3::ZERO);
+        let [x, y, z] = [0, 1, 2].map(|axis: usize| (at[axis] as usize).min(size[axis].saturating_sub(2)));
+        (0..8).map(move |n| ((x + (n >> 2)) * size[1] + y + (n >> 1 & 1)) * size[2] + z + (n & 1))
     }
 
     /// Voxel position of a node.

@@ -98,8 +98,12 @@ impl Series<'_> {
     /// τ on a lattice whose spacing is `coarseness` times the finest.
     fn solve(&self, coarseness: f64, before: Option<&Solution>, progress: &Progress) -> Result<Solution, Cancelled> {
         let nodes = CutLattice::nodes_around(self.size, self.metric, NODES, coarseness);
-        let near =
+        let mut near =
             CutLattice::near_blocks(self.faults, nodes, AROUND, |node| Some(self.faults.block_at(nodes.place(node))));
+        // A block that is thinner than the spacing may have points and no node.
+        for point in self.points {
+            nodes.around(point.p).for_each(|node| near[usize::from(point.block)][node] = true);
+        }
         let lattice = CutLattice::of(self.faults, nodes, |block, node| near[block][node]);
         let first_level = lattice.unknowns as u32;
         let mut equations = Equations::default();

@@ -8,11 +8,15 @@ use crate::content;
 use crate::document::{HorizonEntry, Source};
 use crate::folder::Draft;
 use crate::interpretation::order;
-use formats::{ImportOptions, ImportReport};
+use formats::{Gridding, ImportOptions, ImportReport};
 use model::ContactRules;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use survey::{Contact, Horizon, Note, Progress, SurveyGeometry};
+
+/// So many scattered points far off a map through their neighbours, and more than this share of them, are no mis-picks.
+const FEWEST_OFF: usize = 4;
+const SHARE_OFF: f64 = 0.04;
 
 /// Where a horizon goes in the stratigraphy.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -82,6 +86,7 @@ impl AddHorizon {
         }
         model::check_surface(&horizon, contact, &geometry)?;
         let others = load_all(draft, progress)?;
+        self.as_limbs(&mut horizon, &others, &mut report);
         let position = position(&self.age, draft, &horizon, contact, &others)?;
         let contacts = draft.document.stratigraphy().horizons.iter().map(|h| h.contact).collect::<Vec<_>>();
         let contacts = [&contacts[..position], &[contact], &contacts[position..]].concat();
@@ -101,6 +106,22 @@ impl AddHorizon {
         };
         draft.document.split_layer(position, |document| document.horizons.insert(position, entry));
         Ok(Effect::HorizonAdded(Box::new(HorizonAdded { position, report })))
+    }
+
+    /// Takes scattered points as a surface of any shape where too many of them for mis-picks lie far off a map through
+    /// their neighbours, as the limbs of an overturned fold do, and other scattered points can tell the shape with them.
+    fn as_limbs(&self, horizon: &mut Horizon, others: &[Horizon], report: &mut ImportReport) {
+        let is_scattered = |other: &Horizon| other.surface.as_ref().is_some_and(|mesh| mesh.triangles.is_empty());
+        let Some((points, _)) = report.off_map.clone() else { return };
+        let count = horizon.surface.as_ref().map_or(0, |surface| surface.vertices.len());
+        let are_limbs = points >= FEWEST_OFF && points as f64 > SHARE_OFF * count as f64;
+        if self.options.shape.is_none() && are_limbs && is_scattered(horizon) && others.iter().any(is_scattered) {
+            take_as_points(horizon, report);
+            report.notes.push(format!(
+                "{points} of its points lie far off a map through their neighbours: they are taken as a surface of any \
+                 shape, several limbs over one place (--shape map: as a map)"
+            ));
+        }
     }
 
     /// Refuses a horizon that crosses another where neither ends the other. Scattered points whose maps cross though they
@@ -126,8 +147,7 @@ impl AddHorizon {
             if !(are_points && order::is_topmost(younger, older, geometry)) {
                 return Err(crossing);
             }
-            horizon.sheets.clear();
-            report.sheets = 0;
+            take_as_points(horizon, report);
             report.warnings.push(Note::from(format!(
                 "as a map, {crossing}. Its points are taken as a surface of any shape, in order of age"
             )));
@@ -139,6 +159,18 @@ impl AddHorizon {
     fn named(&self) -> ImportOptions {
         let name = self.options.name.clone().or_else(|| Some(self.name.clone()));
         ImportOptions { name, ..self.options.clone() }
+    }
+}
+
+/// Leaves a horizon nothing but its scattered points, and the report without what was said of the map between them.
+fn take_as_points(horizon: &mut Horizon, report: &mut ImportReport) {
+    horizon.sheets.clear();
+    report.sheets = 0;
+    report.multivalued = 0;
+    let corners = horizon.surface.as_ref().map_or(0, |surface| surface.vertices.len());
+    report.gridding = Gridding::AnyShape { corners, triangles: 0 };
+    if let Some((_, warning)) = report.off_map.take() {
+        report.warnings.retain(|other| *other != warning);
     }
 }
 
@@ -156,9 +188,8 @@ fn position(
         // A body is drawn over whatever it cuts; its layer is its own at the end of the list.
         Age::ByDepth if horizon.any_shape().is_some() && contact.is_intrusive() => Ok(others.len()),
         Age::ByDepth => {
-            let geometry = draft.document.frame()?;
-            let deeper = |other: &Horizon| order::is_above(horizon, other, geometry);
-            Ok(others.iter().position(deeper).unwrap_or(others.len()))
+            let contacts = draft.document.stratigraphy().horizons.iter().map(|h| h.contact).collect::<Vec<_>>();
+            Ok(order::place_among(horizon, others, &contacts, draft.document.frame()?))
         }
     }
 }

@@ -396,11 +396,11 @@ pub(crate) fn put(
     let geometry = draft.document.frame()?.clone();
     let name = &horizon.name;
     let old = draft.document.horizons.iter().position(|entry| entry.name == *name);
-    let others = draft.document.horizons.iter().filter(|entry| entry.name != *name);
-    let others = others.map(|entry| content::read_horizon(draft.root(), entry, progress));
+    let entries = || draft.document.horizons.iter().filter(|entry| entry.name != *name);
+    let others = entries().map(|entry| content::read_horizon(draft.root(), entry, progress));
     let others = others.collect::<Result<Vec<_>, _>>()?;
-    let deeper = others.iter().position(|other| order::is_above(horizon, other, &geometry));
-    let position = deeper.unwrap_or(others.len());
+    let contacts = entries().map(|entry| entry.contact).collect::<Vec<_>>();
+    let position = order::place_among(horizon, &others, &contacts, &geometry);
     let (file, new) = draft.generation("horizons", name, "zarr")?;
     store::write_horizon(&new, horizon, progress)?;
     let hash = content::hash_horizon(horizon);

@@ -9,7 +9,7 @@
 use crate::error::ProjectError;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use survey::{Horizon, NodeGrid, SurveyGeometry};
+use survey::{Contact, Horizon, NodeGrid, SurveyGeometry};
 
 /// Share of the common traces that may seem to cross.
 const TOLERATED_SHARE: f64 = 0.02;
@@ -23,6 +23,8 @@ const MOST_POINTS: usize = 4096;
 const FLAT_ENOUGH: f64 = 0.7;
 /// Determinant of the points' spread over the square of its trace below which they lie in a row.
 const IN_A_ROW: f64 = 1e-3;
+/// How clearly a horizon lies above another at least, of 1.
+const UNCLEAR: f64 = 0.1;
 /// Largest number of traces that are compared along each axis.
 const TRACES_ENOUGH: usize = 256;
 
@@ -33,24 +35,65 @@ struct Depths {
     deep: f32,
 }
 
-/// Whether `a` lies above `b` at most traces; horizons without a common trace are compared by their mean depth. Where one
-/// of them is no height field, their topmost places are compared: the highest limb of a fold is the right way up.
+/// Whether `a` lies above `b`.
 pub(crate) fn is_above(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> bool {
-    if a.any_shape().is_some() || b.any_shape().is_some() {
-        return is_topmost(a, b, geometry);
-    }
-    let (mut difference, mut common) = (0.0f64, 0usize);
-    for (a, b) in common_traces(a, b, geometry) {
-        difference += f64::from(a.shallow + a.deep - b.shallow - b.deep);
-        common += 1;
-    }
-    if common > 0 { difference < 0.0 } else { mean(a) < mean(b) }
+    lean(a, b, geometry) > 0.0
 }
 
-/// Whether scattered points of `a` lie above those of `b`, told where beds are flat enough to be the right way up more often
-/// than not: the median distance of points from planes through the nearest points of the other horizon. None where too few
+/// How clearly `a` lies above `b`: 1 where it does everywhere, −1 where it lies below. Maps are compared at their common
+/// traces, or else by their mean depth. Where one of them is no height field, or both are scattered points whose maps
+/// cross, scattered points are compared with planes through those around them, or else topmost places are: the highest
+/// limb of a fold is the right way up.
+pub(crate) fn lean(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> f64 {
+    if a.any_shape().is_some() || b.any_shape().is_some() {
+        return lean_of_shapes(a, b, geometry);
+    }
+    let (mut above, mut below, mut difference) = (0usize, 0usize, 0.0f64);
+    for (a, b) in common_traces(a, b, geometry) {
+        let by = f64::from(a.shallow + a.deep - b.shallow - b.deep);
+        difference += by;
+        above += usize::from(by < 0.0);
+        below += usize::from(by > 0.0);
+    }
+    let (common, lesser) = (above + below, above.min(below));
+    if lesser as f64 > TOLERATED_SHARE * common as f64
+        && a.surface.is_some()
+        && b.surface.is_some()
+        && let Some(lean) = lean_of_planes(a, b, geometry)
+    {
+        return lean;
+    }
+    let clearly = if common > 0 { (1.0 - 2.0 * lesser as f64 / common as f64).max(UNCLEAR) } else { UNCLEAR };
+    let is_above = if common > 0 { difference < 0.0 } else { mean(a) < mean(b) };
+    if is_above { clearly } else { -clearly }
+}
+
+/// The place of a horizon among `others`, youngest first: where most of them, by how clearly they do, lie on their side.
+/// Bodies have none: their contacts say that they cut what is there.
+pub(crate) fn place_among(
+    horizon: &Horizon,
+    others: &[Horizon],
+    contacts: &[Contact],
+    geometry: &SurveyGeometry,
+) -> usize {
+    let is_body = |n: usize| contacts[n].is_intrusive() && others[n].any_shape().is_some();
+    let lean = |n: usize| if is_body(n) { 0.0 } else { lean(horizon, &others[n], geometry) };
+    let leans: Vec<f64> = (0..others.len()).map(lean).collect();
+    // From one place to the next, the horizon between them changes sides.
+    let (mut best, mut most, mut sum) = (0, 0.0, 0.0);
+    for (n, lean) in leans.into_iter().enumerate() {
+        sum -= lean;
+        if sum > most {
+            (best, most) = (n + 1, sum);
+        }
+    }
+    best
+}
+
+/// How clearly scattered points of `a` lie above those of `b`, told where beds are flat enough to be the right way up more
+/// often than not, by distances of points from planes through the nearest points of the other horizon. None where too few
 /// lie so, or there are so many that their topmost places tell.
-fn is_above_planes(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> Option<bool> {
+fn lean_of_planes(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> Option<f64> {
     let metric = geometry.metric_from_voxel();
     let places = |horizon: &Horizon| -> Option<Vec<DVec3>> {
         let surface = horizon.surface.as_ref()?;
@@ -64,8 +107,8 @@ fn is_above_planes(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> Optio
     };
     let mut below = over(&a, &b);
     below.extend(over(&b, &a).into_iter().map(|distance| -distance));
-    below.sort_by(f64::total_cmp);
-    (below.len() >= NEAREST).then(|| below[below.len() / 2] < 0.0)
+    let above = below.iter().filter(|distance| **distance < 0.0).count();
+    (below.len() >= NEAREST).then(|| 2.0 * above as f64 / below.len() as f64 - 1.0)
 }
 
 /// How far a place lies below the plane through the nearest points, along its normal; none where that plane is steep, or the
@@ -98,16 +141,27 @@ fn below_plane(place: DVec3, points: &[DVec3]) -> Option<f64> {
 /// Cells along each side of the map in which topmost places are compared.
 const CELLS: usize = 8;
 
-/// Whether `a` lies above `b` where beds are the right way up: by planes through scattered points, else by the topmost
-/// places of both on the map.
+/// Whether `a` lies above `b` where beds are the right way up.
 pub(crate) fn is_topmost(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> bool {
-    if let Some(is_above) = is_above_planes(a, b, geometry) {
-        return is_above;
+    lean_of_shapes(a, b, geometry) > 0.0
+}
+
+/// How clearly `a` lies above `b` where beds are the right way up: by planes through scattered points, else by the topmost
+/// places of both on the map.
+fn lean_of_shapes(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> f64 {
+    if let Some(lean) = lean_of_planes(a, b, geometry) {
+        return lean;
     }
     let (tops_a, tops_b) = (tops(a, geometry), tops(b, geometry));
     let common = || tops_a.iter().zip(&tops_b).filter(|(a, b)| a.is_finite() && b.is_finite());
+    let count = common().count();
+    if count == 0 {
+        return if lowest(&tops_a) < lowest(&tops_b) { UNCLEAR } else { -UNCLEAR };
+    }
     let difference: f64 = common().map(|(a, b)| a - b).sum();
-    if common().count() > 0 { difference < 0.0 } else { lowest(&tops_a) < lowest(&tops_b) }
+    let lesser = common().filter(|(a, b)| (*a - *b) * difference < 0.0).count();
+    let clearly = (1.0 - 2.0 * lesser as f64 / count as f64).max(UNCLEAR);
+    if difference < 0.0 { clearly } else { -clearly }
 }
 
 fn lowest(tops: &[f64]) -> f64 {
