@@ -265,12 +265,12 @@ fn write_table<T: StoredSample>(
     let rows = values.len() / columns;
     let chunk = rows.clamp(1, ROWS);
     let layout = match columns {
-        1 => ArrayLayout { shape: vec![rows], chunk: vec![chunk], shard: None, axes: vec!["row"] },
+        1 => ArrayLayout { shape: vec![rows], chunk: vec![chunk], shard: None, axes: vec!["row".into()] },
         _ => ArrayLayout {
             shape: vec![rows, columns],
             chunk: vec![chunk, columns],
             shard: None,
-            axes: vec!["row", "column"],
+            axes: vec!["row".into(), "column".into()],
         },
     };
     write_array(group, name, layout, T::FILL, values, progress)
