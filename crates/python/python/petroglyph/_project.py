@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 Path = str | os.PathLike[str]
 Progress = Callable[[str, int, int], object]
-Option = str | int | float | bool | os.PathLike[str] | Sequence[str | int | float] | None
+#: A value of an option, as :func:`petroglyph.program.run` takes it.
+Option = Any
 
 #: What quality numbers of a horizon's nodes mean.
 QUALITIES = ("hole", "picked", "tracked", "filled", "extrapolated", "snapped")

@@ -297,12 +297,14 @@ def plan(source: Path, kind: Kind, *, memory: int = MEMORY, **settings: Options 
     **settings
         ``dip`` and ``semblance``.
     """
+    import numpy as np
+
     found = json.loads(_native.volume_info(source))
     nx, ny, nz = found["levels"][0]
     reach = bricks.halo(kind, **settings)
     own = min(FILE_LINES, nx) * min(FILE_LINES, ny)
     lines = _piece_lines(kind, nz, own, reach, memory)
-    sample = int(found["dtype"].lstrip("uintflo")) // 8
+    sample = np.dtype(found["dtype"]).itemsize
     columns = [(x, y) for x in range(0, nx, FILE_LINES) for y in range(0, ny, FILE_LINES)]
     read = 0
     for x, y in columns:
