@@ -110,7 +110,7 @@ def main():
     project = petroglyph.import_volume(samples, folder / "scale.petro", geometry=geometry)
     del samples
     rates = {}
-    print("| stage | tasks | CPU seconds | bytes read | bytes written | CPU seconds per GB of input |")
+    print("| stage | tasks | seconds of one thread | bytes read | bytes written | seconds per GB of input |")
     print("|---|---|---|---|---|---|")
     original = stages._run
     for kind in ("envelope", "semblance", "dip"):
