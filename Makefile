@@ -17,6 +17,9 @@
 #   make extraction measures the quality of horizon candidates, for docs/extraction.md
 #   make time       measures geologic time, for docs/time.md
 #   make picks      counts the picks that horizons take, for docs/picks.md
+#   make wheel      a wheel of the Python package, in target/wheels
+#   make test-python   pytest, mypy and the notebooks, in a virtual environment below target/ (PETROGLYPH_SKIP_PYTHON=1 skips it)
+#   make scale      measures tasks of Dask graphs, for docs/scale.md
 
 OUT ?= out/demo
 OUT_ACCURACY ?= docs/accuracy.md
@@ -33,7 +36,7 @@ SIZES ?= 1280x800 2560x1440
 APPEARANCES ?= light dark
 PYTHON ?= python3
 
-.PHONY: demo gallery screenshots test check bench accuracy extraction picks time speed check-peers check-review viewer scenario attack fuzz fuzz-long setup build
+.PHONY: demo gallery screenshots test check bench accuracy extraction picks time speed check-peers check-review viewer scenario attack fuzz fuzz-long setup build wheel test-python scale
 
 build: setup
 	cargo build --locked
@@ -88,6 +91,17 @@ speed: setup
 	cargo run --locked -q -p petroglyph-render --example illustration_speed -- --side $(SPEED_SIDE) --size $(SPEED_SIZE) --repeats 3
 	cargo run --locked -q -p petroglyph-param --example time_param -- --definitions $(SPEED_SIDE)
 	cargo run --locked -q -p petroglyph-render --example volume_speed -- --side $(SPEED_SIDE) --size $(SPEED_SIZE)
+
+wheel: setup
+	[ -x target/python/maturin/bin/maturin ] || { $(PYTHON) -m venv target/python/maturin && target/python/maturin/bin/pip install --quiet 'maturin>=1.9,<2'; }
+	target/python/maturin/bin/maturin build --release --locked --out target/wheels
+
+test-python: setup
+	crates/python/test.sh
+
+# In the environment that `make test-python` has made.
+scale:
+	target/python/venv/bin/python bench/scale.py
 
 scenario: build
 	tests/scenario.sh $(PETROGLYPH) out/scenario

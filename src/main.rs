@@ -1,8 +1,5 @@
 //! The `petroglyph` program.
 
-mod bench;
-mod cli;
-
 fn main() -> std::process::ExitCode {
-    cli::main()
+    petroglyph::main()
 }

@@ -5,11 +5,37 @@ use super::report::write_out;
 use super::run::Failure;
 use super::{hint, option};
 use project::error::remedy_of;
+use std::error::Error;
 use std::io::Write;
 use std::process::ExitCode;
 
-/// Prints a failure: the error with its causes in one sentence, and what to do next.
-pub(super) fn print(failure: &Failure, json: bool) -> ExitCode {
+/// Why a command was not carried out: one sentence, and what to do next.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Refusal {
+    /// The exit code of the program: 1 a failure, 2 wrong usage.
+    pub code: u8,
+    /// What is wrong.
+    pub reason: String,
+    /// What to do next.
+    pub hint: String,
+}
+
+impl Refusal {
+    /// What is wrong with the words of a command.
+    pub(super) fn of_usage(told: &clap::Error) -> Self {
+        let text = told.to_string();
+        let reason = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
+        Self { code: u8::try_from(told.exit_code()).unwrap_or(2), reason, hint: GENERAL_HINT.to_owned() }
+    }
+}
+
+/// What the program says about an error: the error with its causes in one sentence, and what to do next.
+pub fn explain(error: impl Error + Send + Sync + 'static) -> Refusal {
+    refusal(&Failure::Failed(error.into()))
+}
+
+/// The same for a failure.
+pub(super) fn refusal(failure: &Failure) -> Refusal {
     let (code, reason, hint) = match failure {
         Failure::Usage(reason) => (2, reason.clone(), GENERAL_HINT.to_owned()),
         Failure::Failed(error) => {
@@ -22,6 +48,12 @@ pub(super) fn print(failure: &Failure, json: bool) -> ExitCode {
             }
         }
     };
+    Refusal { code, reason, hint }
+}
+
+/// Prints a failure.
+pub(super) fn print(failure: &Failure, json: bool) -> ExitCode {
+    let Refusal { code, reason, hint } = refusal(failure);
     if json {
         // The exit code says that it failed, whether or not this can be written.
         let _ = write_out(&plain_json(&serde_json::json!({ "error": reason, "hint": hint }).to_string()));

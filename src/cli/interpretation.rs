@@ -38,6 +38,7 @@ pub(super) fn import(typed: ImportArgs) -> Result<ImportVolume, Usage> {
         name: typed.name,
         polarity: word("--polarity", &typed.polarity, &polarity)?,
         memory_bytes: bytes("--memory", typed.memory.as_deref())?,
+        moved: false,
     })
 }
 

@@ -30,10 +30,16 @@ mod segy;
 mod terminal;
 mod view;
 mod well;
+mod words;
+
+pub use failure::{Refusal, explain};
+pub use words::{CommandWords, OptionWords, commands};
 
 use clap::Parser;
+use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
+use survey::Progress;
 
 /// Runs the program with the arguments of this process.
 pub fn main() -> ExitCode {
@@ -50,6 +56,21 @@ pub fn main() -> ExitCode {
         Ok(report) => report.print(json),
         Err(failure) => failure::print(&failure, json),
     }
+}
+
+/// Carries out a command of which `typed` are the words, without the program's name in front. It prints nothing; the
+/// answer is the object of `--json`, without warnings, which go to `progress`.
+///
+/// # Errors
+/// The words are no command, or it could not be carried out.
+pub fn answer(typed: &[OsString], progress: &Progress) -> Result<serde_json::Value, Refusal> {
+    let line = [OsString::from("petroglyph")].into_iter().chain(typed.iter().cloned());
+    let typed = args::Arguments::try_parse_from(line).map_err(|told| Refusal::of_usage(&told))?;
+    let outcome = request::seconds("--wait", typed.wait)
+        .and_then(|wait| Ok((request::Request::try_from(typed.action)?, wait)))
+        .map_err(run::Failure::Usage)
+        .and_then(|(request, wait)| run::carry_out(request, wait, progress));
+    Ok(outcome.map_err(|failure| failure::refusal(&failure))?.into_object())
 }
 
 /// Prints the help, the version, or what is wrong with the usage.

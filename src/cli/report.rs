@@ -70,6 +70,15 @@ impl Report {
         Self { is_bad, ..self }
     }
 
+    /// The object for programs; an answer without fields has its text.
+    pub(super) fn into_object(mut self) -> Value {
+        if self.object.is_empty() && !self.lines.is_empty() {
+            let text = self.lines.join("\n");
+            self.field("text", text);
+        }
+        Value::Object(self.object)
+    }
+
     /// Prints the report.
     pub(super) fn print(self, json: bool) -> ExitCode {
         for note in &self.notes {

@@ -54,77 +54,88 @@ fn open_window(_: Option<PathBuf>, _: Option<&Path>) -> anyhow::Result<Report> {
     )
 }
 
-/// Carries out a request. Changes of a project wait for so long while another process is changing it.
+/// Carries out a request, with progress on the terminal. Changes of a project wait for so long while another process is
+/// changing it.
 pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
-    let open = |path: &Path| Project::open(path).map(|project| project.waiting(wait));
     if let Request::Window { project, frame_times } = request {
         return Ok(open_window(project, frame_times.as_deref())?);
     }
     let (terminal, progress) = Terminal::start();
-    let mut report = match request {
-        Request::Window { .. } => Report::default(),
+    let mut report = carry_out(request, wait, &progress)?;
+    let warnings = terminal.finish();
+    if !warnings.is_empty() {
+        report.field("warnings", warnings);
+    }
+    Ok(report)
+}
+
+/// The same, with progress to wherever it is wanted.
+pub(super) fn carry_out(request: Request, wait: Duration, progress: &Progress) -> Result<Report, Failure> {
+    let open = |path: &Path| Project::open(path).map(|project| project.waiting(wait));
+    Ok(match request {
+        Request::Window { project, frame_times } => open_window(project, frame_times.as_deref())?,
         Request::Demo { out } => told({
             refuse_inside_project(&out)?;
-            demo::run(&out, &progress)?
+            demo::run(&out, progress)?
         }),
         Request::Illustrate { survey, out, project, settings } => {
-            told(illustrate::run(&survey, &out, &project, &settings, &progress)?)
+            told(illustrate::run(&survey, &out, &project, &settings, progress)?)
         }
-        Request::Synth { out, settings } => synth(&out, &settings, &progress)?,
-        Request::SynthOutcrop { out, settings } => outcrop(&out, &settings, &progress)?,
+        Request::Synth { out, settings } => synth(&out, &settings, progress)?,
+        Request::SynthOutcrop { out, settings } => outcrop(&out, &settings, progress)?,
         Request::Info { path, distortion, segy, reading } => {
-            info::describe(&path, distortion, &segy, &reading, &progress)?
+            info::describe(&path, distortion, &segy, &reading, progress)?
         }
-        Request::Import { project, command } => import(&project, wait, &command, &progress)?,
+        Request::Import { project, command } => import(&project, wait, command, progress)?,
         Request::Export { project, out, surface: (kind, name), format, options } => {
-            export(&project, &out, (kind, &name), format, &options, &progress)?
+            export(&project, &out, (kind, &name), format, &options, progress)?
         }
         Request::Extract { project, extract } => {
             let extract = Command::Extract(extract);
-            match open(&project)?.apply(&extract, &progress)? {
+            match open(&project)?.apply(&extract, progress)? {
                 Effect::Extracted(done) => told(done),
                 other => told(other),
             }
         }
         Request::ExportCandidates { project, out } => {
             let project = open(&project)?;
-            let count = extraction::export_points(project.root(), project.document(), &out, &progress)?;
+            let count = extraction::export_points(project.root(), project.document(), &out, progress)?;
             let mut report = Report::line(format!("{}: {count} points of horizon candidates", out.display()));
             report.field("file", &out).field("points", count);
             report
         }
         Request::ExportValues { project, out, horizon, values, window } => {
             let project = open(&project)?;
-            let done = surface_export::write_values(&project, &out, (&horizon, &values), window, &progress)?;
+            let done = surface_export::write_values(&project, &out, (&horizon, &values), window, progress)?;
             let mut report = Report::line(format!("{}: {} nodes of {horizon}", out.display(), done.nodes));
             report.field("file", &out).field("nodes", done.nodes);
             report
         }
         Request::ExportVolume { project, out, volume, format } => {
-            told(segy_export::write(&open(&project)?, &out, &volume, format, &progress)?)
+            told(segy_export::write(&open(&project)?, &out, &volume, format, progress)?)
         }
-        Request::Parameterize { project, size, change } => parameterize(open(&project)?, size, change, &progress)?,
-        Request::Render(request) => draw::draw(&request, &progress)?,
-        Request::Animate(request) => animate::animate(&request, &progress)?,
-        Request::Review(request) => review::review(&request, &progress)?,
-        Request::ExportModel(request) => review::export_model(&request, &progress)?,
+        Request::Parameterize { project, size, change } => parameterize(open(&project)?, size, change, progress)?,
+        Request::Render(request) => draw::draw(&request, progress)?,
+        Request::Animate(request) => animate::animate(&request, progress)?,
+        Request::Review(request) => review::review(&request, progress)?,
+        Request::ExportModel(request) => review::export_model(&request, progress)?,
         Request::Figures { project, out, fonts, device, volume_bytes } => {
-            draw::figures(&project, &out, &fonts, (device, volume_bytes), &progress)?
+            draw::figures(&project, &out, &fonts, (device, volume_bytes), progress)?
         }
         Request::Patterns { out, project } => patterns(&out, project.as_deref())?,
-        Request::BenchSegy { side, folder } => told(bench::segy::run(side, &folder, &progress)?),
-        Request::Bench { sizes, dump } => told(bench::run(sizes, dump.as_deref(), &progress)?),
+        Request::BenchSegy { side, folder } => told(bench::segy::run(side, &folder, progress)?),
+        Request::Bench { sizes, dump } => told(bench::run(sizes, dump.as_deref(), progress)?),
         Request::Create { project, geometry } => {
             Project::create(&project, geometry)?.publish()?;
             let mut report = Report::line(format!("created {}", project.display()));
             report.field("project", project);
             report
         }
-        Request::Change { project, command } => change(open(&project)?, &command, &progress)?,
-        Request::Evaluate { project, truth } => assembly::evaluate(&project, &truth, &progress)?,
+        Request::Change { project, command } => change(open(&project)?, &command, progress)?,
+        Request::Evaluate { project, truth } => assembly::evaluate(&project, &truth, progress)?,
         Request::ProposeFaults { project, settings } => {
             let propose = Command::ProposeFaults(ProposeFaults { settings });
-            match open(&project)?.apply(&propose, &progress)? {
+            match open(&project)?.apply(&propose, progress)? {
                 Effect::FaultsProposed(done) => told(done),
                 other => told(other),
             }
@@ -136,28 +147,23 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
                 None => scene::choose(project.document(), None)?,
             };
             view.with_wells(&project)?.change(&mut scene, project.document().frame()?)?;
-            change(project, &Command::AddScene(AddScene { name, scene }), &progress)?
+            change(project, &Command::AddScene(AddScene { name, scene }), progress)?
         }
         Request::SetRaw { project, volume, map, range } => {
             let project = open(&project)?;
             let raw = styles::raw_colour(project.document(), volume.as_deref(), map, range)?;
-            change(project, &Command::SetRaw(SetRaw { raw }), &progress)?
+            change(project, &Command::SetRaw(SetRaw { raw }), progress)?
         }
         Request::List { project, what } => list::list(&open(&project)?, what)?,
         Request::Undo(project) => step("undone", open(&project)?.undo()?),
         Request::Redo(project) => step("redone", open(&project)?.redo()?),
-        Request::Check(project) => check::report(&project::check::check(&project, &progress)?),
-        Request::Repair(project) => check::report(&project::check::repair(&project, wait, &progress)?),
+        Request::Check(project) => check::report(&project::check::check(&project, progress)?),
+        Request::Repair(project) => check::report(&project::check::repair(&project, wait, progress)?),
         Request::Prune(project) => {
             open(&project)?.prune()?;
             Report::line("the history was deleted; only the present state is kept")
         }
-    };
-    let warnings = terminal.finish();
-    if !warnings.is_empty() {
-        report.field("warnings", warnings);
-    }
-    Ok(report)
+    })
 }
 
 fn synth(out: &Path, settings: &SynthSettings, progress: &Progress) -> anyhow::Result<Report> {

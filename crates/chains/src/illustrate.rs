@@ -149,6 +149,7 @@ fn build(
         polarity: Polarity::Normal,
         options: settings.options.clone(),
         memory_bytes: None,
+        moved: false,
     };
     project.apply(&Command::Import(import), progress)?;
     layers_by_time(project, settings.layers, progress)

@@ -54,34 +54,51 @@ impl Parameterization {
         size: [usize; 3],
         progress: &Progress,
     ) -> Result<VoxelParameterization, ParamError> {
-        if size.contains(&0) {
-            return Err(ParamError::VolumeSize { size });
+        self.voxel_box(model, size, [0; 3], size, progress)
+    }
+
+    /// The part of [`Self::voxel_volumes`] that begins at sample `start` and has `part` samples: the same values.
+    ///
+    /// # Errors
+    /// [`ParamError::VolumeSize`] when a side is 0 or the part reaches beyond the lattice, [`ParamError::Cancelled`].
+    pub fn voxel_box<M: LayerModel + ?Sized>(
+        &self,
+        model: &M,
+        size: [usize; 3],
+        start: [usize; 3],
+        part: [usize; 3],
+        progress: &Progress,
+    ) -> Result<VoxelParameterization, ParamError> {
+        let is_inside = |axis: usize| start[axis].checked_add(part[axis]).is_some_and(|end| end <= size[axis]);
+        if part.contains(&0) || !(0..3).all(is_inside) {
+            return Err(ParamError::VolumeSize { size: part });
         }
         let mut out = VoxelParameterization {
-            size,
-            i: Volume::filled(size, f32::NAN),
-            j: Volume::filled(size, f32::NAN),
-            k: Volume::filled(size, f32::NAN),
-            layer: Volume::filled(size, NO_REGION),
-            block: Volume::filled(size, NO_REGION),
+            size: part,
+            i: Volume::filled(part, f32::NAN),
+            j: Volume::filled(part, f32::NAN),
+            k: Volume::filled(part, f32::NAN),
+            layer: Volume::filled(part, NO_REGION),
+            block: Volume::filled(part, NO_REGION),
         };
-        progress.begin("sampling i, j, k", size[0] as u64);
-        let depths: Vec<f32> = (0..size[2]).map(|pz| corner_aligned(pz, size[2], self.size[2])).collect();
-        let slab = size[1] * size[2];
+        progress.begin("sampling i, j, k", part[0] as u64);
+        let depth = |pz: usize| corner_aligned(start[2] + pz, size[2], self.size[2]);
+        let depths: Vec<f32> = (0..part[2]).map(depth).collect();
+        let slab = part[1] * part[2];
         let values = out.i.samples_mut().par_chunks_mut(slab).zip(out.j.samples_mut().par_chunks_mut(slab));
         let values = values.zip(out.k.samples_mut().par_chunks_mut(slab));
         let ids = out.layer.samples_mut().par_chunks_mut(slab).zip(out.block.samples_mut().par_chunks_mut(slab));
         values.zip(ids).enumerate().try_for_each(|(px, (((i, j), k), (layer, block)))| {
-            let x = corner_aligned(px, size[0], self.size[0]);
-            for py in 0..size[1] {
-                let y = corner_aligned(py, size[1], self.size[1]);
+            let x = corner_aligned(start[0] + px, size[0], self.size[0]);
+            for py in 0..part[1] {
+                let y = corner_aligned(start[1] + py, size[1], self.size[1]);
                 let mut trace = TraceSheets::default();
                 model.regions_down(x, y, &depths, &mut |pz, region| {
                     if usize::from(region.layer) >= self.layers || usize::from(region.block) >= self.blocks {
                         return;
                     }
                     let value = trace.at(self, model, region, Vec3::new(x, y, depths[pz]));
-                    let n = py * size[2] + pz;
+                    let n = py * part[2] + pz;
                     (i[n], j[n], k[n]) = (value[0], value[1], value[2]);
                     (layer[n], block[n]) = (region.layer, region.block);
                 });

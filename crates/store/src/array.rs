@@ -116,6 +116,7 @@ fn create<T: StoredSample>(
     layout: &ArrayLayout,
     fill: T,
     codec: Arc<dyn BytesToBytesCodecTraits>,
+    mut attributes: Map<String, Value>,
 ) -> Result<Array<FilesystemStore>, StoreError> {
     let wide = |shape: &[usize]| shape.iter().map(|&n| n as u64).collect::<Vec<u64>>();
     let mut builder = ArrayBuilder::new(wide(&layout.shape), wide(layout.file_shape()), T::data_type(), T::fill(fill));
@@ -123,8 +124,9 @@ fn create<T: StoredSample>(
         builder.subchunk_shape(wide(&layout.chunk));
     }
     builder.bytes_to_bytes_codecs(vec![codec]);
-    builder.dimension_names(Some(layout.axes.iter().copied()));
-    builder.attributes(Map::from_iter([(COMPLETE.to_owned(), Value::Bool(true))]));
+    builder.dimension_names(Some(layout.axes.iter().map(String::as_str)));
+    attributes.insert(COMPLETE.to_owned(), Value::Bool(true));
+    builder.attributes(attributes);
     let array = builder.build(file_store(group, "written")?, &format!("/{name}"));
     let array = array.map_err(|error| StoreError::Array {
         path: group.to_owned(),
@@ -135,21 +137,29 @@ fn create<T: StoredSample>(
     Ok(array)
 }
 
-/// Writes the metadata of a volume whose shards are then written one by one (see `shard`): fill value 0.
+/// Writes the metadata of a level of a volume whose shards are then written one by one (see `shard`): fill value 0.
 pub(super) fn create_volume<T: StoredSample + Sample>(
     group: &Path,
-    name: &str,
+    level: usize,
     size: [usize; 3],
+    attributes: Map<String, Value>,
 ) -> Result<ShardGrid, StoreError> {
-    let layout = ArrayLayout::volume(size);
-    create(group, name, &layout, T::from_f32(0.0), Arc::new(Crc32cCodec::new()))?;
+    let layout = ArrayLayout::level(size, level);
+    create(group, &level.to_string(), &layout, T::from_f32(0.0), Arc::new(Crc32cCodec::new()), attributes)?;
+    Ok(volume_grid(group, level, size))
+}
+
+/// How a level of a volume is cut into shards by [`create_volume`].
+pub(super) fn volume_grid(group: &Path, level: usize, size: [usize; 3]) -> ShardGrid {
+    let layout = ArrayLayout::level(size, level);
     let three = |shape: &[usize]| [shape[0], shape[1], shape[2]];
-    Ok(ShardGrid {
-        folder: group.join(name),
+    ShardGrid {
+        folder: group.join(level.to_string()),
         shape: size,
         chunk: three(&layout.chunk),
         shard: three(layout.file_shape()),
-    })
+        beside_others: false,
+    }
 }
 
 /// Whether the chunks of the array `name` are stored as [`create_volume`] stores them.
@@ -181,7 +191,7 @@ fn plain_shards(group: &Path, name: &str, shape: &[usize]) -> Option<ShardGrid> 
     let chunk = edges(&sharding["chunk_shape"])?;
     let is_cut = (0..3).all(|axis| chunk[axis] > 0 && shard[axis].is_multiple_of(chunk[axis]) && shard[axis] > 0);
     let folder = group.join(name);
-    (is_plain && is_cut).then_some(ShardGrid { folder, shape, chunk, shard })
+    (is_plain && is_cut).then_some(ShardGrid { folder, shape, chunk, shard, beside_others: false })
 }
 
 /// An array that is being written, shard by shard, from any thread.
@@ -197,7 +207,18 @@ impl<T: StoredSample> ArrayWriter<T> {
     /// Creates the array `name` (it may contain `/`) in the folder `group`; `fill` is the value of elements that were
     /// not written.
     pub fn create(group: &Path, name: &str, layout: ArrayLayout, fill: T) -> Result<Self, StoreError> {
-        let array = create(group, name, &layout, fill, Arc::new(ZstdCodec::new(ZSTD_LEVEL, true)))?;
+        Self::described(group, name, layout, fill, Map::new())
+    }
+
+    /// The same, with attributes.
+    fn described(
+        group: &Path,
+        name: &str,
+        layout: ArrayLayout,
+        fill: T,
+        attributes: Map<String, Value>,
+    ) -> Result<Self, StoreError> {
+        let array = create(group, name, &layout, fill, Arc::new(ZstdCodec::new(ZSTD_LEVEL, true)), attributes)?;
         Ok(Self { group: group.to_owned(), name: name.to_owned(), layout, array, of: std::marker::PhantomData })
     }
 
@@ -228,11 +249,23 @@ pub fn write_array<T: StoredSample>(
     values: &[T],
     progress: &Progress,
 ) -> Result<(), StoreError> {
+    write_described(group, name, (layout, Map::new()), fill, values, progress)
+}
+
+/// The same, with attributes beside the layout.
+pub(super) fn write_described<T: StoredSample>(
+    group: &Path,
+    name: &str,
+    (layout, attributes): (ArrayLayout, Map<String, Value>),
+    fill: T,
+    values: &[T],
+    progress: &Progress,
+) -> Result<(), StoreError> {
     let expected = layout.shape.iter().product();
     if values.len() != expected {
         return Err(StoreError::SizeMismatch { what: "the array", expected, found: values.len() });
     }
-    let writer = ArrayWriter::create(group, name, layout, fill)?;
+    let writer = ArrayWriter::described(group, name, layout, fill, attributes)?;
     let (counts, edge) = (writer.layout.file_counts(), writer.layout.file_shape());
     let count: usize = counts.iter().product();
     progress.begin(&format!("writing {name}"), count as u64);

@@ -273,12 +273,12 @@ fn write_table<T: StoredSample>(
 fn table_layout(rows: usize, columns: usize) -> ArrayLayout {
     let chunk = rows.clamp(1, ROWS);
     match columns {
-        1 => ArrayLayout { shape: vec![rows], chunk: vec![chunk], shard: None, axes: vec!["row"] },
+        1 => ArrayLayout { shape: vec![rows], chunk: vec![chunk], shard: None, axes: vec!["row".into()] },
         _ => ArrayLayout {
             shape: vec![rows, columns],
             chunk: vec![chunk, columns],
             shard: None,
-            axes: vec!["row", "column"],
+            axes: vec!["row".into(), "column".into()],
         },
     }
 }

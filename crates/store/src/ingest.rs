@@ -8,6 +8,7 @@
 //! their checksums are verified before they are kept.
 
 use super::array::{create_volume, write_array, write_group};
+use super::coordinates;
 use super::error::StoreError;
 use super::header::write_header;
 use super::layout::{ArrayLayout, BRICK};
@@ -31,7 +32,7 @@ use survey::source::{Block, BlockSource, LineOrder, SourceError};
 use survey::volume::Volume;
 
 /// The file that marks a folder as being written; it is removed when the volume is complete.
-const MARKER: &str = "unfinished";
+pub(super) const MARKER: &str = "unfinished";
 
 /// Inlines of a finer level that are read at once.
 const INLINES_TOGETHER: usize = 8;
@@ -201,7 +202,7 @@ pub(super) fn is_unfinished(group: &Path) -> bool {
     group.join(MARKER).exists()
 }
 
-fn mask_of(size: [usize; 3], live: Option<&[bool]>, info: &VolumeInfo) -> Result<Vec<bool>, StoreError> {
+pub(super) fn mask_of(size: [usize; 3], live: Option<&[bool]>, info: &VolumeInfo) -> Result<Vec<bool>, StoreError> {
     let fits = |what, expected: usize, found: usize| {
         if expected == found { Ok(()) } else { Err(StoreError::SizeMismatch { what, expected, found }) }
     };
@@ -211,8 +212,24 @@ fn mask_of(size: [usize; 3], live: Option<&[bool]>, info: &VolumeInfo) -> Result
     Ok(live.to_vec())
 }
 
+/// Writes what a volume's group holds beside samples and their ranges.
+pub(super) fn write_frame(
+    group: &Path,
+    info: &VolumeInfo,
+    mask: &[bool],
+    progress: &Progress,
+) -> Result<(), StoreError> {
+    let size = info.geometry.size();
+    write_header(group, KIND, info)?;
+    write_group(group, "minmax", serde_json::Map::new())?;
+    let bytes: Vec<u8> = mask.iter().map(|&live| u8::from(live)).collect();
+    let layout = ArrayLayout::map([size[0], size[1]], ["inline", "crossline"]);
+    write_array(group, "live", layout, 0, &bytes, progress)?;
+    coordinates::write(group, &info.geometry, progress)
+}
+
 /// Every second entry along both axes.
-fn every_second(mask: &[bool], [nx, ny]: [usize; 2]) -> Vec<bool> {
+pub(super) fn every_second(mask: &[bool], [nx, ny]: [usize; 2]) -> Vec<bool> {
     (0..nx).step_by(2).flat_map(|x| (0..ny).step_by(2).map(move |y| mask[x * ny + y])).collect()
 }
 
@@ -234,12 +251,8 @@ impl Ingest<'_> {
         info: &VolumeInfo,
         supply: impl FnMut(&Block, Vec<T>) -> Result<Cow<'b, [T]>, SourceError>,
     ) -> Result<Ingested, StoreError> {
-        write_header(self.group, KIND, info)?;
-        write_group(self.group, "minmax", serde_json::Map::new())?;
-        let bytes: Vec<u8> = self.mask.iter().map(|&live| u8::from(live)).collect();
-        let layout = ArrayLayout::map([size[0], size[1]], ["inline", "crossline"]);
-        write_array(self.group, "live", layout, 0, &bytes, self.progress)?;
-        let (mut done, mut grid) = self.write_full(size, supply)?;
+        write_frame(self.group, info, &self.mask, self.progress)?;
+        let (mut done, mut grid) = self.write_full(size, info, supply)?;
         let (mut fine, mut fine_mask, mut level) = (size, Cow::Borrowed(&self.mask), 0);
         while fine.iter().any(|&n| n > BRICK) {
             level += 1;
@@ -256,9 +269,10 @@ impl Ingest<'_> {
     fn write_full<'b, T: StoredSample + Sample>(
         &self,
         size: [usize; 3],
+        info: &VolumeInfo,
         mut supply: impl FnMut(&Block, Vec<T>) -> Result<Cow<'b, [T]>, SourceError>,
     ) -> Result<(Ingested, ShardGrid), StoreError> {
-        let grid = create_volume::<T>(self.group, "0", size)?;
+        let grid = create_volume::<T>(self.group, 0, size, coordinates::attributes(0, info))?;
         let counts = grid.counts();
         let shards = Shards::new(grid.clone(), self.group, "0");
         let mut done = Ingested { files: counts.iter().product(), kept: 0 };
@@ -301,7 +315,7 @@ impl Ingest<'_> {
                 let found: Vec<IndexedRanges> = places
                     .par_iter()
                     .map(|&place| {
-                        let found = rooms.with(|bytes| self.write_shard(&grid, place, &samples, &self.mask, bytes))?;
+                        let found = rooms.with(|bytes| write_shard(&grid, place, &samples, &self.mask, bytes))?;
                         self.progress.step(1)?;
                         Ok(found)
                     })
@@ -316,22 +330,6 @@ impl Ingest<'_> {
         Ok((done, grid))
     }
 
-    /// Writes a shard from samples that contain all of it, and determines the ranges of its bricks.
-    fn write_shard<T: StoredSample + Sample>(
-        &self,
-        grid: &ShardGrid,
-        place: [usize; 3],
-        samples: &Samples<'_, T>,
-        mask: &[bool],
-        bytes: &mut Vec<u8>,
-    ) -> Result<IndexedRanges, StoreError> {
-        let mut found = Vec::new();
-        grid.write(place, samples.values, samples.first, samples.size, bytes, |from, inside| {
-            found.extend(samples.ranges(from, inside, mask, grid.shape));
-        })?;
-        Ok(found)
-    }
-
     /// Writes level `level` from the level before, whose files are `fine`.
     fn write_level<T: StoredSample + Sample>(
         &self,
@@ -344,7 +342,7 @@ impl Ingest<'_> {
         let name = level.to_string();
         let fine_size = fine.shape;
         let source = Shards::new(fine, self.group, &(level - 1).to_string());
-        let grid = create_volume::<T>(self.group, &name, size)?;
+        let grid = create_volume::<T>(self.group, level, size, serde_json::Map::new())?;
         let shards = Shards::new(grid.clone(), self.group, &name);
         let counts = grid.counts();
         let mut done = Ingested { files: counts.iter().product(), kept: 0 };
@@ -367,7 +365,7 @@ impl Ingest<'_> {
                     let found = rooms.with(|room| {
                         room.fill(&source, [fine_size, size], [start, part], [fine_mask, mask])?;
                         let samples = Samples { values: &room.coarse, first: start, size: part };
-                        self.write_shard(&grid, place, &samples, mask, &mut room.bytes)
+                        write_shard(&grid, place, &samples, mask, &mut room.bytes)
                     });
                     Ok((false, found?))
                 })
@@ -381,6 +379,21 @@ impl Ingest<'_> {
         ranges.write(self.group, level)?;
         Ok((done, grid))
     }
+}
+
+/// Writes a shard from samples that contain all of it, and determines the ranges of its bricks.
+pub(super) fn write_shard<T: StoredSample + Sample>(
+    grid: &ShardGrid,
+    place: [usize; 3],
+    samples: &Samples<'_, T>,
+    mask: &[bool],
+    bytes: &mut Vec<u8>,
+) -> Result<IndexedRanges, StoreError> {
+    let mut found = Vec::new();
+    grid.write(place, samples.values, samples.first, samples.size, bytes, |from, inside| {
+        found.extend(samples.ranges(from, inside, mask, grid.shape));
+    })?;
+    Ok(found)
 }
 
 /// Buffers that threads reuse: allocating fresh memory costs more than the work done in it.
@@ -404,11 +417,13 @@ impl<R: Default> Rooms<R> {
 }
 
 /// The buffers for making a shard of a further level.
-struct LevelRoom<T> {
+pub(super) struct LevelRoom<T> {
     halving: Halving,
     fine: Vec<T>,
-    coarse: Vec<T>,
-    bytes: Vec<u8>,
+    /// The samples of the box that was made last.
+    pub coarse: Vec<T>,
+    /// Room for the file.
+    pub bytes: Vec<u8>,
 }
 
 impl<T> Default for LevelRoom<T> {
@@ -420,7 +435,7 @@ impl<T> Default for LevelRoom<T> {
 impl<T: StoredSample + Sample> LevelRoom<T> {
     /// Makes the box `[start, part]` of a level from the finer one; `[fine, size]` are their sizes, and the masks are
     /// given in the same way.
-    fn fill(
+    pub fn fill(
         &mut self,
         source: &Shards,
         [fine, size]: [[usize; 3]; 2],

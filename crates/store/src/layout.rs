@@ -21,7 +21,7 @@ pub struct ArrayLayout {
     /// Elements of a shard along each axis, multiples of the chunk's; `None`: every chunk is a file.
     pub shard: Option<Vec<usize>>,
     /// Names of the axes.
-    pub axes: Vec<&'static str>,
+    pub axes: Vec<String>,
 }
 
 impl ArrayLayout {
@@ -29,19 +29,30 @@ impl ArrayLayout {
     pub fn volume(size: [usize; 3]) -> Self {
         let chunk: Vec<usize> = size.iter().map(|&n| n.clamp(1, BRICK)).collect();
         let shard = size.iter().map(|&n| if n > BRICK { BRICK * BRICKS_IN_SHARD } else { n.max(1) }).collect();
-        Self { shape: size.into(), chunk, shard: Some(shard), axes: vec!["inline", "crossline", "sample"] }
+        Self { shape: size.into(), chunk, shard: Some(shard), axes: named(&["inline", "crossline", "sample"]) }
+    }
+
+    /// A level of a volume's pyramid. Its axes have names of their own, `inline_2` for every second inline and so on, so
+    /// that programs that give an axis one length by its name open the group as a whole.
+    pub fn level(size: [usize; 3], level: usize) -> Self {
+        let layout = Self::volume(size);
+        if level == 0 {
+            return layout;
+        }
+        let axes = layout.axes.iter().map(|axis| format!("{axis}_{}", 1u64 << level)).collect();
+        Self { axes, ..layout }
     }
 
     /// A map, `[u][v]`.
-    pub fn map(size: [usize; 2], axes: [&'static str; 2]) -> Self {
+    pub fn map(size: [usize; 2], axes: [&str; 2]) -> Self {
         let chunk = size.iter().map(|&n| n.clamp(1, MAP_CHUNK)).collect();
-        Self { shape: size.into(), chunk, shard: None, axes: axes.into() }
+        Self { shape: size.into(), chunk, shard: None, axes: named(&axes) }
     }
 
     /// A small array that is one chunk.
-    pub fn whole(shape: &[usize], axes: Vec<&'static str>) -> Self {
+    pub fn whole(shape: &[usize], axes: &[&str]) -> Self {
         let chunk = shape.iter().map(|&n| n.max(1)).collect();
-        Self { shape: shape.into(), chunk, shard: None, axes }
+        Self { shape: shape.into(), chunk, shard: None, axes: named(axes) }
     }
 
     /// Elements of a file along each axis.
@@ -53,6 +64,10 @@ impl ArrayLayout {
     pub fn file_counts(&self) -> Vec<usize> {
         self.shape.iter().zip(self.file_shape()).map(|(&n, &edge)| n.div_ceil(edge)).collect()
     }
+}
+
+fn named(axes: &[&str]) -> Vec<String> {
+    axes.iter().map(|&axis| axis.to_owned()).collect()
 }
 
 /// Copies the box at `start` out of row-major `values` of `shape`, padded to `size` beyond the end.

@@ -2,7 +2,7 @@
 //! which other programs can open; faults and wells are in JSON.
 //!
 //! ```text
-//! volumes/NAME.zarr               write_volume, write_blocks, resume_blocks, link_volume, StoredVolume
+//! volumes/NAME.zarr               write_volume, write_blocks, resume_blocks, link_volume, VolumeParts, StoredVolume
 //! horizons/NAME.zarr              write_horizon, read_horizon
 //! faults/NAME.json                write_fault, read_fault
 //! wells/NAME.json                 write_well, read_well
@@ -12,7 +12,8 @@
 //!
 //! Everything is written under a temporary name in the same folder, synced, and renamed at the very end
 //! ([`Replacement`]). After a crash, a cancelled write or a full disk, the previous state is still there.
-//! [`resume_blocks`] is the exception: it writes in place, so that an interrupted write can be continued.
+//! [`resume_blocks`] is the exception: it writes in place, so that an interrupted write can be continued; so does
+//! [`VolumeParts`], with which several processes write one volume.
 //!
 //! Volumes that do not fit into memory come from a [`survey::source::BlockSource`], and candidates arrive
 //! through [`survey::candidates::CandidateSink`]. Only the modules `array` and `sample` use the array library
@@ -41,6 +42,7 @@
 mod array;
 mod candidates;
 mod capacity;
+mod coordinates;
 mod error;
 mod fault;
 mod header;
@@ -50,6 +52,7 @@ mod layout;
 mod linked;
 mod linking;
 mod parameterization;
+mod parts;
 mod placed;
 mod pyramid;
 mod ranges;
@@ -74,6 +77,8 @@ pub use ingest::{Ingested, MEMORY_BYTES, resume_blocks, write_blocks, write_volu
 pub use layout::{ArrayLayout, BRICK};
 pub use linking::link_volume;
 pub use parameterization::{NO_ID, ParameterizationVolumes, StoredParameterization, write_parameterization};
+pub use parts::VolumeParts;
+pub use ranges::IndexedRanges;
 pub use replacement::{Replacement, replace_file};
 pub use sample::StoredSample;
 pub use scratch::FolderArrays;

@@ -10,7 +10,7 @@ use survey::sample::Sample;
 
 /// Least and greatest value of bricks, by their index; the least is above the greatest where there is no
 /// value.
-pub(super) type IndexedRanges = Vec<(usize, [f32; 2])>;
+pub type IndexedRanges = Vec<(usize, [f32; 2])>;
 
 /// A box of samples whose first voxel is `first`.
 pub(super) struct Samples<'a, T> {
@@ -97,8 +97,7 @@ impl BrickRanges {
 
     pub fn write(&self, group: &Path, level: usize) -> Result<(), StoreError> {
         let [x, y, z] = self.counts;
-        let layout =
-            ArrayLayout::whole(&[x, y, z, 2], vec!["brick_inline", "brick_crossline", "brick_sample", "minmax"]);
+        let layout = ArrayLayout::whole(&[x, y, z, 2], &["brick_inline", "brick_crossline", "brick_sample", "minmax"]);
         let values = self.ranges.as_flattened();
         write_array(group, &format!("minmax/{level}"), layout, f32::NAN, values, &Progress::silent())
     }

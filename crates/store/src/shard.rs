@@ -41,6 +41,9 @@ use std::path::PathBuf;
 
 const _: () = assert!(cfg!(target_endian = "little"), "chunks are little-endian and read as they are");
 
+/// Ending of a shard's name until it is complete.
+pub(super) const PARTIAL: &str = "part";
+
 /// How a volume is cut into shards, and where they are.
 #[derive(Debug, Clone)]
 pub(super) struct ShardGrid {
@@ -52,6 +55,8 @@ pub(super) struct ShardGrid {
     pub chunk: [usize; 3],
     /// Edges of a shard, multiples of the chunk's.
     pub shard: [usize; 3],
+    /// Whether other processes may write the same shard: each then writes under a name of its own before the rename.
+    pub beside_others: bool,
 }
 
 impl ShardGrid {
@@ -108,7 +113,8 @@ impl ShardGrid {
         let length = self.encode(index, samples, first, size, bytes, visit);
         let path = self.folder.join(Self::key(index));
         let fail = |source| StoreError::io("written", &path, source);
-        let partial = path.with_extension("part");
+        let own = self.beside_others.then(|| format!("{}.{PARTIAL}", std::process::id()));
+        let partial = path.with_extension(own.as_deref().unwrap_or(PARTIAL));
         let written = match fs::write(&partial, &bytes[..length]) {
             Err(error) if error.kind() == ErrorKind::NotFound => {
                 let parent = partial.parent().unwrap_or(&self.folder);

@@ -5,6 +5,7 @@
 //! | `0` | the samples' own | `[inline][crossline][sample]` | the volume |
 //! | `1`, `2`, … | the same | each half the one before, rounded up | the volume, low-passed against aliasing; voxel m lies at m·2ᴸ |
 //! | `live` | uint8 | `[inline][crossline]` | 1 = the trace was recorded |
+//! | `inline`, `crossline`, `sample`, `cdp_x`, `cdp_y` | int32, float64 | one axis; `cdp_x` and `cdp_y` `[inline][crossline]` | coordinates, for programs that label arrays (see `coordinates`) |
 //! | `minmax/0`, … | float32 | `[brick x][brick y][brick z][2]` | least and greatest sample of each 64³ brick, NaN where it has none |
 //!
 //! Geometry, quantity, unit, polarity and source are in the group's attribute `petroglyph`. The last level is
@@ -16,6 +17,7 @@
 //! error that names the file and the brick.
 
 use super::array::StoredArray;
+use super::coordinates;
 use super::error::StoreError;
 use super::header::read_header;
 use super::ingest::is_unfinished;
@@ -243,6 +245,7 @@ impl StoredVolume {
             self.levels.iter().try_for_each(|array| array.find_damage(&mut findings, progress))?;
         }
         StoredArray::open(&self.path, "live")?.find_damage(&mut findings, progress)?;
+        coordinates::stored(&self.path)?.iter().try_for_each(|array| array.find_damage(&mut findings, progress))?;
         findings.into_result(&self.path)?;
         (0..self.levels.len()).try_for_each(|level| self.brick_ranges(level).map(drop))
     }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ImportArgs {
-    /// SEG-Y file
+    /// SEG-Y file, or folder of a volume that a project or the Python package has stored
     pub(in crate::cli) survey: PathBuf,
     /// Project folder; created if it does not exist
     pub(in crate::cli) project: PathBuf,

@@ -217,6 +217,7 @@ impl Import {
                     polarity: self.polarity,
                     options: self.options.clone(),
                     memory_bytes: None,
+                    moved: false,
                 });
                 let into = (target == Target::NewProject).then(|| PathBuf::from(self.root.trim()));
                 actions.push(Action::Import { command, into });

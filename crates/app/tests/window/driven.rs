@@ -98,6 +98,7 @@ pub fn project(folder: &Path) -> PathBuf {
         polarity: Default::default(),
         options: Default::default(),
         memory_bytes: None,
+        moved: false,
     };
     let mut commands = vec![Command::Import(import)];
     for (name, z) in [("Top", 30.0), ("Base", 80.0)] {

@@ -146,6 +146,7 @@ fn build_project(path: &Path, files: &SynthSurvey, progress: &Progress) -> Resul
             polarity: Polarity::Normal,
             options: SegyOptions::default(),
             memory_bytes: None,
+            moved: false,
         })
     };
     project.apply(&import(&files.survey, "seismic"), progress)?;

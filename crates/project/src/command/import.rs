@@ -1,6 +1,6 @@
 //! Importing and removing volumes.
 
-use super::{Effect, Noun, ProjectError};
+use super::{Effect, Noun, ProjectError, import_stored};
 use crate::content::volume_facts::{self, Facts};
 use crate::document::Polarity;
 use crate::folder::{Draft, IMPORTING};
@@ -13,10 +13,11 @@ use std::path::{Path, PathBuf};
 use store::{Ingested, StoreError, VolumeInfo, resume_blocks};
 use survey::{Note, Progress, SurveyGeometry};
 
-/// Reads a SEG-Y volume into the project. The first volume defines the survey geometry; others must lie in it.
+/// Reads a volume into the project: a SEG-Y file, or a folder in which a volume is stored as this program stores them
+/// (see [`super::import_stored`]). The first volume defines the survey geometry; others must lie in it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ImportVolume {
-    /// The file.
+    /// The file or folder.
     pub path: PathBuf,
     /// Name of the volume; `None`: "seismic" for the first one, otherwise the file's name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -31,6 +32,10 @@ pub struct ImportVolume {
     /// it.
     #[serde(skip)]
     pub memory_bytes: Option<u64>,
+    /// Move a stored volume instead of copying it: whoever wrote it did so for this project alone. It lies on the
+    /// project's disk.
+    #[serde(skip)]
+    pub moved: bool,
 }
 
 /// The report of an import.
@@ -69,6 +74,9 @@ impl ImportVolume {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let name = self.name_in(draft);
         draft.document.check_new_name(Noun::Volume, &name)?;
+        if self.path.is_dir() {
+            return import_stored::execute(self, name, draft, progress);
+        }
         let file = SegyFile::open(&self.path, &self.options, progress)?;
         let geometry = file.geometry()?;
         if let Some(frame) = &draft.document.geometry {
@@ -85,15 +93,7 @@ impl ImportVolume {
             let _ = fs::remove_dir_all(&folder);
         }
         let ingested = ingested?;
-        let own = match &draft.document.geometry {
-            None => {
-                draft.document.geometry = Some(geometry);
-                None
-            }
-            // The project states the velocity, wherever the lattice comes from.
-            Some(frame) if is_same_lattice(frame, &geometry) => None,
-            Some(_) => Some(geometry),
-        };
+        let own = own_lattice(draft, geometry);
         let info = file.info();
         let facts = Facts {
             name: name.clone(),
@@ -196,6 +196,19 @@ impl ImportVolume {
     }
 }
 
+/// The lattice of a new volume where it is not the project's, which is taken from the first volume.
+pub(super) fn own_lattice(draft: &mut Draft, geometry: SurveyGeometry) -> Option<SurveyGeometry> {
+    match &draft.document.geometry {
+        None => {
+            draft.document.geometry = Some(geometry);
+            None
+        }
+        // The project states the velocity, wherever the lattice comes from.
+        Some(frame) if is_same_lattice(frame, &geometry) => None,
+        Some(_) => Some(geometry),
+    }
+}
+
 /// Whether two lattices agree in everything but the velocity.
 fn is_same_lattice(a: &SurveyGeometry, b: &SurveyGeometry) -> bool {
     let velocity_m_s = a.velocity_m_s;
@@ -225,7 +238,7 @@ fn keep_only(folder: &Path, wanted: &Path) {
 }
 
 /// Turns a cancellation that the reader noticed into a cancellation, instead of a failure of the source.
-fn cancelled_within(error: StoreError) -> ProjectError {
+pub(super) fn cancelled_within(error: StoreError) -> ProjectError {
     match error {
         StoreError::Source { path, source } => match source.downcast::<segy::SegyError>() {
             Ok(segy) => (*segy).into(),

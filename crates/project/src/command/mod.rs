@@ -12,6 +12,7 @@ mod fault;
 mod fault_pick;
 mod horizon;
 mod import;
+mod import_stored;
 mod layer;
 mod link;
 mod note;

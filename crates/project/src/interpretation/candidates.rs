@@ -104,6 +104,7 @@ mod tests {
             polarity: Polarity::default(),
             options: SegyOptions::default(),
             memory_bytes: None,
+            moved: false,
         };
         new.project().apply(&Command::Import(import), &Progress::silent()).unwrap();
         new.publish().unwrap().root().to_owned()

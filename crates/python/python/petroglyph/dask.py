@@ -1,0 +1,698 @@
+"""Stages as Dask graphs over stored volumes, on any scheduler.
+
+A task is a pure function of named arrays in the store: it reads a brick with its halo, computes on one thread and writes
+whole files, each of which has its name only when it is complete. Nothing is kept from one task to the next. So a task may
+run anywhere, twice, or again after its worker was lost: the bytes are the same, and they are those of the program itself.
+
+Every function takes ``scheduler``, as of :func:`dask.compute` (``"threads"``, ``"processes"``, ``"synchronous"``), or a
+:class:`distributed.Client`; the names of tasks in the dashboard are those of the stages.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import socket
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any, Literal
+
+from petroglyph import STORE_VERSION, __version__, _native, bricks
+from petroglyph._errors import PetroglyphError
+from petroglyph._geometry import Geometry
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from petroglyph._project import Project
+
+Path = str | os.PathLike[str]
+Options = Mapping[str, Any]
+#: A scheduler by its name, or a client of a cluster.
+Scheduler = Any
+Kind = Literal["envelope", "semblance", "dip"]
+Place = tuple[int, int, int]
+#: What a task tells of the files that it wrote: numbers of bricks and their least and greatest samples.
+Ranges = tuple["npt.NDArray[np.uint64]", "npt.NDArray[np.float32]"]
+
+#: Lines of a file of a stored volume along both axes.
+FILE_LINES = 128
+#: Memory that a task may use unless another is stated, bytes.
+MEMORY = 1 << 30
+#: Memory that a worker needs before any task: Python, NumPy and the libraries.
+WORKER_BYTES = 200 << 20
+#: How often a task is tried again.
+RETRIES = 3
+#: Samples that a filtered level reaches beyond its own, in samples of the finer one.
+_FILTER_REACH = 3
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a run will do, before anything is computed.
+
+    Attributes
+    ----------
+    tasks : dict of str to int
+        Number of tasks by stage.
+    bytes_read, bytes_written : int
+        Bytes that all tasks read from the store and write to it, halos included.
+    task_bytes : int
+        The most memory that one task uses beside :data:`WORKER_BYTES`.
+    """
+
+    tasks: dict[str, int]
+    bytes_read: int
+    bytes_written: int
+    task_bytes: int
+
+
+# What runs on workers. All arguments are small; all data are in the store.
+
+
+def _same_version(client: tuple[str, int]) -> None:
+    here = (__version__, STORE_VERSION)
+    if client != here:
+        raise PetroglyphError(
+            f"the worker on {socket.gethostname()} has petroglyph {here[0]} with store version {here[1]}, the client "
+            f"{client[0]} with {client[1]}",
+            "install the same version on all workers and on the client",
+        )
+
+
+def _at_hand(path: str) -> str:
+    if not os.path.isdir(path):
+        raise PetroglyphError(
+            f"{path} is not there on the worker on {socket.gethostname()}",
+            "put the project on a disk that all workers see under the same path",
+        )
+    return path
+
+
+def _cut(start: int, count: int, reach: int, total: int) -> tuple[int, int, int]:
+    """First line and count of a range with its halo, and the halo before it."""
+    first = max(start - reach, 0)
+    return first, min(start + count + reach, total) - first, start - first
+
+
+def _piece_lines(kind: str, samples: int, own: int, reach: int, memory: int) -> int:
+    """Lines along both axes of the pieces in which a task computes, so that it keeps within its memory."""
+    lines = FILE_LINES
+    while lines > 16 and _task_bytes(kind, samples, own, reach, lines) > memory:
+        lines //= 2
+    return lines
+
+
+def _task_bytes(kind: str, samples: int, own: int, reach: int, lines: int) -> int:
+    """Memory of a task: its files as a whole and one of them as it is written, and a piece with its halo."""
+    files = own * samples * 4 * (2 if kind == "dip" else 1)
+    file = FILE_LINES**3 * 4 * 2
+    return files + file + (lines + 2 * reach) ** 2 * samples * bricks.BYTES_HELD[kind]
+
+
+@dataclass(frozen=True)
+class _Stage:
+    """What tasks of one stage have in common; small, and sent to workers."""
+
+    kind: str
+    source: str
+    targets: tuple[str, ...]
+    size: Place
+    lines: int
+    dip: str | None
+    semblance: str | None
+    geometry: str
+    version: tuple[str, int]
+
+
+def _compute(stage: _Stage, inputs: list[npt.NDArray[Any]], live: Any) -> list[npt.NDArray[Any]]:
+    if stage.kind == "envelope":
+        return [_native.envelope(inputs[0], live)]
+    if stage.kind == "semblance":
+        return [_native.semblance(inputs[0], live, stage.dip, stage.semblance)]
+    if stage.kind == "dip":
+        return _native.dip(inputs[0], live, stage.dip)
+    return [_native.dip_angle(inputs[0], inputs[1], stage.geometry, live)]
+
+
+def _column(stage: _Stage, sources: tuple[str, ...], start: tuple[int, int], count: tuple[int, int]) -> list[Ranges]:
+    """Computes a column of files, in pieces, and writes them."""
+    import numpy as np
+
+    _same_version(stage.version)
+    for path in (*sources, *stage.targets):
+        _at_hand(path)
+    nx, ny, nz = stage.size
+    reach = _native.reach(stage.kind, stage.dip, stage.semblance)
+    live = np.array(_native.read_live(sources[0]), dtype=bool).reshape(nx, ny)
+    results = [np.empty((*count, nz), dtype=np.float32) for _ in stage.targets]
+    for x in range(0, count[0], stage.lines):
+        for y in range(0, count[1], stage.lines):
+            own = (min(stage.lines, count[0] - x), min(stage.lines, count[1] - y))
+            x0, width, left = _cut(start[0] + x, own[0], reach, nx)
+            y0, depth, front = _cut(start[1] + y, own[1], reach, ny)
+            read = [_native.read_box(path, 0, (x0, y0, 0), (width, depth, nz)) for path in sources]
+            read = [np.ascontiguousarray(samples, dtype=np.float32) for samples in read]
+            mask = np.ascontiguousarray(live[x0 : x0 + width, y0 : y0 + depth])
+            found = _compute(stage, read, None if mask.all() else mask)
+            del read
+            inner = (slice(left, left + own[0]), slice(front, front + own[1]))
+            for result, values in zip(results, found, strict=True):
+                result[x : x + own[0], y : y + own[1]] = values[inner]
+            del found
+    return [_write(path, result, start) for path, result in zip(stage.targets, results, strict=True)]
+
+
+def _write(path: str, values: npt.NDArray[Any], start: tuple[int, int]) -> Ranges:
+    """Writes the files of a column of traces."""
+    import numpy as np
+
+    parts = _native.VolumeParts.open(path)
+    x0, y0 = start
+    found: list[tuple[int, tuple[float, float]]] = []
+    for place, first, part in parts.files(0):
+        if first[0] < x0 or first[1] < y0 or first[0] >= x0 + values.shape[0] or first[1] >= y0 + values.shape[1]:
+            continue
+        x, y, z = first[0] - x0, first[1] - y0, first[2]
+        box = values[x : x + part[0], y : y + part[1], z : z + part[2]]
+        found += parts.write((place[0], place[1], place[2]), np.ascontiguousarray(box))
+    return _packed(found)
+
+
+def _packed(found: Iterable[tuple[int, tuple[float, float]]]) -> Ranges:
+    import numpy as np
+
+    found = list(found)
+    numbers = np.array([brick for brick, _ in found], dtype=np.uint64)
+    return numbers, np.array([ends for _, ends in found], dtype=np.float32).reshape(-1, 2)
+
+
+def _halve(path: str, level: int, places: list[Place], version: tuple[str, int], *_: Any) -> Ranges:
+    """Makes files of a further level of the pyramid; the other arguments are what must be done before."""
+    _same_version(version)
+    parts = _native.VolumeParts.open(_at_hand(path))
+    return _packed(ranges for place in places for ranges in parts.halve(level, place))
+
+
+def _part(ranges: list[Ranges], n: int) -> Ranges:
+    return ranges[n]
+
+
+def _merge(found: list[Ranges]) -> Ranges:
+    import numpy as np
+
+    return np.concatenate([one[0] for one in found]), np.concatenate([one[1] for one in found])
+
+
+def _finish(path: str, levels: list[Ranges], version: tuple[str, int]) -> str:
+    _same_version(version)
+    unpacked = [list(zip(bricks.tolist(), ends.tolist(), strict=True)) for bricks, ends in levels]
+    _native.VolumeParts.open(_at_hand(path)).finish(unpacked)
+    return path
+
+
+# Graphs.
+
+
+class _Graph:
+    """A graph under construction: names of tasks, what they do and how many of each stage there are."""
+
+    def __init__(self, token: str) -> None:
+        self.token = token
+        self.tasks: dict[Any, Any] = {}
+        self.counts: dict[str, int] = {}
+
+    def add(self, stage: str, place: tuple[int, ...], call: tuple[Any, ...]) -> tuple[Any, ...]:
+        key = (f"{stage}-{self.token}", *place)
+        self.tasks[key] = call
+        self.counts[stage] = self.counts.get(stage, 0) + 1
+        return key
+
+    def pyramid(self, path: str, parts: _native.VolumeParts, columns: dict[tuple[int, int], Any], label: str) -> Any:
+        """The further levels of a volume whose level 0 is written by `columns`, and its completion."""
+        version = (__version__, STORE_VERSION)
+        before: dict[tuple[int, int], Any] = columns
+        levels = [self.add(f"merge{label}", (0,), (_merge, list(columns.values())))]
+        for level in range(1, parts.level_count()):
+            files: dict[tuple[int, int], list[Place]] = {}
+            spans: dict[tuple[int, int], tuple[list[int], list[int]]] = {}
+            for place, first, part in parts.files(level):
+                files.setdefault((place[0], place[1]), []).append((place[0], place[1], place[2]))
+                spans[place[0], place[1]] = (first, part)
+            made = {}
+            for column, places in files.items():
+                first, part = spans[column]
+                needed = [
+                    key
+                    for at, key in before.items()
+                    if all(
+                        at[axis] * FILE_LINES <= 2 * (first[axis] + part[axis] - 1) + _FILTER_REACH
+                        and (at[axis] + 1) * FILE_LINES > 2 * first[axis] - _FILTER_REACH
+                        for axis in (0, 1)
+                    )
+                ]
+                made[column] = self.add(
+                    f"halve{label}-{level}", column, (_halve, path, level, places, version, *needed)
+                )
+            levels.append(self.add(f"merge{label}", (level,), (_merge, list(made.values()))))
+            before = made
+        return self.add(f"finish{label}", (), (_finish, path, levels, version))
+
+
+def _run(graph: _Graph, wanted: list[Any], scheduler: Scheduler, retries: int) -> list[Any]:
+    """Runs a graph on a cluster's client or on a scheduler of this process."""
+    import dask
+    from dask.base import get_scheduler
+
+    if hasattr(scheduler, "get") and hasattr(scheduler, "scheduler_info"):
+        return list(scheduler.get(graph.tasks, wanted, retries=retries))
+    get = get_scheduler(scheduler=scheduler or "threads")
+    with dask.config.set({"optimization.fuse.active": False}):
+        return list(get(graph.tasks, wanted))
+
+
+def _target_info(source: str, quantity: str, unit: str | None) -> tuple[dict[str, Any], Geometry]:
+    info = json.loads(_native.volume_info(source))["info"]
+    name = FilePath(source).stem
+    made = {"geometry": info["geometry"], "quantity": quantity, "source": f"{quantity.split(' ')[0]} of {name}"}
+    if unit is not None:
+        made["unit"] = unit
+    return made, Geometry.from_dict(info["geometry"])
+
+
+def plan(source: Path, kind: Kind, *, memory: int = MEMORY, **settings: Options | None) -> Plan:
+    """What :func:`attribute` of a stored volume will do.
+
+    Parameters
+    ----------
+    source : path
+        Folder of the volume.
+    kind : {"envelope", "semblance", "dip"}
+        The attribute.
+    memory : int
+        Memory that a task may use, bytes.
+    **settings
+        ``dip`` and ``semblance``.
+    """
+    import numpy as np
+
+    found = json.loads(_native.volume_info(source))
+    nx, ny, nz = found["levels"][0]
+    reach = bricks.halo(kind, **settings)
+    own = min(FILE_LINES, nx) * min(FILE_LINES, ny)
+    lines = _piece_lines(kind, nz, own, reach, memory)
+    sample = np.dtype(found["dtype"]).itemsize
+    columns = [(x, y) for x in range(0, nx, FILE_LINES) for y in range(0, ny, FILE_LINES)]
+    read = 0
+    for x, y in columns:
+        for px in range(x, min(x + FILE_LINES, nx), lines):
+            for py in range(y, min(y + FILE_LINES, ny), lines):
+                _, width, _ = _cut(px, min(lines, min(x + FILE_LINES, nx) - px), reach, nx)
+                _, depth, _ = _cut(py, min(lines, min(y + FILE_LINES, ny) - py), reach, ny)
+                read += width * depth * nz * sample
+    tasks: dict[str, int] = {kind: len(columns)}
+    volumes = 3 if kind == "dip" else 1
+    written = nx * ny * nz * 4 * volumes
+    if kind == "dip":
+        tasks["dip-angle"] = len(columns)
+        read += 2 * nx * ny * nz * 4
+    levels = [tuple(size) for size in found["levels"]]
+    for level, size in enumerate(levels[1:], 1):
+        across = [-(-n // FILE_LINES) for n in size[:2]]
+        tasks[f"halve-{level}"] = across[0] * across[1] * volumes
+        finer = levels[level - 1]
+        read += finer[0] * finer[1] * finer[2] * 4 * volumes
+        written += size[0] * size[1] * size[2] * 4 * volumes
+    return Plan(tasks, read, written, _task_bytes(kind, nz, own, reach, lines))
+
+
+def attribute(
+    project: Project,
+    kind: Kind,
+    name: str,
+    *,
+    volume: str | None = None,
+    dip: Options | None = None,
+    semblance: Options | None = None,
+    scheduler: Scheduler = None,
+    memory: int = MEMORY,
+    retries: int = RETRIES,
+) -> dict[str, Any]:
+    """Computes an attribute of a volume on a cluster and adds it to the project.
+
+    Parameters
+    ----------
+    project : Project
+        The project, on a disk that all workers see.
+    kind : {"envelope", "semblance", "dip"}
+        What to compute.
+    name : str
+        Name of the new volume; a dip adds ``NAME-inline`` and ``NAME-crossline``.
+    volume : str, optional
+        The volume it is computed from; by default the first.
+    dip, semblance : mapping, optional
+        Settings, as of :meth:`petroglyph.Project.attribute`.
+    scheduler : str or distributed.Client, optional
+        Where it runs; by default on threads of this process.
+    memory : int
+        Memory that a task may use, bytes; see :func:`plan`.
+    retries : int
+        How often a task that failed is tried again on a cluster.
+
+    Returns
+    -------
+    dict
+        What was done, by name of the new volume.
+
+    Notes
+    -----
+    The bytes of the new volumes are those of :meth:`petroglyph.Project.attribute`. If a task fails for good, nothing is
+    added, and what was written is removed.
+    """
+    from petroglyph import _project
+
+    source = volume or (project.volumes or [""])[0]
+    path = os.path.abspath(project._native.volume_path(source))
+    suffixes = {"dip": (("-inline", "samples per inline"), ("-crossline", "samples per crossline"))}
+    made = [(f"{name}{suffix}", suffix, unit) for suffix, unit in suffixes.get(kind, (("", None),))]
+    if kind == "dip":
+        made.append((name, "", "degrees"))
+    folders = {new: os.path.abspath(_project._beside(project.path, new)) for new, _, _ in made}
+    found = json.loads(_native.volume_info(path))
+    size: Place = tuple(found["levels"][0])
+    live = project.volume(source).live()
+    try:
+        for new, suffix, unit in made:
+            shutil.rmtree(folders[new], ignore_errors=True)
+            info, geometry = _target_info(path, kind + suffix.replace("-", " "), unit)
+            info["source"] = f"{kind} of {source}"
+            info["geometry"]["velocity_m_s"] = project.geometry.velocity_m_s
+            _native.VolumeParts.create(folders[new], json.dumps(info), "float32", None if live.all() else live)
+        graph, wanted = _attribute_graph(path, folders, made, kind, size, project.geometry, dip, semblance, memory)
+        _run(graph, wanted, scheduler, retries)
+        done = {}
+        order = [made[-1], *made[:-1]] if kind == "dip" else made
+        for new, _, _ in order:
+            command = {"import": {"path": folders[new], "name": new}}
+            done[new] = project.apply(command, _moved=True)
+        return done
+    finally:
+        for folder in folders.values():
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def _attribute_graph(
+    path: str,
+    folders: dict[str, str],
+    made: list[tuple[str, str, str | None]],
+    kind: str,
+    size: Place,
+    geometry: Geometry,
+    dip: Options | None,
+    semblance: Options | None,
+    memory: int,
+) -> tuple[_Graph, list[Any]]:
+    from dask.base import tokenize
+
+
+    def as_json(options: Options | None) -> str | None:
+        return None if options is None else json.dumps(dict(options))
+
+    nx, ny, nz = size
+    own = min(FILE_LINES, nx) * min(FILE_LINES, ny)
+    computed = [folders[new] for new, suffix, _ in made if kind != "dip" or suffix]
+    reach = bricks.halo(kind, dip=dip, semblance=semblance)
+    lines = _piece_lines(kind, nz, own, reach, memory)
+    settings = (as_json(dip), as_json(semblance), geometry.to_json(), (__version__, STORE_VERSION))
+    stage = _Stage(kind, path, tuple(computed), size, lines, *settings)
+    graph = _Graph(tokenize(stage, folders))
+    columns = {
+        (x // FILE_LINES, y // FILE_LINES): ((x, y), (min(FILE_LINES, nx - x), min(FILE_LINES, ny - y)))
+        for x in range(0, nx, FILE_LINES)
+        for y in range(0, ny, FILE_LINES)
+    }
+    tasks = {at: graph.add(kind, at, (_column, stage, (path,), *place)) for at, place in columns.items()}
+    wanted = []
+    for n, target in enumerate(computed):
+        label = f"-{n}" if len(computed) > 1 else ""
+        ranges = {at: graph.add(f"ranges{label}", at, (_part, key, n)) for at, key in tasks.items()}
+        parts = _native.VolumeParts.open(target)
+        wanted.append(graph.pyramid(target, parts, ranges, label))
+    if kind == "dip":
+        angle_lines = _piece_lines("dip-angle", nz, own, 0, memory)
+        angle = folders[made[-1][0]]
+        stage = _Stage("dip-angle", path, (angle,), size, angle_lines, *settings)
+        sources = (computed[0], computed[1])
+        # Complete volumes alone can be read.
+        tasks = {
+            at: graph.add("dip-angle", at, (_after, _column, stage, sources, *place, *wanted))
+            for at, place in columns.items()
+        }
+        ranges = {at: graph.add("ranges-angle", at, (_part, key, 0)) for at, key in tasks.items()}
+        wanted.append(graph.pyramid(angle, _native.VolumeParts.open(angle), ranges, "-angle"))
+    return graph, wanted
+
+
+def _after(function: Callable[..., Any], stage: _Stage, sources: Any, start: Any, count: Any, *_: Any) -> Any:
+    """Calls a function once what else is in the arguments is done."""
+    return function(stage, sources, start, count)
+
+
+# Extrema, i, j, k and pictures.
+
+
+def _extrema_brick(
+    path: str, out: str, kind: str, start: tuple[int, int], count: tuple[int, int], version: tuple[str, int]
+) -> int:
+    import numpy as np
+    import zarr
+
+    _same_version(version)
+    group = zarr.open_group(_at_hand(out), mode="r+")
+    nx, ny, nz = json.loads(_native.volume_info(_at_hand(path)))["levels"][0]
+    samples = _native.read_box(path, 0, (*start, 0), (*count, nz)).astype(np.float32)
+    live = np.array(_native.read_live(path), dtype=bool).reshape(nx, ny)
+    box = (slice(start[0], start[0] + count[0]), slice(start[1], start[1] + count[1]))
+    counts, z, amplitude = _native.extrema(samples, kind, np.ascontiguousarray(live[box]))
+    most = group["z"].shape[2]
+    at = np.arange(most)[None, :] < counts[:, None]
+    for name, values in (("z", z), ("amplitude", amplitude)):
+        dense = np.full((counts.size, most), np.nan, dtype=np.float32)
+        dense[at] = values
+        group[name][box] = dense.reshape(*count, most)
+    group["count"][box] = counts.reshape(count)
+    return int(counts.sum())
+
+
+def extrema(
+    volume: Path,
+    out: Path,
+    kind: Literal["peak", "trough", "zero"] = "peak",
+    *,
+    scheduler: Scheduler = None,
+    retries: int = RETRIES,
+) -> int:
+    """Finds the extrema of every trace of a stored volume, refined between samples, and stores them as named arrays.
+
+    Parameters
+    ----------
+    volume : path
+        Folder of the volume.
+    out : path
+        Folder to write, a Zarr v3 group with ``count`` ``[inline][crossline]`` and ``z``, ``amplitude``
+        ``[inline][crossline][extremum]``, from the top down, NaN beyond the count.
+    kind : {"peak", "trough", "zero"}
+        What is looked for.
+    scheduler, retries
+        As of :func:`attribute`.
+
+    Returns
+    -------
+    int
+        How many there are.
+    """
+    import numpy as np
+    import zarr
+
+    found = json.loads(_native.volume_info(volume))
+    nx, ny, nz = found["levels"][0]
+    geometry = Geometry.from_dict(found["info"]["geometry"])
+    most = nz // 2 + 1
+    path, folder = os.path.abspath(volume), os.path.abspath(out)
+    partial = _fresh(folder)
+    try:
+        group = zarr.create_group(partial)
+        lines = (min(FILE_LINES, nx), min(FILE_LINES, ny))
+        axes = ("inline", "crossline", "extremum")
+        for name in ("z", "amplitude"):
+            group.create_array(
+                name, shape=(nx, ny, most), chunks=(*lines, most), dtype=np.float32, fill_value=np.nan,
+                dimension_names=axes, attributes={"kind": kind},
+            )  # fmt: skip
+        group.create_array("count", shape=(nx, ny), chunks=lines, dtype=np.uint32, dimension_names=axes[:2])
+        _write_lines(group, geometry)
+        graph = _Graph(_token(path, partial, kind))
+        version = (__version__, STORE_VERSION)
+        tasks = [
+            graph.add(f"extrema-{kind}", at, (_extrema_brick, path, partial, kind, start, count, version))
+            for at, start, count in _columns(nx, ny)
+        ]
+        total = int(sum(_run(graph, tasks, scheduler, retries)))
+        _publish(partial, folder)
+        return total
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+
+
+def _parameters_slab(
+    path: str, out: str, size: Place, start: int, count: int, version: tuple[str, int]
+) -> int:
+    import zarr
+
+    from petroglyph import open as open_project
+
+    _same_version(version)
+    group = zarr.open_group(_at_hand(out), mode="r+")
+    project = open_project(_at_hand(path))
+    part = (count, size[1], size[2])
+    fields, ids = project._native.parameterization(size, (start, 0, 0), part, None, 1)
+    for name, values in zip(("i", "j", "k", "layer", "block"), (*fields, *ids), strict=True):
+        group[name][start : start + count] = values
+    return count
+
+
+def parameterize(
+    project: Project,
+    out: Path,
+    *,
+    size: Place | None = None,
+    inlines: int = 32,
+    scheduler: Scheduler = None,
+    retries: int = RETRIES,
+) -> Path:
+    """Samples i, j, k, layer and block at every sample, slab by slab, into a Zarr v3 group.
+
+    Parameters
+    ----------
+    project : Project
+        The project; its model and the grids of its parameterization are made first, and are read by every task.
+    out : path
+        Folder to write: arrays ``i``, ``j``, ``k`` (float32) and ``layer``, ``block`` (uint16), which other projects take in
+        by :meth:`petroglyph.Project.set_parameterization`.
+    size : tuple of int, optional
+        Samples along each axis; by default those of the survey.
+    inlines : int
+        Inlines of a task: its memory is that of the model and of 28 bytes for each sample of the slab.
+    scheduler, retries
+        As of :func:`attribute`.
+    """
+    import numpy as np
+    import zarr
+
+    project._native.keep_parameterization()
+    size = size or project.geometry.shape
+    folder = os.path.abspath(out)
+    partial = _fresh(folder)
+    try:
+        group = zarr.create_group(partial)
+        axes = ("inline", "crossline", "sample")
+        chunks = (min(inlines, size[0]), min(FILE_LINES, size[1]), min(FILE_LINES, size[2]))
+        for name in ("i", "j", "k", "layer", "block"):
+            floats = name in "ijk"
+            dtype, fill = (np.float32, np.nan) if floats else (np.uint16, 65535)
+            group.create_array(name, shape=size, chunks=chunks, dtype=dtype, fill_value=fill, dimension_names=axes)
+        if size == project.geometry.shape:
+            _write_lines(group, project.geometry)
+        path = os.path.abspath(project.path)
+        graph = _Graph(_token(path, partial, size, inlines))
+        version = (__version__, STORE_VERSION)
+        tasks = [
+            graph.add("sample-ijk", (x,), (_parameters_slab, path, partial, size, x, min(inlines, size[0] - x), version))
+            for x in range(0, size[0], inlines)
+        ]
+        _run(graph, tasks, scheduler, retries)
+        _publish(partial, folder)
+        return out
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+
+
+def _picture(path: str, options: dict[str, Any], version: tuple[str, int]) -> bytes:
+    from petroglyph import open as open_project
+
+    _same_version(version)
+    return open_project(_at_hand(path)).render(threads=1, **options)._repr_png_()
+
+
+def render(
+    project: Project, pictures: Iterable[Options], *, scheduler: Scheduler = None, retries: int = RETRIES
+) -> list[Any]:
+    """Draws pictures, sections or maps of a project side by side, each as a task.
+
+    Parameters
+    ----------
+    project : Project
+        The project, on a disk that all workers see.
+    pictures : iterable of mapping
+        The options of :meth:`petroglyph.Project.render` for each.
+    scheduler, retries
+        As of :func:`attribute`.
+
+    Returns
+    -------
+    list of Picture
+        In the order of `pictures`.
+    """
+    from petroglyph._project import Picture
+
+    path = os.path.abspath(project.path)
+    wanted = [dict(options) for options in pictures]
+    graph = _Graph(_token(path, wanted, len(project.history)))
+    version = (__version__, STORE_VERSION)
+    tasks = [graph.add("render", (n,), (_picture, path, options, version)) for n, options in enumerate(wanted)]
+    return [Picture(png, {}) for png in _run(graph, tasks, scheduler, retries)]
+
+
+def _columns(nx: int, ny: int) -> list[tuple[tuple[int, int], tuple[int, int], tuple[int, int]]]:
+    return [
+        ((x // FILE_LINES, y // FILE_LINES), (x, y), (min(FILE_LINES, nx - x), min(FILE_LINES, ny - y)))
+        for x in range(0, nx, FILE_LINES)
+        for y in range(0, ny, FILE_LINES)
+    ]
+
+
+def _token(*of: Any) -> str:
+    from dask.base import tokenize
+
+    return str(tokenize(*of))
+
+
+def _fresh(folder: str) -> str:
+    """Where a group is written until it is complete."""
+    if os.path.exists(folder):
+        raise PetroglyphError(f"{folder} exists already", "remove it first, or write elsewhere")
+    partial = f"{folder}.part"
+    shutil.rmtree(partial, ignore_errors=True)
+    return partial
+
+
+def _publish(partial: str, folder: str) -> None:
+    os.rename(partial, folder)
+
+
+def _write_lines(group: Any, geometry: Geometry) -> None:
+    """Writes the coordinates of the traces into a group."""
+    import numpy as np
+
+    names = ("inline", "crossline", "sample", "cdp_x", "cdp_y")
+    for name, (dims, values, attributes) in geometry.coordinates().items():
+        if name in names:
+            values = np.asarray(values)
+            made = group.create_array(
+                name, shape=values.shape, chunks=values.shape, dtype=values.dtype, dimension_names=dims,
+                attributes=attributes,
+            )  # fmt: skip
+            made[...] = values

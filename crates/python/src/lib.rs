@@ -1,0 +1,52 @@
+//! The Python package's native part: `petroglyph._native`. The Python sources beside it (`python/petroglyph`) give it names,
+//! types and documentation.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`mod@project`] | a project: commands in and effects out as JSON, its data as arrays |
+//! | [`mod@program`] | the commands of the command line, carried out in this process |
+//! | [`mod@bricks`] | pure functions on a brick with its halo, on one thread each |
+//! | [`mod@stored`] | stored volumes, read by box, written from Python, or written file by file by many processes |
+//! | [`mod@schema`] | names of commands and of their fields, so that tests compare them with their Python twins |
+//! | [`mod@arrays`] | vectors become arrays without a copy |
+//! | [`mod@work`] | long work: Python's lock is released, signals and progress reach whoever called |
+//! | [`mod@refusal`] | errors with the sentence and the hint of the command line |
+//!
+//! Deliberately absent: any computation, and any word about an error that the command line does not say.
+
+mod arrays;
+mod bricks;
+mod program;
+mod project;
+mod refusal;
+mod schema;
+mod stored;
+mod work;
+
+use pyo3::prelude::*;
+
+/// The module that Python imports.
+#[pymodule]
+fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("STORE_VERSION", store::VERSION)?;
+    module.add_class::<project::Project>()?;
+    module.add_class::<stored::VolumeParts>()?;
+    module.add_function(wrap_pyfunction!(program::run, module)?)?;
+    module.add_function(wrap_pyfunction!(program::commands, module)?)?;
+    module.add_function(wrap_pyfunction!(program::decode_png, module)?)?;
+    module.add_function(wrap_pyfunction!(schema::command_fields, module)?)?;
+    module.add_function(wrap_pyfunction!(stored::volume_info, module)?)?;
+    module.add_function(wrap_pyfunction!(stored::read_box, module)?)?;
+    module.add_function(wrap_pyfunction!(stored::read_live, module)?)?;
+    module.add_function(wrap_pyfunction!(stored::write_volume, module)?)?;
+    module.add_function(wrap_pyfunction!(arrays::handed_over, module)?)?;
+    module.add_function(wrap_pyfunction!(arrays::seen_at, module)?)?;
+    module.add_function(wrap_pyfunction!(bricks::reach, module)?)?;
+    module.add_function(wrap_pyfunction!(bricks::envelope, module)?)?;
+    module.add_function(wrap_pyfunction!(bricks::semblance, module)?)?;
+    module.add_function(wrap_pyfunction!(bricks::dip, module)?)?;
+    module.add_function(wrap_pyfunction!(bricks::dip_angle, module)?)?;
+    module.add_function(wrap_pyfunction!(bricks::extrema, module)?)?;
+    Ok(())
+}

@@ -1,0 +1,268 @@
+"""Stages as graphs: the same bytes on any scheduler, for any tiling, with workers lost."""
+
+import json
+import os
+import pickle
+import time
+from pathlib import Path
+
+import numpy as np
+import petroglyph
+import pytest
+from petroglyph import _native, bricks
+
+dask = pytest.importorskip("dask")
+distributed = pytest.importorskip("distributed")
+import petroglyph.dask  # noqa: E402
+
+
+def contents(folder):
+    """Every file below a folder, with its bytes."""
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in sorted(Path(folder).rglob("*")) if path.is_file()}
+
+
+def same(project, one, other):
+    """Whether two volumes are the same bytes but for the names they were given."""
+    a, b = contents(project.volume(one).path), contents(project.volume(other).path)
+    assert a.keys() == b.keys()
+    different = [name for name in a if name != "zarr.json" and a[name] != b[name]]
+    return not different and json.loads(a["zarr.json"]) == json.loads(b["zarr.json"])
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    """A cluster of two processes on this machine."""
+    with dask.config.set({"distributed.comm.timeouts.connect": "60s", "distributed.scheduler.allowed-failures": 5}):
+        with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as made:
+            with distributed.Client(made) as client:
+                yield client
+
+
+@pytest.mark.parametrize("kind", ["envelope", "semblance", "dip"])
+def test_a_graph_writes_the_bytes_of_the_program(large, kind):
+    large.attribute(kind, "whole")
+    done = petroglyph.dask.attribute(large, kind, "parted", scheduler="synchronous")
+    assert "parted" in done
+    for suffix in ("", "-inline", "-crossline") if kind == "dip" else ("",):
+        assert same(large, f"whole{suffix}", f"parted{suffix}"), suffix
+    assert large.document["volumes"][-1]["hash"]
+    hashes = {entry["name"]: entry["hash"] for entry in large.document["volumes"]}
+    assert hashes["whole"] == hashes["parted"]
+    assert [path.name for path in large.path.parent.iterdir()] == ["large.petro"]
+
+
+@pytest.mark.parametrize("memory", [1 << 40, 50 << 20, 1])
+def test_pieces_of_any_size_give_the_same_bytes(large, memory):
+    large.attribute("semblance", "whole")
+    petroglyph.dask.attribute(large, "semblance", "parted", scheduler="threads", memory=memory)
+    assert same(large, "whole", "parted")
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (3, 150), (37, 23), (128, 140), (149, 7)])
+def test_bricks_of_every_odd_shape_agree_with_the_whole(large, shape):
+    samples, live = large.volume().numpy()[:, :, :20].copy(), large.volume().live()
+    reach = bricks.halo("semblance")
+    whole = bricks.semblance(samples, live)
+    nx, ny, _ = samples.shape
+    random = np.random.default_rng(sum(shape))
+    for _ in range(4):
+        x, y = int(random.integers(0, nx - shape[0] + 1)), int(random.integers(0, max(ny - shape[1], 0) + 1))
+        ends = (min(x + shape[0], nx), min(y + shape[1], ny))
+        low, high = (max(x - reach, 0), max(y - reach, 0)), (min(ends[0] + reach, nx), min(ends[1] + reach, ny))
+        box = (slice(low[0], high[0]), slice(low[1], high[1]))
+        part = bricks.semblance(np.ascontiguousarray(samples[box]), np.ascontiguousarray(live[box]))
+        inner = part[x - low[0] : ends[0] - low[0], y - low[1] : ends[1] - low[1]]
+        assert inner.tobytes() == np.ascontiguousarray(whole[x : ends[0], y : ends[1]]).tobytes()
+
+
+def test_two_processes_write_the_same_bytes_and_tasks_have_names(large, cluster):
+    large.attribute("semblance", "whole")
+    seen = []
+    original = petroglyph.dask._run
+    petroglyph.dask._run = lambda graph, *rest: seen.append(graph.counts) or original(graph, *rest)
+    try:
+        petroglyph.dask.attribute(large, "semblance", "parted", scheduler=cluster)
+    finally:
+        petroglyph.dask._run = original
+    assert same(large, "whole", "parted")
+    plan = petroglyph.dask.plan(large.volume().path, "semblance")
+    assert all(seen[0][stage] == count for stage, count in plan.tasks.items())
+    assert {"semblance", "halve-1"} <= set(plan.tasks)
+
+
+def test_one_and_four_workers_write_the_same_bytes(large):
+    large.attribute("envelope", "whole")
+    for workers in (1, 4):
+        with distributed.LocalCluster(
+            n_workers=workers, threads_per_worker=1, processes=workers == 1, dashboard_address=None
+        ) as made, distributed.Client(made) as client:
+            petroglyph.dask.attribute(large, "envelope", f"on-{workers}", scheduler=client)
+        assert same(large, "whole", f"on-{workers}")
+
+
+def kill_once(marker):
+    """Kills the process that runs this, the first time."""
+    try:
+        os.close(os.open(marker, os.O_CREAT | os.O_EXCL))
+    except FileExistsError:
+        return
+    time.sleep(0.1)
+    os._exit(17)
+
+
+def test_a_worker_that_is_killed_in_the_middle_changes_nothing(large, cluster, tmp_path, monkeypatch):
+    large.attribute("semblance", "whole")
+    marker = str(tmp_path / "killed")
+    original = petroglyph.dask._attribute_graph
+
+    def with_a_killer(*args):
+        graph, wanted = original(*args)
+        stage, *rest = next(key for key in graph.tasks if key[0].startswith("halve-1"))
+        killer = ("killer", 0)
+        graph.tasks[killer] = (kill_once, marker)
+        call = graph.tasks[(stage, *rest)]
+        graph.tasks[(stage, *rest)] = (*call, killer)
+        return graph, wanted
+
+    monkeypatch.setattr(petroglyph.dask, "_attribute_graph", with_a_killer)
+    cluster.register_plugin(_Importable(str(Path(__file__).parent)))
+    petroglyph.dask.attribute(large, "semblance", "parted", scheduler=cluster)
+    assert os.path.exists(marker), "a worker was killed"
+    assert same(large, "whole", "parted")
+
+
+class _Importable(distributed.WorkerPlugin):
+    """Lets workers, and those that take the place of lost ones, import this file."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def setup(self, worker):
+        import sys
+
+        sys.path.insert(0, self.folder)
+
+
+def test_extrema_are_named_arrays(large, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    path = large.volume().path
+    total = petroglyph.dask.extrema(path, tmp_path / "peaks.zarr", "peak", scheduler="threads")
+    found = xarray.open_zarr(tmp_path / "peaks.zarr", consolidated=False)
+    counts, z, amplitude = bricks.extrema(large.volume().numpy(), "peak", large.volume().live())
+    assert int(found["count"].sum()) == total == counts.sum()
+    assert np.array_equal(found["count"].values.ravel(), counts)
+    dense = found["z"].values.reshape(counts.size, -1)
+    assert np.array_equal(dense[np.isfinite(dense)], z)
+    assert found["z"].dims == ("inline", "crossline", "extremum") and "cdp_x" in found
+    with pytest.raises(petroglyph.PetroglyphError, match="exists already"):
+        petroglyph.dask.extrema(path, tmp_path / "peaks.zarr")
+
+
+@pytest.mark.parametrize("inlines", [7, 40])
+def test_layer_coordinates_do_not_depend_on_the_slabs(project, tmp_path, inlines):
+    xarray = pytest.importorskip("xarray")
+    petroglyph.dask.parameterize(project, tmp_path / "p.zarr", inlines=inlines, scheduler="threads")
+    found, whole = xarray.open_zarr(tmp_path / "p.zarr", consolidated=False), project.parameterization()
+    for name in whole.data_vars:
+        assert found[name].values.tobytes() == whole[name].values.tobytes(), name
+    project.set_parameterization(tmp_path / "p.zarr")
+    assert "parameterization" in project.document
+
+
+def test_pictures_are_drawn_side_by_side(project):
+    line = project.geometry.inlines[0]
+    options = [{"inline": str(line + n), "size_cm": "6x4", "dpi": 60} for n in (2, 20)]
+    drawn = petroglyph.dask.render(project, options, scheduler="threads")
+    assert [one._repr_png_() for one in drawn] == [project.render(**option)._repr_png_() for option in options]
+    assert drawn[0]._repr_png_() != drawn[1]._repr_png_()
+
+
+# What goes wrong.
+
+
+def test_two_versions_are_told_and_nothing_is_written(large, monkeypatch):
+    before = contents(large.path)
+    monkeypatch.setattr(petroglyph.dask, "__version__", "9.9.9")
+    graph_of = petroglyph.dask._attribute_graph
+
+    def on_a_worker_of_another_version(*args):
+        graph = graph_of(*args)
+        monkeypatch.setattr(petroglyph.dask, "__version__", petroglyph.__version__)
+        return graph
+
+    monkeypatch.setattr(petroglyph.dask, "_attribute_graph", on_a_worker_of_another_version)
+    with pytest.raises(petroglyph.PetroglyphError, match="the client 9.9.9") as caught:
+        petroglyph.dask.attribute(large, "envelope", "e", scheduler="synchronous")
+    assert "same version" in caught.value.hint
+    assert contents(large.path) == before and [path.name for path in large.path.parent.iterdir()] == ["large.petro"]
+
+
+def test_a_worker_without_the_store_says_so(large, monkeypatch):
+    before = contents(large.path)
+    monkeypatch.setattr(petroglyph.dask.os.path, "isdir", lambda path: False)
+    with pytest.raises(petroglyph.PetroglyphError, match="is not there on the worker") as caught:
+        petroglyph.dask.attribute(large, "envelope", "e", scheduler="synchronous")
+    monkeypatch.undo()
+    assert "all workers see" in caught.value.hint
+    assert contents(large.path) == before and [path.name for path in large.path.parent.iterdir()] == ["large.petro"]
+
+
+def test_a_refusal_reaches_the_client_as_it_was():
+    error = petroglyph.PetroglyphError("it is not there", "put it there")
+    again = pickle.loads(pickle.dumps(error))
+    assert (again.reason, again.hint, str(again)) == (error.reason, error.hint, str(error))
+
+
+def test_an_array_of_other_chunks_is_taken_in(large, tmp_path):
+    zarr = pytest.importorskip("zarr")
+    geometry = large.geometry
+    samples = large.volume().numpy()
+    other = zarr.create_array(tmp_path / "other.zarr", shape=samples.shape, chunks=(31, 17, 70), dtype=np.float32)
+    other[...] = samples
+    large.add_volume("other", other, geometry=geometry, live=large.volume().live())
+    hashes = [entry["hash"] for entry in large.document["volumes"]]
+    assert hashes[0] == hashes[1], "the same samples, whatever their chunks"
+    with pytest.raises(petroglyph.PetroglyphError, match="the array has"):
+        large.add_volume("cut", other[:20], geometry=geometry)
+
+
+def test_a_file_written_by_other_chunks_is_refused(large, tmp_path):
+    info = '{"geometry": %s}' % petroglyph.Geometry.regular((150, 4, 5)).to_json()
+    parts = _native.VolumeParts.create(tmp_path / "a.zarr", info, "float32")
+    with pytest.raises(petroglyph.PetroglyphError, match="where 2560 are needed"):
+        parts.write((0, 0, 0), np.zeros((64, 4, 5), dtype=np.float32))
+    with pytest.raises(TypeError, match="float32"):
+        parts.write((0, 0, 0), np.zeros((128, 4, 5), dtype=np.int16))
+    with pytest.raises(petroglyph.PetroglyphError, match="not written to its end"):
+        petroglyph.open_volume(tmp_path / "a.zarr")
+    with pytest.raises(petroglyph.PetroglyphError, match="not written to its end"):
+        parts.finish([])
+
+
+def peak_bytes(work):
+    """What `work` adds to the largest memory of a new process, bytes."""
+    import subprocess
+    import sys
+
+    code = (
+        "import resource, sys\nimport numpy, petroglyph.dask\n"
+        "def peak(): return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024\n"
+        f"before = peak()\n{work}\nprint(peak() - before)"
+    )
+    return int(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout)
+
+
+@pytest.mark.parametrize("kind", ["envelope", "semblance"])
+def test_no_task_uses_more_memory_than_is_stated(large, tmp_path, kind):
+    source, target = large.volume().path, tmp_path / "t.zarr"
+    info = json.dumps({"geometry": json.loads(large.geometry.to_json())})
+    _native.VolumeParts.create(target, info, "float32")
+    stated = petroglyph.dask.plan(source, kind, memory=40 << 20).task_bytes
+    used = peak_bytes(
+        "from petroglyph.dask import _Stage, _column, _piece_lines\n"
+        f"lines = _piece_lines({kind!r}, 70, 128 * 128, petroglyph.bricks.halo({kind!r}), {40 << 20})\n"
+        f"stage = _Stage({kind!r}, {str(source)!r}, ({str(target)!r},), (150, 140, 70), lines, None, None, '', "
+        "(petroglyph.__version__, petroglyph.STORE_VERSION))\n"
+        f"_column(stage, ({str(source)!r},), (0, 0), (128, 128))"
+    )
+    assert used <= stated, f"{used} bytes, {stated} stated"
