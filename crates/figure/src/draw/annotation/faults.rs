@@ -149,8 +149,9 @@ impl FaultRun<'_> {
             let share = off_a / (off_a - off_b);
             let p = a.lerp(b, share);
             // Elsewhere something younger has cut it off.
-            let (own, below) = (1 << horizon, model.below_at(p.as_vec3(), block));
-            let is_there = model.rules().layer(below | own) != model.rules().layer(below & !own);
+            let below = model.below_at(p.as_vec3(), block);
+            let [without, with] = [false, true].map(|is_below| model.rules().layer(below.with(horizon, is_below)));
+            let is_there = with != without;
             let is_upright = (off_b > off_a) == (b.z > a.z);
             is_there.then_some(CutOff { at: n as f64 + share, z: p.z, is_upright })
         };
