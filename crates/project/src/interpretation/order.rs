@@ -35,11 +35,6 @@ struct Depths {
     deep: f32,
 }
 
-/// Whether `a` lies above `b`.
-pub(crate) fn is_above(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> bool {
-    lean(a, b, geometry) > 0.0
-}
-
 /// How clearly `a` lies above `b`: 1 where it does everywhere, −1 where it lies below. Maps are compared at their common
 /// traces, or else by their mean depth. Where one of them is no height field, or both are scattered points whose maps
 /// cross, scattered points are compared with planes through those around them, or else topmost places are: the highest
@@ -253,6 +248,10 @@ fn depths(horizon: &Horizon, grid: &NodeGrid, trace: [usize; 2]) -> Option<Depth
 mod tests {
     use super::*;
     use survey::{Quality, Sheet, VerticalUnit};
+
+    fn is_above(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> bool {
+        lean(a, b, geometry) > 0.0
+    }
 
     fn geometry() -> SurveyGeometry {
         SurveyGeometry::regular([20, 20, 50], 25.0, 4.0, VerticalUnit::Milliseconds)
