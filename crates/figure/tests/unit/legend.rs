@@ -34,7 +34,7 @@ fn names_stay_in_the_room_and_apart_and_large_enough_however_many_there_are() {
             // What has no room is counted.
             Some(more) => {
                 let more: usize = more.strip_suffix(" more").unwrap().parse().unwrap();
-                assert!(found.len() - 1 + more == count + 1 && found.len() > 40, "{} and {more}", found.len());
+                assert!(found.len() - 1 + more == count + 1 && found.len() > 25, "{} and {more}", found.len());
             }
             None => assert_eq!(found.len(), count + 1),
         }
