@@ -33,9 +33,8 @@ fn found(event: &Event, nodes: &[Known], ny: usize) -> Vec<bool> {
     for node in &event.nodes {
         depths.entry(usize::from(node.x) * ny + usize::from(node.y)).or_default().push(node.z);
     }
-    let is_near = |node: &Known| {
-        depths.get(&node.trace).is_some_and(|own| own.iter().any(|z| (z - node.z).abs() <= FOUND))
-    };
+    let is_near =
+        |node: &Known| depths.get(&node.trace).is_some_and(|own| own.iter().any(|z| (z - node.z).abs() <= FOUND));
     nodes.iter().map(is_near).collect()
 }
 
@@ -80,7 +79,11 @@ fn worst(nodes: &[Known], right: &[bool], [nx, ny]: [usize; 2]) -> Option<usize>
     for round in 1.. {
         let inner: Vec<usize> = (0..nx * ny)
             .filter(|&trace| part[trace] == largest && depth[trace] == round)
-            .filter(|&trace| beside(trace).into_iter().all(|other| other.is_some_and(|other| part[other] == largest && depth[other] >= round)))
+            .filter(|&trace| {
+                beside(trace)
+                    .into_iter()
+                    .all(|other| other.is_some_and(|other| part[other] == largest && depth[other] >= round))
+            })
             .collect();
         if inner.is_empty() {
             let deepest = (0..nx * ny).filter(|&trace| part[trace] == largest).max_by_key(|&trace| depth[trace])?;
@@ -138,7 +141,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         if place == places / 2 {
             first_two = seeds[..2.min(seeds.len())].to_vec();
         }
-        let row: Vec<String> = shares.iter().filter_map(|all| all.get(place)).map(|s| format!("{:.1}", 100.0 * s)).collect();
+        let row: Vec<String> =
+            shares.iter().filter_map(|all| all.get(place)).map(|s| format!("{:.1}", 100.0 * s)).collect();
         let at = seeds.iter().map(|seed| format!("{:?} {:.1}", seed.trace, seed.z)).collect::<Vec<_>>();
         println!("{} % from {}", row.join(", "), at.join("; "));
     }

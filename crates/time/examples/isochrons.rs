@@ -209,7 +209,17 @@ fn case(side: usize, snr: f64, seed: u64, faults: Faults) -> Result<Case, Box<dy
         all.event[0].extend(&errors.event[0]);
         all.event[1].extend(&errors.event[1]);
     }
-    Ok(Case { snr, seed, all, horizons, not_monotone: found.not_monotone, coverage, extraction_s, time_s, processor_us })
+    Ok(Case {
+        snr,
+        seed,
+        all,
+        horizons,
+        not_monotone: found.not_monotone,
+        coverage,
+        extraction_s,
+        time_s,
+        processor_us,
+    })
 }
 
 /// Headings of the last columns.
