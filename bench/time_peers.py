@@ -12,6 +12,10 @@ tensor    Dips from the structure tensor (Gaussian derivatives, smoothed), weigh
           solution of  w (d tau/dx + p d tau/dz) = 0,  w (d tau/dy + q d tau/dz) = 0,  e (d tau/dz - 1) = 0  by conjugate
           gradients (after Lomask and others 2006, Wu and Hale 2015, without constraints). No faults: neither knows of any.
 pwd       The same system with dips of plane-wave destruction from pyseistr (Fomel 2002), with weights of one.
+paint     pyseistr alone: predictive painting (Fomel 2010) of tau along those dips, from the middle trace along the middle inline,
+          and from that inline along every crossline.
+
+pyseistr 0.0.4 builds with numpy below 2.
 
 The volume is float32 [inline][crossline][sample], as is what is written.
 """
@@ -42,9 +46,21 @@ def destruction_dips(volume):
     """Dips by plane-wave destruction; pyseistr wants [sample][inline][crossline]."""
     import pyseistr
 
-    p, q = pyseistr.dip3dc(np.asfortranarray(volume.transpose(2, 0, 1)), niter=10, rect=[5, 5, 5])[:2]
+    p, q = pyseistr.dip3dc(np.asfortranarray(volume.transpose(2, 0, 1)), niter=10, rect=[5, 5, 5], verb=0)[:2]
     back = lambda dip: np.ascontiguousarray(dip.reshape(volume.shape[2], *volume.shape[:2]).transpose(1, 2, 0))
     return back(p), back(q), np.ones_like(volume)
+
+
+def painted(p, q):
+    """tau by predictive painting from the middle trace."""
+    from pyseistr.rgt import pwpaintc
+
+    nx, ny, nz = p.shape
+    paint = lambda dip, trace, middle: np.asarray(
+        pwpaintc(np.asfortranarray(dip.T.astype(np.float32)), trace.astype(np.float32), order=2, i0=middle, eps=0.1)
+    ).reshape(dip.T.shape).T
+    inline = paint(q[nx // 2], np.arange(nz), ny // 2)
+    return np.stack([paint(p[:, y], inline[y], nx // 2) for y in range(ny)], axis=1)
 
 
 def solve(p, q, weight, epsilon, iterations):
@@ -102,14 +118,14 @@ def main():
     typed.add_argument("volume")
     typed.add_argument("side", type=int)
     typed.add_argument("out")
-    typed.add_argument("--method", choices=["tensor", "pwd"], default="tensor")
+    typed.add_argument("--method", choices=["tensor", "pwd", "paint"], default="tensor")
     typed.add_argument("--iterations", type=int, default=100)
     options = typed.parse_args()
     volume = np.fromfile(options.volume, np.float32).reshape((options.side,) * 3)
     start, cpu = time.perf_counter(), time.process_time()
     p, q, weight = (tensor_dips if options.method == "tensor" else destruction_dips)(volume)
     dips = time.perf_counter() - start
-    tau = solve(p, q, weight, 1e-2, options.iterations)
+    tau = painted(p, q) if options.method == "paint" else solve(p, q, weight, 1e-2, options.iterations)
     # Monotone, as ours is.
     tau = np.maximum.accumulate(tau, axis=2)
     tau.astype(np.float32).tofile(options.out)

@@ -119,8 +119,8 @@ pub fn pin(tau: &mut [f32], hubs: &Hubs, links: &Links, known: f32) {
                     let (at, time) = (hubs.z[v] - from as f32, (sum / count as f64) as f32);
                     let inside = at >= 0.0 && at <= (z - from) as f32;
                     // Horizons that touch, or that the reflections put into another order, cannot both be met.
-                    let follows =
-                        nodes.last().is_none_or(|l| at.floor() >= l.0.floor() + 2.0 && time >= l.1 + LEAST_STEP);
+                    let low = |at: f32| at.floor().min((z - from) as f32 - 1.0);
+                    let follows = nodes.last().is_none_or(|l| low(at) >= low(l.0) + 2.0 && time >= l.1 + LEAST_STEP);
                     if inside && follows {
                         nodes.push((at, time));
                     }
