@@ -9,7 +9,7 @@
 //!
 //! `tags` are what the storage says of the metadata of each level when the volume is linked; they are asked for again
 //! when it is opened, so that a volume that was replaced is not taken for the one that was linked. Addresses hold no
-//! credentials; those come from the environment ([`remote`]) and are written nowhere.
+//! credentials; those come from the environment (`remote`) and are written nowhere.
 
 #[cfg(feature = "remote")]
 mod cache;

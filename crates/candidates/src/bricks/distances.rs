@@ -72,7 +72,7 @@ impl Bricks<'_> {
         Ok(found)
     }
 
-    /// Count of columns of [`COLUMN`] × [`COLUMN`] traces, numbered along crosslines first.
+    /// Count of columns of 128 × 128 traces, numbered along crosslines first.
     pub fn column_count(&self) -> usize {
         self.columns().count()
     }

@@ -50,6 +50,7 @@ mod triangles;
 
 pub use run::BrickSettings;
 pub use stage::Stage;
+pub use trees::BrickForest;
 
 use crate::error::InterpError;
 use crate::extraction::ExtractSettings;
