@@ -86,7 +86,7 @@ pub(super) fn carry_out(request: Request, wait: Duration, progress: &Progress) -
         Request::Info { path, distortion, segy, reading } => {
             info::describe(&path, distortion, &segy, &reading, progress)?
         }
-        Request::Import { project, command } => import(&project, wait, command, progress)?,
+        Request::Import { project, command } => import(&project, wait, &command, progress)?,
         Request::Export { project, out, surface: (kind, name), format, options } => {
             export(&project, &out, (kind, &name), format, &options, progress)?
         }

@@ -14,6 +14,8 @@
 //!
 //! Deliberately absent: any computation, and any word about an error that the command line does not say.
 
+#![allow(clippy::needless_pass_by_value, reason = "functions of Python take their arguments by value")]
+
 mod arrays;
 mod bricks;
 mod program;

@@ -300,7 +300,7 @@ mod tests {
         let parts = VolumeParts::create(&parted, &info, Some(&live), SampleType::Int16).unwrap();
         assert!(matches!(StoredVolume::open(&parted), Err(StoreError::Unfinished { .. })));
         let mut ranges = vec![Vec::new(); parts.level_count()];
-        for level in 0..parts.level_count() {
+        for (level, ranges) in ranges.iter_mut().enumerate() {
             let mut files = parts.files(level);
             files.reverse();
             // One is written twice, and a lost worker has left a piece of another.
@@ -315,7 +315,7 @@ mod tests {
                 } else {
                     worker.halve(level, place).unwrap()
                 };
-                ranges[level].extend(found);
+                ranges.extend(found);
             }
         }
         fs::write(parted.join("0/c/0/0/1.77.part"), "half").unwrap();

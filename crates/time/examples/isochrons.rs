@@ -194,7 +194,7 @@ fn case(side: usize, snr: f64, seed: u64, faults: Faults) -> Result<Case, Box<dy
         coverage = cuts.iter().map(|truth| covered(truth, &found)).collect();
         cuts = found;
     }
-    let start = Instant::now();
+    let (start, processor) = (Instant::now(), processor_s());
     let found =
         geologic_time(&survey.seismic, &surfaces, &cuts.as_slice().into(), &TimeSettings::default(), &progress)?;
     let time_s = start.elapsed().as_secs_f64();

@@ -230,12 +230,11 @@ impl<'a> Sight<'a> {
             for line in &face.section.lines {
                 match line.kind {
                     LineKind::Horizon { horizon }
-                        if !(seen.horizons.contains(&horizon) && seen.qualities.contains(&line.quality)) =>
+                        if !(seen.horizons.contains(&horizon) && seen.qualities.contains(&line.quality))
+                            && line.points.iter().any(is_seen) =>
                     {
-                        if line.points.iter().any(is_seen) {
-                            seen.horizons.insert(horizon);
-                            seen.qualities.insert(line.quality);
-                        }
+                        seen.horizons.insert(horizon);
+                        seen.qualities.insert(line.quality);
                     }
                     LineKind::Fault { fault, real: true } if !seen.faults.contains(&fault) => {
                         seen.faults.extend(line.points.iter().any(is_seen).then_some(fault));

@@ -8,6 +8,9 @@ use render::FaceData;
 use survey::{SurveyGeometry, VerticalUnit};
 use synth::closed_form::ClosedForm;
 
+/// From a place on a section to voxels.
+type ToVoxel<'a> = Box<dyn Fn(DVec2) -> DVec3 + 'a>;
+
 const SIZE: [usize; 3] = [41, 31, 41];
 
 fn fold(side: f64) -> Fold {
@@ -46,7 +49,7 @@ fn each_place_of_a_section_shows_its_layer_on_turned_and_mirrored_surveys() {
         let fence = FencePart { corners: corners.to_vec(), show: FaceData::Rock, blend: Some(0.0) };
         let length = legs[0].distance(legs[1]) + legs[1].distance(legs[2]);
         let along = |s: f64| figure::cut::place(&legs, s);
-        let kinds: [(Part, DVec2, Box<dyn Fn(DVec2) -> DVec3>); 5] = [
+        let kinds: [(Part, DVec2, ToVoxel); 5] = [
             (
                 section(SectionKind::Inline, 18.0, 0.0),
                 DVec2::new(30.0, 40.0),
@@ -103,7 +106,7 @@ fn rock_on_a_section_is_paths_with_names_and_throws() {
     let fold = Fold::new();
     let part = section(SectionKind::Crossline, 21.0, 0.0);
     let annotate = vec![Annotation::Layers, Annotation::Faults];
-    let page = fold.made(&Figure { annotate, legend: true, ..figure(part.clone()) }, true);
+    let page = fold.made(&Figure { annotate, legend: true, ..figure(part) }, true);
     let said: Vec<&str> = page.texts().into_iter().map(|text| text.text.as_str()).collect();
     // The throw of the closed form: six samples of 12.5 m.
     assert!(said.contains(&"F1, 75 m"), "{said:?}");

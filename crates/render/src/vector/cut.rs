@@ -49,7 +49,9 @@ impl<'a> Outline<'a> {
     fn rows_between(&self, a: f64, b: f64) -> std::ops::Range<usize> {
         let row = |y: f64| ((y - self.low) / self.step).floor();
         let (first, last) = (row(a.min(b)), row(a.max(b)));
-        if last < 0.0 || first >= self.rows.len() as f64 || !(first <= last) {
+        // Neither holds for NaN.
+        let is_within = last >= 0.0 && first < self.rows.len() as f64;
+        if !is_within {
             return 0..0;
         }
         first.max(0.0) as usize..(last as usize + 1).min(self.rows.len())

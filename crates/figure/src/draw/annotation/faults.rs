@@ -150,7 +150,7 @@ impl FaultRun<'_> {
             let p = a.lerp(b, share);
             // Elsewhere something younger has cut it off.
             let below = model.below_at(p.as_vec3(), block);
-            let [without, with] = [false, true].map(|is_below| model.rules().layer(below.with(horizon, is_below)));
+            let [without, with] = [false, true].map(|below_it| model.rules().layer(&below.with(horizon, below_it)));
             let is_there = with != without;
             let is_upright = (off_b > off_a) == (b.z > a.z);
             is_there.then_some(CutOff { at: n as f64 + share, z: p.z, is_upright })
