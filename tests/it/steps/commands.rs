@@ -132,7 +132,7 @@ pub const MAKING: [Scenario; 5] = [
 ];
 
 /// What changes horizons, faults and wells.
-pub const INTERPRETING: [Scenario; 18] = [
+pub const INTERPRETING: [Scenario; 21] = [
     of(Imported, "horizon add p.petro top.csv --name Another"),
     of(Imported, "horizon rename p.petro Top Roof"),
     of(Imported, "horizon draw p.petro Drawn --line 4,2,40 4,9,40 --snap"),
