@@ -16,7 +16,7 @@ use project::ProjectError;
 use project::command::{AddScene, Command, Effect, ProposeFaults, SetParameterization, SetRaw};
 use project::folder::refuse_inside_project;
 use project::interpretation::extraction;
-use project::{derived, segy_export, styles, surface_export};
+use project::{derived, styles};
 use render::Scene;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -106,13 +106,13 @@ pub(super) fn carry_out(request: Request, wait: Duration, progress: &Progress) -
         }
         Request::ExportValues { project, out, horizon, values, window } => {
             let project = open(&project)?;
-            let done = surface_export::write_values(&project, &out, (&horizon, &values), window, progress)?;
+            let done = exports::surface::write_values(&project, &out, (&horizon, &values), window, progress)?;
             let mut report = Report::line(format!("{}: {} nodes of {horizon}", out.display(), done.nodes));
             report.field("file", &out).field("nodes", done.nodes);
             report
         }
         Request::ExportVolume { project, out, volume, format } => {
-            told(segy_export::write(&open(&project)?, &out, &volume, format, progress)?)
+            told(exports::volume::write(&open(&project)?, &out, &volume, format, progress)?)
         }
         Request::Parameterize { project, size, change } => parameterize(open(&project)?, size, change, progress)?,
         Request::Render(request) => draw::draw(&request, progress)?,
@@ -228,7 +228,7 @@ fn export(
     options: &ExportOptions,
     progress: &Progress,
 ) -> anyhow::Result<Report> {
-    let written = surface_export::write(&Project::open(project)?, out, surface, (format, options), progress)?;
+    let written = exports::surface::write(&Project::open(project)?, out, surface, (format, options), progress)?;
     let mut report = Report::line(format!("{} written as {format}", out.display()));
     for note in &written.notes {
         report.say(format!("  {note}"));

@@ -39,7 +39,7 @@ fn texts(at: &Path, file: &str) -> Vec<String> {
 fn wells_stand_side_by_side_in_every_format_and_their_tops_are_joined() {
     let folder = drilled();
     let at = folder.path();
-    let options = "--correlation --size-cm 16x11 --dpi 60 --legend --scale-bar --title Wells";
+    let options = "--correlation --size-cm 22x15 --dpi 60 --legend --scale-bar --title Wells";
     for file in ["a.png", "a.tif", "a.svg", "a.pdf"] {
         run_in(at, &format!("render p.petro {file} {options}")).done();
     }

@@ -62,7 +62,10 @@ fn one_trace_and_a_constant_volume_have_no_time_anywhere() {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), [1, 1, 64], |_, _, z| bed(z as f32));
     run_in(folder.path(), "import a.sgy p.petro").failed(&["a single trace"]);
-    for (size, constant) in [([2, 2, 64], false), ([1, 24, 64], false), ([24, 20, 48], true)] {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), [1, 24, 64], |_, _, z| bed(z as f32));
+    run_in(folder.path(), "import a.sgy p.petro").failed(&["a 2D line"]);
+    for (size, constant) in [([2, 2, 64], false), ([2, 24, 64], false), ([24, 20, 48], true)] {
         let folder = tempfile::tempdir().unwrap();
         let at = folder.path();
         import(at, size, |_, _, z| if constant { 7.0 } else { bed(z as f32) });

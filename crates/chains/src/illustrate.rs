@@ -11,13 +11,13 @@ use pictures::figures::{self, FigureFormat, FigureSettings, InterpreterView};
 use pictures::scene;
 use project::Project;
 use project::command::{
-    AcceptFault, Command, ComputeTime, Extract, ImportVolume, PickByTime, ProposeFaults, SetLayer, TimeLevel, has_time,
-    read_time,
+    AcceptFault, Command, ComputeTime, Extract, ImportVolume, PickByTime, ProposeFaults, SetLayer, TimeLevel,
 };
 use project::document::Polarity;
 use project::error::ProjectError;
 use project::folder::refuse_inside_project;
 use project::interpretation::proposals;
+use project::interpretation::times::{has_time, read_time};
 use segy::SegyOptions;
 use serde::Serialize;
 use std::fmt;

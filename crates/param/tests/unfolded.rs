@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec2, DVec3, Vec3};
 use model::{ModelSettings, StructuralModel};
-use param::{ParamSettings, Parameterization, Region};
+use param::{KDefinition, ParamSettings, Parameterization, Region};
 use survey::stratigraphy::{Contact, StratigraphicHorizon, Stratigraphy};
 use survey::{Horizon, Progress, SurveyGeometry, VerticalUnit};
 use synth::shapes::{Laccolith, RecumbentFold};
@@ -160,6 +160,38 @@ fn patterns_go_around_a_fold_of_scattered_points() {
     println!("angles {angle:?}°, j across {cross:?}°, areas {area:?}");
     assert!(angle[0] < 0.2 && angle[1] < 1.0, "{angle:?}");
     assert!(area[0] > 0.4 && (area[1] - 1.0).abs() < 0.1 && area[2] < 1.7, "{area:?}");
+}
+
+/// Beds parallel to one horizon of a layer between surfaces of any shape: k is the distance from it alone.
+#[test]
+fn beds_may_be_parallel_to_one_horizon_of_any_shape() {
+    let fold = RecumbentFold::fitting(&geometry());
+    let range = [DVec2::new(-150.0, -300.0), DVec2::new(1150.0, 1100.0)];
+    let bed = |name: &str, age: f64| {
+        (Horizon::of_surface(name, fold.mesh(&geometry(), age, range, [26, 280])), Contact::Conformable)
+    };
+    let (model, _) = build(vec![bed("young", -250.0), bed("old", -100.0)]);
+    let region = Region { layer: 1, block: 0 };
+    let places: Vec<Vec3> = (0..4000)
+        .map(|n| {
+            let step = |k: f64, last: f64| (2.0 + (f64::from(n) * k).fract() * (last - 4.0)) as f32;
+            Vec3::new(step(0.414_214, 60.0), step(0.618_034, 40.0), step(0.754_878, 80.0))
+        })
+        .filter(|p| model.region_at(*p) == region)
+        .collect();
+    for (definition, horizon, end) in [(KDefinition::ParallelToTop, 0, 1.0), (KDefinition::ParallelToBottom, 1, 0.0)] {
+        let settings = ParamSettings { definitions: vec![KDefinition::Flow, definition], ..ParamSettings::default() };
+        let param = Parameterization::compute(&model, &settings, &Progress::silent()).unwrap();
+        let thickness = param.grid(region).thickness_m.unwrap() as f32;
+        let level = model.level(horizon, 0).unwrap();
+        let off = |p: &Vec3| {
+            let k = param.lookup_in(&model, *p, region).0.k;
+            ((k - end).abs() * thickness - level.offset_m(*p).abs()).abs()
+        };
+        let worst = places.iter().map(off).fold(0.0, f32::max);
+        // Between nodes 25 m apart the distance is cubic here and linear in the level.
+        assert!(places.len() > 300 && worst < 4.0, "{definition:?}: {worst} m of {thickness} m");
+    }
 }
 
 #[test]

@@ -17,8 +17,6 @@
 //! | [`check`] | a project verified and repaired |
 //! | [`command`] | every change, as data |
 //! | [`Project`] | applies commands; undo and redo |
-//! | [`segy_export`] | a volume written as SEG-Y |
-//! | [`surface_export`] | a horizon or fault written for other programs |
 //!
 //! Deliberately absent: the words of a command line or a window. An error says what is wrong; what helps is said here
 //! only where it is the same everywhere. The names of options and fields are known only to the program that shows the
@@ -35,9 +33,7 @@ pub mod interpretation;
 pub mod memory_budget;
 pub mod placement;
 mod project;
-pub mod segy_export;
 pub mod styles;
-pub mod surface_export;
 mod weak_cache;
 
 pub use command::{Command, Effect};

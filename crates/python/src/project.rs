@@ -267,6 +267,7 @@ fn command(json: &str, memory: Option<u64>, moved: bool) -> PyResult<Command> {
     match &mut command {
         Command::Import(change) => (change.memory_bytes, change.moved) = (memory, moved),
         Command::Attribute(change) => change.memory_bytes = memory,
+        Command::Extract(change) => change.memory_bytes = memory,
         _ => {}
     }
     Ok(command)

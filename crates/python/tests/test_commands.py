@@ -14,7 +14,7 @@ FIELDS = json.loads(_native.command_fields())
 #: Names of methods that differ from those of their commands, because Python's own words are taken.
 METHODS = {"import": "import_"}
 #: What a method says in other words than the command's fields.
-WORDS = {"from": "from_", "picks": "places", "level": "through", "note": "text"}
+WORDS = {"from": "from_", "picks": "places", "level": "through", "note": "text", "memory_bytes": "memory"}
 
 
 def method_of(command):

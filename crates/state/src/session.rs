@@ -3,8 +3,8 @@
 use super::picking::Tool;
 use super::view::{Panel, ViewState};
 use project::HistoryLine;
-use project::command::has_time;
 use project::document::Document;
+use project::interpretation::times::has_time;
 use std::path::PathBuf;
 
 /// A project as read from disk.

@@ -5,8 +5,9 @@ use crate::state::{Action, Session};
 use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Align, Button, ComboBox, DragValue, Grid, Layout, ProgressBar, Ui};
 use interp::{ExtractSettings, Extremum, Method};
-use project::command::{AttributeKind, Command, ComputeAttribute, ComputeTime, has_time};
+use project::command::{AttributeKind, Command, ComputeAttribute, ComputeTime};
 use project::error::Noun;
+use project::interpretation::times::has_time;
 use time::TimeSettings;
 use widgets::obstacle::{needs, unless};
 

@@ -20,8 +20,8 @@ use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
 use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};
 use follow::Needs;
 use frames::FrameTimes;
+use project::Project;
 use project::command::Command;
-use project::{Project, surface_export};
 use state::picking::Pick;
 use state::{Action, Appearance, Dialogue, ExportForm, Notice, Place, Remembered, State, SurfaceForm, Task};
 use std::path::{Path, PathBuf};
@@ -231,7 +231,7 @@ impl Window {
             let path = PathBuf::from(path.trim());
             let write = |project: Project| {
                 let options = formats::ExportOptions::default();
-                surface_export::write(&project, &path, (kind, &name), (format, &options), progress)
+                exports::surface::write(&project, &path, (kind, &name), (format, &options), progress)
             };
             let written = Project::open(&root).and_then(write);
             let written = written.map_err(|error| Notice::failure(Place::Dialogue, &error))?;

@@ -1,12 +1,12 @@
 //! Attribute volumes that are computed from a volume.
 
-use super::time::time_volume;
 use super::{Effect, Noun, ProjectError};
 use crate::content;
 use crate::content::volume_facts::{self, Facts};
 use crate::document::{Polarity, Source};
 use crate::folder::Draft;
 use crate::interpretation::assembly;
+use crate::interpretation::times::time_volume;
 use crate::memory_budget;
 use ::time::Cut;
 use attribute::blocks::{AttributeBlocks, dip_angle_blocks, dip_blocks, envelope_blocks, semblance_blocks};

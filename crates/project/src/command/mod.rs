@@ -49,12 +49,10 @@ pub use pick_by_time::{PickByTime, PickedByTime, TimeLevel};
 pub use refine::{FillHorizon, HorizonRefined, SmoothHorizon};
 pub use scalar::{RemoveScalar, SetRaw, SetScalar};
 pub use scene::{AddScene, RemoveScene};
-pub(crate) use stack::values_table;
 pub use stack::{Spacing, StackHorizons, Stacked};
 pub use survey_frame::SetVelocity;
 pub use texture::AddTexture;
-pub(crate) use time::time_volume;
-pub use time::{ComputeTime, TimeComputed, has_time, read_time};
+pub use time::{ComputeTime, TimeComputed};
 pub use well::{AddWell, RemoveWell, RenameWell, WellAdded};
 
 use crate::document::{Document, Source};

@@ -1,12 +1,12 @@
 //! i, j, k from another program, or k from geologic time, in place of those computed here.
 
-use super::time::time_volume;
 use super::{Effect, ProjectError};
 use crate::content;
 use crate::derived;
 use crate::document::{ParameterizationEntry, Source};
 use crate::folder::Draft;
 use crate::interpretation::solid;
+use crate::interpretation::times::time_volume;
 use interp::reassembly::from_horizon;
 use model::{FaultNetwork, StructuralModel};
 use param::{Parameterization, VoxelParameterization, corner_aligned};
@@ -120,8 +120,10 @@ fn time_at(trace: &[f32], z: f32) -> f32 {
     if !(z >= 0.0 && z <= last as f32) {
         return f32::NAN;
     }
-    let low = (z as usize).min(last.saturating_sub(1));
-    trace[low] + (z - low as f32) * (trace[(low + 1).min(last)] - trace[low])
+    let low = (z as usize).min(last);
+    let share = z - low as f32;
+    // What follows a sample does not matter at the sample itself, where it may be unknown.
+    if share == 0.0 { trace[low] } else { trace[low] + share * (trace[low + 1] - trace[low]) }
 }
 
 /// Sets k between two horizons to the fraction of τ between theirs, from the base up; where τ is not known, and in the

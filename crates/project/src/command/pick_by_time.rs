@@ -1,12 +1,12 @@
 //! Horizons that are levels of geologic time.
 
 use super::horizon::{Age, insert_made};
-use super::time::time_volume;
 use super::{Effect, Noun, ProjectError};
 use crate::document::{Document, Source};
 use crate::folder::Draft;
 use crate::interpretation::assembly;
 use crate::interpretation::times::Times;
+use crate::interpretation::times::time_volume;
 use ::time::{Crossing, Cut, Event, Node, Reflections, Seed, Support, isochron};
 use glam::Vec3;
 use interp::Extremum;

@@ -4,20 +4,17 @@ use super::time_slabs::{SlabTimes, explain};
 use super::{Effect, Noun, ProjectError};
 use crate::content;
 use crate::content::volume_facts::{self, Facts};
-use crate::document::{Document, Polarity, Source, VolumeEntry};
+use crate::document::{Polarity, Source};
 use crate::folder::Draft;
 use crate::interpretation::assembly;
 use crate::interpretation::candidates::{Candidates, amplitudes};
-use crate::interpretation::times::Obeyed;
+use crate::interpretation::times::{Obeyed, QUANTITY};
 use crate::memory_budget;
 use ::time::{Jump, Slabs, TimeSettings, find_faults, geologic_time};
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use store::VolumeInfo;
-use survey::{Progress, Volume};
-
-/// What a volume of geologic time says that it holds.
-const QUANTITY: &str = "geologic time";
+use survey::Progress;
 
 /// Computes geologic time from the present extraction, its volume and the interpretation (faults, picked horizons,
 /// unconformities, tops of wells), and adds it to the project.
@@ -158,34 +155,4 @@ impl ComputeTime {
             known,
         }))
     }
-}
-
-/// Whether a project has a volume of geologic time, by its record alone.
-pub fn has_time(document: &Document) -> bool {
-    document.volumes.iter().any(|entry| entry.source.reading.starts_with(QUANTITY))
-}
-
-/// The newest volume of geologic time.
-pub(crate) fn time_volume(root: &Path, document: &Document) -> Result<VolumeEntry, ProjectError> {
-    for entry in document.volumes.iter().rev().filter(|entry| entry.geometry.is_none()) {
-        let stored = content::open_volume(root, entry, document.frame()?)?;
-        if stored.info().quantity.as_deref() == Some(QUANTITY) {
-            return Ok(entry.clone());
-        }
-    }
-    Err(ProjectError::NoTime)
-}
-
-/// Reads the newest geologic time and the amplitudes that it is of.
-///
-/// # Errors
-/// [`ProjectError::NoTime`], data are damaged, or the user cancelled.
-pub fn read_time(
-    root: &Path,
-    document: &Document,
-    progress: &Progress,
-) -> Result<(Volume<f32>, Volume<f32>), ProjectError> {
-    let frame = document.frame()?;
-    let tau = content::read_volume(root, &time_volume(root, document)?, frame, progress)?;
-    Ok((tau, content::read_volume(root, amplitudes(document)?, frame, progress)?))
 }

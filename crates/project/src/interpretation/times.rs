@@ -3,12 +3,11 @@
 //! A caller that picks by time several times holds the result of [`Times::load`]. While it lives, the next pick reads
 //! nothing.
 
-use crate::command::time_volume;
 use crate::content;
-use crate::document::{Document, HorizonEntry};
+use crate::document::{Document, HorizonEntry, VolumeEntry};
 use crate::error::ProjectError;
 use crate::interpretation::assembly;
-use crate::interpretation::candidates::Candidates;
+use crate::interpretation::candidates::{Candidates, amplitudes};
 use crate::weak_cache::WeakCache;
 use ::time::{Cut, Interpretation, Jump, KnownHorizon, Place, Reflections};
 use interp::reassembly::from_horizon;
@@ -19,6 +18,9 @@ use survey::{Contact, Progress, Quality, SurveyGeometry, Volume, Well, well::is_
 
 /// What geologic time depends on: path, hash of its volume, key of the extraction, faults.
 type Key = (PathBuf, String, String, Vec<String>);
+
+/// What a volume of geologic time says that it holds.
+pub(crate) const QUANTITY: &str = "geologic time";
 
 static HELD: WeakCache<Key, Times> = WeakCache::nothing();
 
@@ -173,6 +175,36 @@ fn same_names(tops: &[WellTop]) -> Vec<[Place; 2]> {
         later.filter(|other| other.well != top.well).find(|other| is_same_surface(&top.name, &other.name))
     };
     tops.iter().enumerate().filter_map(|(n, top)| Some([top.place, next(n, top)?.place])).collect()
+}
+
+/// Whether a project has a volume of geologic time, by its record alone.
+pub fn has_time(document: &Document) -> bool {
+    document.volumes.iter().any(|entry| entry.source.reading.starts_with(QUANTITY))
+}
+
+/// The newest volume of geologic time.
+pub(crate) fn time_volume(root: &Path, document: &Document) -> Result<VolumeEntry, ProjectError> {
+    for entry in document.volumes.iter().rev().filter(|entry| entry.geometry.is_none()) {
+        let stored = content::open_volume(root, entry, document.frame()?)?;
+        if stored.info().quantity.as_deref() == Some(QUANTITY) {
+            return Ok(entry.clone());
+        }
+    }
+    Err(ProjectError::NoTime)
+}
+
+/// Reads the newest geologic time and the amplitudes that it is of.
+///
+/// # Errors
+/// [`ProjectError::NoTime`], data are damaged, or the user cancelled.
+pub fn read_time(
+    root: &Path,
+    document: &Document,
+    progress: &Progress,
+) -> Result<(Volume<f32>, Volume<f32>), ProjectError> {
+    let frame = document.frame()?;
+    let tau = content::read_volume(root, &time_volume(root, document)?, frame, progress)?;
+    Ok((tau, content::read_volume(root, amplitudes(document)?, frame, progress)?))
 }
 
 #[cfg(test)]

@@ -373,4 +373,5 @@ impl Drop for NewProject {
 }
 
 #[cfg(test)]
+#[path = "../../tests/unit/project.rs"]
 mod tests;

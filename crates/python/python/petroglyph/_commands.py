@@ -95,20 +95,48 @@ class Commands:
         return self.apply({"attribute": fields}, memory=memory, progress=progress)
 
     def extract(
-        self, *, volume: str | None = None, settings: Options | None = None, progress: Progress | None = None
+        self,
+        *,
+        volume: str | None = None,
+        settings: Options | None = None,
+        memory: int | None = None,
+        progress: Progress | None = None,
     ) -> Effect:
-        """Finds horizon candidates: surfaces, their trees, and the closest leaf of every voxel."""
-        return self.apply({"extract": _given(volume=volume, settings=settings)}, progress=progress)
+        """Finds horizon candidates: surfaces, their trees, and the closest leaf of every voxel.
+
+        What takes more than `memory` (bytes; by default half of what is available) is done in bricks, with the same result.
+        """
+        return self.apply({"extract": _given(volume=volume, settings=settings)}, memory=memory, progress=progress)
 
     def time(
-        self, name: str = "time", *, settings: Options | None = None, progress: Progress | None = None
+        self,
+        name: str = "time",
+        *,
+        settings: Options | None = None,
+        memory: int | None = None,
+        progress: Progress | None = None,
     ) -> Effect:
-        """Computes geologic time, a volume in which every bed has one value."""
-        return self.apply({"time": _given(name=name, settings=settings)}, progress=progress)
+        """Computes geologic time, a volume in which every bed has one value.
+
+        A survey that needs more than `memory` (bytes; by default half of what is available) is solved in slabs.
+        """
+        return self.apply({"time": _given(name=name, settings=settings, memory_bytes=memory)}, progress=progress)
 
     def propose_faults(self, *, settings: Options | None = None, progress: Progress | None = None) -> Effect:
         """Proposes faults from the offsets of horizons, or from where candidates end."""
         return self.apply({"propose-faults": _given(settings=settings)}, progress=progress)
+
+    def link_volume(
+        self,
+        url: str,
+        *,
+        name: str | None = None,
+        polarity: Literal["normal", "reverse"] = "normal",
+        progress: Progress | None = None,
+    ) -> Effect:
+        """Takes in a volume that stays in object storage, where the package was built with it."""
+        fields = _given(url=url, name=name, polarity=polarity)
+        return self.apply({"link-volume": fields}, progress=progress)
 
     def remove_volume(self, name: str) -> Effect:
         """Removes a volume."""
@@ -261,6 +289,20 @@ class Commands:
         """Smooths a horizon, never across a fault."""
         return self.apply({"smooth-horizon": _given(name=name, settings=settings)}, progress=progress)
 
+    def stack_horizons(
+        self,
+        name: str,
+        count: int,
+        *,
+        between: tuple[str, str] | None = None,
+        spacing: Literal["isochrons", "proportional"] = "isochrons",
+        progress: Progress | None = None,
+    ) -> Effect:
+        """Adds a stack of horizons, `name` with a number each: isochrons, or surfaces at equal shares of the thickness
+        between two horizons (the upper and the lower one)."""
+        fields = _given(count=count, between=None if between is None else list(between), spacing=spacing, name=name)
+        return self.apply({"stack-horizons": fields}, progress=progress)
+
     def set_contact(self, horizon: str, contact: Contact) -> Effect:
         """States the contact of a horizon with its neighbours."""
         return self.apply({"set-contact": {"horizon": horizon, "contact": contact}})
@@ -320,6 +362,10 @@ class Commands:
     def set_fault_extent(self, fault: str, grown_m: float = 0.0) -> Effect:
         """States how far a fault reaches beyond what was drawn, m."""
         return self.apply({"set-fault-extent": {"fault": fault, "grown_m": grown_m}})
+
+    def set_fault_colour(self, fault: str, colour: str) -> Effect:
+        """Gives a fault another colour on sections."""
+        return self.apply({"set-fault-colour": {"fault": fault, "colour": colour}})
 
     def rename_fault(self, from_: str, to: str) -> Effect:
         """Gives a fault another name."""
@@ -418,9 +464,14 @@ class Commands:
         """Adds a tile of one's own: PNG, JPEG or SVG."""
         return self.apply({"add-texture": _given(path=os.fspath(path), width_mm=width_mm)})
 
-    def set_parameterization(self, from_: Path | None = None, *, progress: Progress | None = None) -> Effect:
-        """Takes i, j, k from a Zarr group of another program; without one they are computed here."""
-        fields = {} if from_ is None else {"from": os.fspath(from_)}
+    def set_parameterization(
+        self, from_: Path | None = None, *, by_time: bool = False, progress: Progress | None = None
+    ) -> Effect:
+        """Takes i, j, k from a Zarr group of another program; without one they are computed here, `by_time` with k as the
+        fraction of geologic time between the two horizons of a layer."""
+        fields: dict[str, Any] = {} if from_ is None else {"from": os.fspath(from_)}
+        if by_time:
+            fields["by_time"] = True
         return self.apply({"set-parameterization": fields}, progress=progress)
 
     # Scenes and notes.

@@ -16,7 +16,7 @@ use crate::work::RunningLine;
 use eframe::egui::{Button, ScrollArea, Ui};
 use faults::FaultsPanel;
 use horizons::HorizonList;
-use project::command::has_time;
+use project::interpretation::times::has_time;
 use render::FaceData;
 use std::sync::Arc;
 use survey::SurveyGeometry;

@@ -1,11 +1,10 @@
 //! Writes a horizon or fault of a project, or the values of volumes along a horizon, as a file for other programs.
 
-use crate::Project;
-use crate::command::values_table;
-use crate::content;
-use crate::error::{Noun, ProjectError};
-use crate::folder::refuse_inside_project;
+use crate::values;
 use formats::{ExportOptions, ExportReport, Format, SurfaceKind};
+use project::error::{Noun, ProjectError};
+use project::folder::refuse_inside_project;
+use project::{Project, content};
 use std::path::Path;
 use survey::Progress;
 
@@ -64,7 +63,7 @@ pub fn write_values(
         }
         read.push((volume.clone(), content::read_volume(root, entry, frame, progress)?));
     }
-    let table = values_table(&horizon, frame, &read, window);
+    let table = values::table(&horizon, frame, &read, window);
     store::replace_file(out, table.as_bytes())?;
     Ok(ExportReport { nodes: table.lines().count() - 1, notes: Vec::new() })
 }

@@ -1,10 +1,8 @@
 //! Writes a volume of a project as a SEG-Y file: it is streamed by as many inlines at a time as a shard holds, so that
 //! a volume of any size can be written.
 
-use crate::Project;
-use crate::content;
-use crate::error::{Noun, ProjectError};
-use crate::folder;
+use project::error::{Noun, ProjectError};
+use project::{Project, content, folder};
 use segy::{WriteFormat, WriteOptions};
 use serde::Serialize;
 use std::borrow::Cow;

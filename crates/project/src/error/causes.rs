@@ -1,0 +1,61 @@
+//! From what failed below to an error of a project.
+
+use super::ProjectError;
+use std::io;
+use std::path::Path;
+
+impl From<::time::TimeError> for ProjectError {
+    fn from(error: ::time::TimeError) -> Self {
+        match error {
+            ::time::TimeError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            other => Self::Time(other),
+        }
+    }
+}
+
+impl From<interp::InterpError> for ProjectError {
+    fn from(error: interp::InterpError) -> Self {
+        use interp::InterpError::{Arrays, Cancelled, Sink, Source};
+        match error {
+            Cancelled(cancelled) => Self::Cancelled(cancelled),
+            Sink(error) | Arrays(error) | Source(error) => {
+                error.downcast().map_or_else(|error| Self::Interp(Sink(error)), |own| Self::Store(*own))
+            }
+            other => Self::Interp(other),
+        }
+    }
+}
+
+impl ProjectError {
+    /// A place that lies outside of a survey.
+    pub(crate) fn outside(at: [f64; 3], geometry: &survey::SurveyGeometry) -> Self {
+        Self::PickOutside {
+            at,
+            inlines: [geometry.inlines.first, geometry.inlines.last()],
+            crosslines: [geometry.crosslines.first, geometry.crosslines.last()],
+            vertical: [geometry.vertical.first, geometry.vertical.last()],
+        }
+    }
+
+    /// Turns a failure of the file system into an error that the user can act on.
+    pub fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
+        let path = path.to_owned();
+        match source.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => Self::DiskFull { path },
+            io::ErrorKind::ReadOnlyFilesystem | io::ErrorKind::PermissionDenied if action != "read" => {
+                Self::ReadOnly { path }
+            }
+            _ => Self::Io { action, path, source },
+        }
+    }
+}
+
+impl From<figure::FigureError> for ProjectError {
+    fn from(error: figure::FigureError) -> Self {
+        match error {
+            figure::FigureError::Render(error) => Self::Render(error),
+            figure::FigureError::Pattern(error) => Self::Style(error),
+            other => Self::Figure(other),
+        }
+    }
+}
