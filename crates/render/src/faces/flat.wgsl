@@ -94,7 +94,8 @@ fn grid_column(index: u32, cell: u32, levels: u32, t: f32) -> ColumnSample {
 // Distance in m below a horizon (w) and its derivatives per voxel (xyz).
 fn distance_below(info: SheetInfo, p: vec3<f32>) -> vec4<f32> {
     if info.level != NONE {
-        return level_distance(info, p);
+        // Regions are told by the trilinear field, whose slopes jump from cell to cell.
+        return (level_cubic(info.level, p) - vec4(0.0, 0.0, 0.0, info.at)) * info.scale_m;
     }
     let sheet = sheet_sample(info, p.xy);
     return vec4(-sheet.yz, 1.0, p.z - sheet.x) * params.voxel_m.z;
