@@ -45,7 +45,7 @@ fn wells_stand_side_by_side_in_every_format_and_their_tops_are_joined() {
     }
     let said = texts(at, "a.svg");
     // Horizons have their own names, other surfaces those of the file; the scale is that of the curve.
-    for text in ["W1", "W2", "W3", "Alpha", "Tuff &amp; &lt;ash&gt;", "GR", "30", "36", "Wells", "depth (m)"] {
+    for text in ["W1", "W2", "W3", "Alpha", "Tuff &amp; &lt;ash&gt;", "GR (GAPI)", "30", "36", "Wells", "depth (m)"] {
         assert!(said.iter().any(|other| other == text), "no {text} in {said:?}");
     }
     assert!(said.iter().any(|text| text.contains("dashed: from the model")), "{said:?}");
