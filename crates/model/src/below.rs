@@ -59,7 +59,7 @@ impl Below {
     }
 }
 
-/// The answers for the horizons in order, youngest first. Further ones than [`MOST_HORIZONS`] are left out.
+/// The answers for the horizons in order, youngest first. Further ones than `MOST_HORIZONS` are left out.
 impl FromIterator<bool> for Below {
     fn from_iter<T: IntoIterator<Item = bool>>(answers: T) -> Self {
         let mut below = Self::default();

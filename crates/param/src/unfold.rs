@@ -29,7 +29,7 @@ use std::sync::Arc;
 use survey::LevelField;
 use survey::progress::{Cancelled, Progress};
 
-/// The unfolded place of every voxel of a region: i·(Nx − 1) and j·(Ny − 1). Memory: 8 bytes a node of [`FINE_NODES`].
+/// The unfolded place of every voxel of a region: i·(Nx − 1) and j·(Ny − 1). Memory: 8 bytes a node of the lattice.
 pub type Unfolding = Arc<[LevelField; 2]>;
 
 /// Nodes of the lattice around the volume; a layer is solved on those that it holds.

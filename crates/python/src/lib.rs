@@ -3,14 +3,14 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`mod@project`] | a project: commands in and effects out as JSON, its data as arrays |
-//! | [`mod@program`] | the commands of the command line, carried out in this process |
-//! | [`mod@bricks`] | pure functions on a brick with its halo, on one thread each |
-//! | [`mod@stored`] | stored volumes, read by box, written from Python, or written file by file by many processes |
-//! | [`mod@schema`] | names of commands and of their fields, so that tests compare them with their Python twins |
-//! | [`mod@arrays`] | vectors become arrays without a copy |
-//! | [`mod@work`] | long work: Python's lock is released, signals and progress reach whoever called |
-//! | [`mod@refusal`] | errors with the sentence and the hint of the command line |
+//! | `project` | a project: commands in and effects out as JSON, its data as arrays |
+//! | `program` | the commands of the command line, carried out in this process |
+//! | `bricks` | pure functions on a brick with its halo, on one thread each |
+//! | `stored` | stored volumes, read by box, written from Python, or written file by file by many processes |
+//! | `schema` | names of commands and of their fields, so that tests compare them with their Python twins |
+//! | `arrays` | vectors become arrays without a copy |
+//! | `work` | long work: Python's lock is released, signals and progress reach whoever called |
+//! | `refusal` | errors with the sentence and the hint of the command line |
 //!
 //! Deliberately absent: any computation, and any word about an error that the command line does not say.
 

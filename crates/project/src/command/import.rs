@@ -14,7 +14,7 @@ use store::{Ingested, StoreError, VolumeInfo, resume_blocks};
 use survey::{Note, Progress, SurveyGeometry};
 
 /// Reads a volume into the project: a SEG-Y file, or a folder in which a volume is stored as this program stores them
-/// (see [`super::import_stored`]). The first volume defines the survey geometry; others must lie in it.
+/// (see `import_stored.rs`). The first volume defines the survey geometry; others must lie in it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ImportVolume {
     /// The file or folder.
