@@ -61,8 +61,8 @@ fn stated_memory_gives_the_bytes_of_one_piece_and_a_kill_costs_little() {
         }
         if ended.is_none() {
             child.kill().unwrap();
-            child.wait().unwrap();
         }
+        child.wait().unwrap();
         went_on += usize::from(
             fs::read_to_string(at.join("said.txt")).unwrap().contains("continued an interrupted extraction"),
         );
