@@ -197,7 +197,7 @@ pub const COMPUTING: [Scenario; 13] = [
     of(Imported, "animate p.petro a.gif --frames 2 --size 16x12 --samples 1 --device cpu"),
     after(Imported, with_figures, "figures p.petro out"),
     of(Imported, "export p.petro top.irap --horizon Top --format irap"),
-    of(Imported, "export p.petro top.csv --horizon Top --values seismic --window 2"),
+    of(Imported, "export p.petro values.csv --horizon Top --values seismic --window 2"),
     of(Imported, "export p.petro out.sgy --volume seismic"),
     of(Extracted, "export p.petro c.csv --candidates"),
     of(Imported, "review p.petro a.html --density 64 --sections 1 --device cpu"),
