@@ -30,6 +30,7 @@ pub fn document() -> Document {
         file: "faults/F1.json".into(),
         hash: "00".into(),
         source: source(),
+        colour: None,
     }];
     document
 }
