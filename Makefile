@@ -92,6 +92,9 @@ speed: setup
 	cargo run --locked -q -p petroglyph-param --example time_param -- --definitions $(SPEED_SIDE)
 	cargo run --locked -q -p petroglyph-render --example volume_speed -- --side $(SPEED_SIDE) --size $(SPEED_SIZE)
 
+# These also need Python, which `setup` then installs.
+wheel test-python: export NEEDS_PYTHON = 1
+
 wheel: setup
 	[ -x target/python/maturin/bin/maturin ] || { $(PYTHON) -m venv target/python/maturin && target/python/maturin/bin/pip install --quiet 'maturin>=1.9,<2'; }
 	target/python/maturin/bin/maturin build --release --locked --out target/wheels
@@ -129,12 +132,14 @@ bench: build
 	$(PETROGLYPH) bench --quick
 
 # What Rust alone does not bring: a C compiler for the compression library, a C++ one for the fuzzer, and a Vulkan driver (Mesa's software
-# driver serves where there is no GPU). Skipped at once when all is there.
+# driver serves where there is no GPU); for the Python package also Python. Skipped at once when all is there.
 setup:
 	@missing=""; \
 	{ command -v cc && command -v c++; } >/dev/null || missing="$$missing build-essential"; \
 	PATH="$$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1' || missing="$$missing libvulkan1"; \
 	ls /usr/share/vulkan/icd.d /etc/vulkan/icd.d 2>/dev/null | grep -q json || missing="$$missing mesa-vulkan-drivers"; \
+	[ -z "$$NEEDS_PYTHON" ] || [ "$$PETROGLYPH_SKIP_PYTHON" = 1 ] || $(PYTHON) -c 'import ensurepip, venv' 2>/dev/null \
+		|| missing="$$missing python3-venv"; \
 	[ -z "$$missing" ] && exit 0; \
 	sudo=""; \
 	[ "$$(id -u)" = 0 ] || sudo="sudo"; \

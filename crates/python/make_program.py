@@ -1,12 +1,10 @@
 """Writes python/petroglyph/program.py: every command of the command line as a function, from what the program says of them.
 
-    python make_program.py            writes the file
-    python make_program.py --check    fails if it is not what would be written
+    python make_program.py
 """
 
 import json
 import keyword
-import sys
 from pathlib import Path
 
 from petroglyph import _native
@@ -145,6 +143,4 @@ def text():
 
 
 if __name__ == "__main__":
-    if "--check" in sys.argv:
-        sys.exit(0 if OUT.read_text() == text() else "program.py is not what make_program.py writes: run it again")
     OUT.write_text(text())

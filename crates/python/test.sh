@@ -4,7 +4,7 @@
 #
 #   crates/python/test.sh [PYTEST_ARGUMENTS]
 #
-# Without Python and where none can be installed it fails; PETROGLYPH_SKIP_PYTHON=1, which CI never sets, skips it.
+# `make test-python` installs Python where it is missing and may. PETROGLYPH_SKIP_PYTHON=1, which CI never sets, skips it.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -15,16 +15,9 @@ fi
 python="${PYTHON:-python3}"
 environment=target/python/venv
 
-has_python() { command -v "$python" >/dev/null && "$python" -c 'import ensurepip, venv' 2>/dev/null; }
-if ! has_python && command -v apt-get >/dev/null; then
-    sudo=""
-    [ "$(id -u)" = 0 ] || sudo="sudo"
-    $sudo apt-get update -q
-    $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends python3 python3-venv
-fi
-if ! has_python; then
+if ! "$python" -c 'import ensurepip, venv' 2>/dev/null; then
     echo "error: Python with its module venv is missing" >&2
-    echo "hint: as root on Debian: apt-get install python3 python3-venv; PETROGLYPH_SKIP_PYTHON=1 goes on without it" >&2
+    echo "hint: as root on Debian: apt-get install python3-venv; PETROGLYPH_SKIP_PYTHON=1 goes on without it" >&2
     exit 1
 fi
 
@@ -39,7 +32,6 @@ wheel=$("$environment/bin/python" crates/python/assemble_wheel.py target/debug/d
 # From elsewhere, so that the installed package is tested and not its sources.
 root="$PWD"
 cd target/python
-export XDG_STATE_HOME="$PWD/state"
-venv/bin/python "$root/crates/python/make_program.py" --check
+export XDG_STATE_HOME="$PWD/state" PETROGLYPH_PROGRAM="$root/target/debug/petroglyph"
 venv/bin/python -m mypy --config-file "$root/pyproject.toml" -p petroglyph
 venv/bin/python -m pytest -c "$root/pyproject.toml" --rootdir "$root" -p no:cacheprovider -q "$root/crates/python/tests" "$@"

@@ -3,7 +3,9 @@
 import inspect
 import json
 import os
+import runpy
 import subprocess
+from pathlib import Path
 
 import petroglyph
 import pytest
@@ -49,6 +51,11 @@ def test_every_command_of_the_command_line_has_a_function():
         for option in command["options"]:
             own = option["name"].replace("-", "_")
             assert option["name"] in ("json", "wait", "version") or own in known or f"{own}_" in known, (name, own)
+
+
+def test_functions_are_what_make_program_writes():
+    maker = runpy.run_path(str(Path(__file__).parent.parent / "make_program.py"))
+    assert maker["OUT"].read_text() == maker["text"](), "run make_program.py again"
 
 
 def test_functions_are_those_of_the_program_that_is_built():

@@ -65,7 +65,7 @@ class Commands:
 
     def attribute(
         self,
-        kind: Literal["semblance", "envelope", "dip", "flattened"],
+        kind: Literal["semblance", "envelope", "dip", "flattened", "hiatus"],
         name: str,
         *,
         volume: str | None = None,
@@ -78,7 +78,7 @@ class Commands:
 
         Parameters
         ----------
-        kind : {"semblance", "envelope", "dip", "flattened"}
+        kind : {"semblance", "envelope", "dip", "flattened", "hiatus"}
             What to compute.
         name : str
             Name of the new volume; a dip adds ``NAME-inline`` and ``NAME-crossline``.

@@ -553,8 +553,8 @@ def attribute(
         Project folder.
     kind : value, optional
         Semblance (similarity of neighbouring traces, low at faults), envelope (strength of reflections), dip (their
-        steepness) or flattened (a Wheeler diagram: beds laid flat by geologic time, `petroglyph time` first; empty
-        where beds are missing).
+        steepness); of geologic time, `petroglyph time` first, flattened (a Wheeler diagram: beds laid flat; empty
+        where beds are missing) or hiatus (how fast it runs down the traces: high at unconformities).
     name : value, optional
         Name of the new volume; a dip adds NAME-inline and NAME-crossline.
     volume : value, optional
@@ -596,6 +596,36 @@ def volume_list(
         "volume",
         "list",
         project,
+        progress=progress,
+    )
+
+
+def volume_link(
+    project: Value,
+    url: Value,
+    *,
+    name: Value | None = None,
+    progress: Progress | None = None,
+) -> Answer:
+    """Take in a volume that stays in object storage: its bricks are read, and cached, as they are needed.
+
+    Parameters
+    ----------
+    project : value
+        Project folder; made if there is none.
+    url : value
+        Address of the volume: s3://, gs://, az://, https://.
+    name : value, optional
+        Name of the volume [default: seismic, or the last part of the address].
+    progress : callable, optional
+        Called as ``progress(stage, done, total)``.
+    """
+    return run(
+        "volume",
+        "link",
+        project,
+        url,
+        name=name,
         progress=progress,
     )
 
@@ -940,6 +970,45 @@ def horizon_smooth(
     )
 
 
+def horizon_stack(
+    project: Value,
+    name: Value,
+    *,
+    count: Value | None = None,
+    between: Values | None = None,
+    spacing: Value | None = None,
+    progress: Progress | None = None,
+) -> Answer:
+    """Add a stack of horizons: isochrons by geologic time, or surfaces at equal shares of the thickness between two.
+
+    Parameters
+    ----------
+    project : value
+        Project folder.
+    name : value
+        What the names of the horizons begin with; a number follows.
+    count : value, optional
+        Number of horizons.
+    between : value or values, optional
+        The horizon above and the horizon below [default: isochrons over all of the survey's rock].
+    spacing : value, optional
+        Isochrons (equal steps of geologic time, `petroglyph time` first) or proportional (equal shares of the
+        thickness).
+    progress : callable, optional
+        Called as ``progress(stage, done, total)``.
+    """
+    return run(
+        "horizon",
+        "stack",
+        project,
+        name,
+        count=count,
+        between=between,
+        spacing=spacing,
+        progress=progress,
+    )
+
+
 def horizon_replay(
     project: Value,
     name: Value | None = None,
@@ -1003,7 +1072,7 @@ def horizon_colour(
     *,
     progress: Progress | None = None,
 ) -> Answer:
-    """Give an assembled horizon another colour.
+    """Give a horizon another colour.
 
     Parameters
     ----------
@@ -1378,6 +1447,36 @@ def fault_extent(
     )
 
 
+def fault_colour(
+    project: Value,
+    name: Value,
+    colour: Value,
+    *,
+    progress: Progress | None = None,
+) -> Answer:
+    """Give a fault another colour on sections.
+
+    Parameters
+    ----------
+    project : value
+        Project folder.
+    name : value
+        Fault.
+    colour : value
+        Colour, #rrggbb.
+    progress : callable, optional
+        Called as ``progress(stage, done, total)``.
+    """
+    return run(
+        "fault",
+        "colour",
+        project,
+        name,
+        colour,
+        progress=progress,
+    )
+
+
 def fault_rename(
     project: Value,
     from_: Value,
@@ -1600,6 +1699,7 @@ def extract(
     project: Value,
     *,
     volume: Value | None = None,
+    memory: Value | None = None,
     method: Value | None = None,
     extrema: Value | None = None,
     min_front_width: Value | None = None,
@@ -1617,6 +1717,9 @@ def extract(
         Project folder.
     volume : value, optional
         Volume to extract from [default: the first on the project's lattice].
+    memory : value, optional
+        Memory to use, such as 4G: what takes more in one piece (31 bytes a voxel) is done in bricks, with the same
+        result; a killed one goes on when it is started again [default: half of what is available].
     method : value, optional
         How surfaces grow: `ours`, or `paper` for the published method.
     extrema : value, optional
@@ -1640,6 +1743,7 @@ def extract(
         "extract",
         project,
         volume=volume,
+        memory=memory,
         method=method,
         extrema=extrema,
         min_front_width=min_front_width,
@@ -1655,6 +1759,7 @@ def time(
     project: Value,
     *,
     name: Value | None = None,
+    memory: Value | None = None,
     progress: Progress | None = None,
 ) -> Answer:
     """Compute geologic time: a volume in which every bed has one value, also beyond faults.
@@ -1665,6 +1770,9 @@ def time(
         Project folder.
     name : value, optional
         Name of the new volume.
+    memory : value, optional
+        Memory to use beside the candidates, such as 2G or 800M [default: half of what is available]; a survey that
+        needs more is solved in slabs of inlines that are joined.
     progress : callable, optional
         Called as ``progress(stage, done, total)``.
     """
@@ -1672,6 +1780,7 @@ def time(
         "time",
         project,
         name=name,
+        memory=memory,
         progress=progress,
     )
 
@@ -1823,6 +1932,8 @@ def export(
     fault: Value | None = None,
     candidates: bool = False,
     format: Value | None = None,
+    values: Values | None = None,
+    window: Value | None = None,
     volume: Value | None = None,
     format_code: Value | None = None,
     when_rotated: Value | None = None,
@@ -1850,6 +1961,10 @@ def export(
         Write all horizon candidates instead, as CSV with inline, crossline, z, leaf and surface of each point.
     format : value, optional
         Format of the file: csv, irap, opendtect, tsurf, zmap or cps3 [default: by its extension].
+    values : value or values, optional
+        Write the values of these volumes at the horizon's nodes, as CSV.
+    window : value, optional
+        With --values: also their mean, root mean square and greatest magnitude over so many samples above and below.
     volume : value, optional
         Volume to write as SEG-Y.
     format_code : value, optional
@@ -1881,6 +1996,8 @@ def export(
         fault=fault,
         candidates=candidates,
         format=format,
+        values=values,
+        window=window,
         volume=volume,
         format_code=format_code,
         when_rotated=when_rotated,
@@ -2409,6 +2526,7 @@ def parameterize(
     project: Value,
     *,
     from_: Value | None = None,
+    by_time: bool = False,
     computed: bool = False,
     size: Value | None = None,
     progress: Progress | None = None,
@@ -2423,8 +2541,11 @@ def parameterize(
         Take i, j, k from a Zarr v3 group that another program wrote, instead of computing them: arrays i, j, k
         (float32, NaN outside), layer (0 = deepest) and block (uint8 or uint16), by inline, crossline and sample over
         the whole survey.
+    by_time : bool
+        Take k between two horizons from geologic time, as its fraction between theirs: textures follow every bed
+        (`petroglyph time` first).
     computed : bool
-        Compute i, j, k here again, after --from.
+        Compute i, j, k here again, after --from or --by-time.
     size : value, optional
         Samples of the stored arrays along inlines, crosslines and depth [default: the survey's].
     progress : callable, optional
@@ -2434,6 +2555,7 @@ def parameterize(
         "parameterize",
         project,
         from_=from_,
+        by_time=by_time,
         computed=computed,
         size=size,
         progress=progress,
@@ -2458,6 +2580,7 @@ def render(
     crossline: Values | None = None,
     slice: Values | None = None,
     proportions: Value | None = None,
+    section_blend: Value | None = None,
     fence: Values | None = None,
     map: Value | None = None,
     thickness_to: Value | None = None,
@@ -2550,6 +2673,9 @@ def render(
         Horizontal section at this time or depth; repeat it for several.
     proportions : value, optional
         Proportions of sections along inlines and crosslines, vertical to horizontal [default: they fill their room].
+    section_blend : value, optional
+        What sections and fences show: 0 the rock with its patterns, 1 measured data, or a mixture [default: measured
+        data where there are some].
     fence : value or values, optional
         Section along a line with these corners, two or more.
     map : value, optional
@@ -2580,10 +2706,11 @@ def render(
     north_arrow : bool
         Draw a north arrow below the block, as it lies in the block's middle.
     annotate : value or values, optional
-        Write on the blocks: axes (inlines, crosslines, depth or time along the edges), layers (names along the
-        layers), faults (names, measured throw, half-arrows), wells (names of wells and tops), colours (a bar of the
-        raw data's values), provenance (program, project, --credit); all adds the legend, the scale bar and the north
-        arrow.
+        Write on blocks and sections: axes (inlines, crosslines, depth or time along the edges), layers (names along
+        the layers), faults (names, measured throw, half-arrows), wells (names of wells and tops), quality (horizons
+        dashed where they were filled, dotted with question marks where they were only continued), colours (a bar of
+        the raw data's values), provenance (program, project, --credit); all adds the legend, the scale bars and the
+        north arrow.
     credit : value, optional
         Whose data the figure shows, for the line of provenance.
     font : value or values, optional
@@ -2685,6 +2812,7 @@ def render(
         crossline=crossline,
         slice=slice,
         proportions=proportions,
+        section_blend=section_blend,
         fence=fence,
         map=map,
         thickness_to=thickness_to,
