@@ -4,7 +4,7 @@ use crate::cut::Cut;
 use crate::error::TimeError;
 use crate::hubs::{Hubs, KNOWN};
 use crate::interpretation::{Interpretation, KnownHorizon, Place};
-use crate::known::{hide_unknown, make_monotone, open_jumps, pin};
+use crate::known::{hide_chaos, hide_unknown, make_monotone, open_jumps, pin};
 use crate::links::Links;
 use crate::matches::Timed;
 use crate::merge::merge;
@@ -70,8 +70,9 @@ const MISFIT: f32 = 1.5;
 ///
 /// No link crosses a fault; a picked horizon has one τ, at which τ jumps where it is an unconformity.
 ///
-/// τ is not known, and NaN, on dead traces, farther than [`TimeSettings::reach`] from every patch, and in parts of the
-/// volume that no patch and no fault with a throw joins to the largest. Without candidates it is known nowhere.
+/// τ is not known, and NaN, on dead traces, farther than [`TimeSettings::reach`] from every patch, in parts of the
+/// volume that no patch and no fault with a throw joins to the largest, and where traces correlate along it no better than
+/// noise does. Without candidates it is known nowhere.
 ///
 /// Memory: at most 40 bytes a voxel beside the volume and its candidates, at its peak while s is solved for. The result
 /// does not depend on the number of threads. Cost: some hundred sweeps over the volume where there are faults.
@@ -244,14 +245,11 @@ impl<'a> Solution<'a> {
         open_jumps(&mut self.s, size, self.horizons);
         let changed = make_monotone(&mut self.s, &self.hubs, &self.links);
         pin(&mut self.s, &self.hubs, &self.links, self.settings.hub_weight * KNOWN);
-        let known = hide_unknown(
-            &mut self.s,
-            &self.hubs,
-            &self.links,
-            &[self.ties, self.wells].concat(),
-            self.volume,
-            self.settings.reach,
-        );
+        let reach = self.settings.reach;
+        let ties = [self.ties, self.wells].concat();
+        hide_unknown(&mut self.s, &self.hubs, &self.links, &ties, self.volume, reach);
+        let picked = self.settings.hub_weight * KNOWN;
+        let known = hide_chaos(&mut self.s, &self.hubs, self.volume, reach, picked);
         let mut tau = Volume::filled(size, f32::NAN);
         tau.samples_mut().copy_from_slice(&self.s);
         let not_monotone = changed as f64 / voxels;

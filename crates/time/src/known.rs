@@ -1,5 +1,6 @@
 //! The last steps: τ is made monotone on every trace, exact on picked horizons, and hidden where it is not known.
 
+use crate::coherence::Coherence;
 use crate::hubs::Hubs;
 use crate::interpretation::KnownHorizon;
 use crate::isotonic::{Pools, regress};
@@ -182,16 +183,43 @@ fn bend(tau: &mut [f32], nodes: &[(f32, f32)]) {
     }
 }
 
+/// Makes τ NaN where reflections follow it hardly better than chance would, unless a picked horizon, whose vertices weigh
+/// `known`, is within `reach` samples; returns how many voxels are left.
+pub fn hide_chaos(tau: &mut [f32], hubs: &Hubs, volume: &Volume<f32>, reach: usize, known: f32) -> usize {
+    let [_, ny, nz] = hubs.size;
+    let coherence = Coherence::new(tau, volume);
+    let lines = tau.par_chunks_mut(ny * nz).enumerate().map(|(x, line)| {
+        let (mut told, mut left) = (vec![false; nz], 0);
+        for (y, tau) in line.chunks_mut(nz).enumerate() {
+            told.fill(false);
+            for v in hubs.on_trace(x * ny + y).filter(|&v| hubs.weight[v] >= known) {
+                told[around(hubs.z[v], reach, nz)].fill(true);
+            }
+            for ((tau, told), coherence) in tau.iter_mut().zip(&told).zip(coherence.on_trace(x, y)) {
+                if !told && *coherence < COHERENT {
+                    *tau = f32::NAN;
+                }
+                left += usize::from(tau.is_finite());
+            }
+        }
+        left
+    });
+    lines.sum()
+}
+
+/// Correlation of traces along beds from which on time is known. Noise that patches happened to follow has less than
+/// half of it; reflections with as much noise have about 0.5.
+const COHERENT: f32 = 0.2;
+
+/// The samples of a trace that are within `reach` of a fractional one.
+fn around(z: f32, reach: usize, nz: usize) -> std::ops::Range<usize> {
+    let at = z.round() as usize;
+    at.saturating_sub(reach)..(at + reach + 1).min(nz)
+}
+
 /// Makes τ NaN on dead traces, farther than `reach` samples from every vertex of its trace and of the traces beside it,
-/// and in parts that neither patches nor ties join to the largest; returns how many voxels are left.
-pub fn hide_unknown(
-    tau: &mut [f32],
-    hubs: &Hubs,
-    links: &Links,
-    ties: &[Tie],
-    volume: &Volume<f32>,
-    reach: usize,
-) -> usize {
+/// and in parts that neither patches nor ties join to the largest.
+pub fn hide_unknown(tau: &mut [f32], hubs: &Hubs, links: &Links, ties: &[Tie], volume: &Volume<f32>, reach: usize) {
     let [nx, ny, nz] = hubs.size;
     let mut joined = start::neighbours(hubs, links);
     joined.extend(start::tied(hubs, ties, None));
@@ -201,30 +229,24 @@ pub fn hide_unknown(
     hubs.hub.iter().for_each(|&hub| count[part[hub as usize] as usize] += 1);
     let largest = (0..count.len()).max_by_key(|&n| (count[n], std::cmp::Reverse(n))).unwrap_or(0) as u32;
     let belongs = |v: usize| part[hubs.hub[v] as usize] == largest;
-    tau.par_chunks_mut(ny * nz)
-        .enumerate()
-        .map(|(x, line)| {
-            let (mut near, mut left) = (vec![false; nz], 0);
-            for (y, tau) in line.chunks_mut(nz).enumerate() {
-                near.fill(false);
-                if volume.is_live(x, y) {
-                    for (x, y) in [(x, y), (x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)] {
-                        if x < nx && y < ny {
-                            for v in hubs.on_trace(x * ny + y).filter(|&v| belongs(v)) {
-                                let at = hubs.z[v].round() as usize;
-                                near[at.saturating_sub(reach)..(at + reach + 1).min(nz)].fill(true);
-                            }
+    tau.par_chunks_mut(ny * nz).enumerate().for_each(|(x, line)| {
+        let mut near = vec![false; nz];
+        for (y, tau) in line.chunks_mut(nz).enumerate() {
+            near.fill(false);
+            if volume.is_live(x, y) {
+                for (x, y) in [(x, y), (x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)] {
+                    if x < nx && y < ny {
+                        for v in hubs.on_trace(x * ny + y).filter(|&v| belongs(v)) {
+                            near[around(hubs.z[v], reach, nz)].fill(true);
                         }
                     }
                 }
-                for (tau, near) in tau.iter_mut().zip(&near) {
-                    *tau = if *near { *tau } else { f32::NAN };
-                    left += usize::from(*near);
-                }
             }
-            left
-        })
-        .sum()
+            for (tau, near) in tau.iter_mut().zip(&near) {
+                *tau = if *near { *tau } else { f32::NAN };
+            }
+        }
+    });
 }
 
 #[cfg(test)]

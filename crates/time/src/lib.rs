@@ -23,7 +23,7 @@
 //! | links and dips | `links` |
 //! | where it starts | `start` |
 //! | the minimum | `solve` |
-//! | monotone traces, and what is not known | [`isotonic`], `known` |
+//! | monotone traces, and what is not known | [`isotonic`], `known`, `coherence` |
 //! | throws, then what matches across faults | `throws`, `logs`, `matches` |
 //! | patches of one event become one | `merge` |
 //! | one level of τ, and the event that it is with the reflections along it | [`isochron()`], [`Reflections`] |
@@ -35,6 +35,7 @@
 //!
 //! Deliberately absent: files, projects, pictures, and the growing of candidates.
 
+mod coherence;
 mod compute;
 mod cut;
 mod error;

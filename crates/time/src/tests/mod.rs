@@ -7,6 +7,7 @@ use crate::{
 use interp::{GrowSettings, grow_surfaces};
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 
+mod chaos;
 mod interpretation;
 mod slabs;
 
