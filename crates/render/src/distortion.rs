@@ -17,7 +17,7 @@ use crate::inputs::Inputs;
 use crate::kept::Kept;
 use crate::resolved::{ResolvedInterpretation, ResolvedScene};
 use crate::scene::Scene;
-use crate::shade::{RayHit, pixel_shift, stopping_hit};
+use crate::shade::{RayHit, Start, pixel_shift, stopping_hit};
 use crate::visible::{FaceHit, Ray};
 use glam::{DMat3, DVec2, DVec3, Vec3};
 use rayon::prelude::*;
@@ -122,7 +122,7 @@ pub fn measure(scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<Ve
             let mut row = vec![LayerDistortion::default(); layers];
             for x in 0..width {
                 let view_ray = resolved.view.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
-                if let RayHit::Face(hit) = stopping_hit(&resolved, &Ray::from(view_ray), f32::MIN) {
+                if let RayHit::Face(hit) = stopping_hit(&resolved, &Ray::from(view_ray), Start::OF_RAY) {
                     let place = FacePlace::new(&resolved, &interpretation, &hit);
                     row[place.layer].add(&place.distortion(faces.pixel_m2(&view_ray, &hit)));
                 }

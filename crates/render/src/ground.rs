@@ -9,6 +9,9 @@
 //! secant method if it crosses a single sheet of one block, and by bisection otherwise. Where the ray crosses
 //! a fault into rock, it hits the fault scarp, whose normal is that of the fault.
 //!
+//! Rays that are neighbours in the picture share the way through the air ([`Relief::clear_until`]): one march of their middle ray
+//! with room around it for all of them.
+//!
 //! The march evaluates only horizons that form the ground somewhere in the box ([`Relief::horizons`]). Deeper
 //! ones cannot form it, and those truncated by an erosion surface do not change what is air.
 //!
@@ -159,6 +162,43 @@ impl Relief {
         !self.probe(model, p).is_rock
     }
 
+    /// A distance between two others up to which rays of a bundle are in air, if all are at the first. The bundle follows
+    /// its middle ray: where a sheet of slope s is farther than R·(1 + s) from it, with R the radius of the bundle, no ray
+    /// has met it.
+    pub(crate) fn clear_until(&self, model: &StructuralModel, rays: &[Ray], [enter, exit]: [f32; 2]) -> f32 {
+        if enter >= exit {
+            return enter;
+        }
+        let middle = &rays[rays.len() / 2];
+        let away = |ray: &Ray| [enter, exit].map(|t| ray.at(t).distance(middle.at(t)));
+        let radius = rays.iter().flat_map(away).fold(0.0, f32::max);
+        if radius > CELL {
+            return enter;
+        }
+        let [down, along] = [middle.direction.z.abs(), middle.direction.truncate().length()];
+        let has_levels = model.has_levels();
+        // The slope of a cell holds for a cell's side around it.
+        let farthest = (CELL - radius) / along.max(1e-6);
+        let mut t = enter;
+        for _ in 0..MAX_STEPS {
+            t = self.skip(middle, t, exit, radius);
+            if t >= exit {
+                return exit;
+            }
+            let here = self.probe(model, middle.at(t));
+            let slope = if has_levels { self.steepest } else { self.map_slopes[self.cell_at(middle.at(t))] };
+            let nearing = (down + slope * along).max(if has_levels { 1.0 } else { 1e-6 });
+            let to_ground = (here.gap - radius * (1.0 + slope)) / nearing;
+            let to_fault = 0.8 * here.fault_m / self.longest_m - radius;
+            let step = to_ground.min(to_fault).min(farthest);
+            if here.is_rock || step < SHORTEST_STEP {
+                return t;
+            }
+            t += step;
+        }
+        t
+    }
+
     /// The first hit of the ground along a ray between distances `from` (in the air) and `to`.
     pub fn march(&self, model: &StructuralModel, ray: &Ray, from: f32, to: f32) -> Option<GroundHit> {
         let (start, end) = self.clip(ray, from, to)?;
@@ -169,7 +209,7 @@ impl Relief {
         let (mut air_t, mut air) = (from, None);
         let mut t = start;
         for _ in 0..MAX_STEPS {
-            let skipped = self.skip(ray, t, end);
+            let skipped = self.skip(ray, t, end, 0.0);
             if skipped > t {
                 (air_t, air) = ((skipped - 2.0 * INTO_CELL).max(air_t), None);
             }
@@ -202,15 +242,15 @@ impl Relief {
         cell.x as usize * self.map_cells[1] + cell.y as usize
     }
 
-    /// The first distance at or after `t` at which the coarse map does not exclude rock.
-    fn skip(&self, ray: &Ray, mut t: f32, end: f32) -> f32 {
+    /// The first distance at or after `t` at which the coarse map does not exclude rock within `radius` (at most [`CELL`]).
+    fn skip(&self, ray: &Ray, mut t: f32, end: f32, radius: f32) -> f32 {
         let d = ray.direction;
         for _ in 0..MAX_STEPS {
             let p = ray.at(t);
             let place = (p.truncate() - self.map_low) / CELL;
             let last = Vec2::new(self.map_cells[0] as f32, self.map_cells[1] as f32) - 1.0;
             let cell = place.floor().clamp(Vec2::ZERO, last);
-            let top = self.map_tops[cell.x as usize * self.map_cells[1] + cell.y as usize];
+            let top = self.map_tops[cell.x as usize * self.map_cells[1] + cell.y as usize] - radius;
             if p.z >= top || t >= end {
                 break;
             }
@@ -438,3 +478,7 @@ impl Heights {
         Self { z_range: [z_range[0] - margin, z_range[1] + margin], steepest, horizons, cells, tops, slopes }
     }
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/ground.rs"]
+mod tests;

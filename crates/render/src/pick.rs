@@ -10,7 +10,7 @@ use crate::kept::Kept;
 use crate::media::march::first_seen;
 use crate::resolved::ResolvedScene;
 use crate::scene::Scene;
-use crate::shade::{RayHit, stopping_hit};
+use crate::shade::{RayHit, Start, stopping_hit};
 use crate::visible::Ray;
 use glam::{DVec2, Vec3};
 use model::Region;
@@ -74,7 +74,7 @@ pub struct PickedPoint {
 pub fn pick(scene: &Scene, inputs: &Inputs, pixel: DVec2) -> Result<Option<PickedPoint>, RenderError> {
     let resolved = ResolvedScene::new(scene, inputs, &mut Kept::default())?;
     let ray = Ray::from(resolved.view.ray(pixel));
-    let hit = stopping_hit(&resolved, &ray, f32::MIN);
+    let hit = stopping_hit(&resolved, &ray, Start::OF_RAY);
     let seen = resolved.field.as_ref().and_then(|field| first_seen(field, &resolved.solid, &ray, hit.t()));
     let (what, t) = match (seen, hit) {
         (Some((t, _)), _) => (PickedObject::Medium, t),

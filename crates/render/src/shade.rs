@@ -11,7 +11,7 @@ use crate::media::bundle::gather_all;
 use crate::media::light::LightVolume;
 use crate::points::Points;
 use crate::resolved::{Flat, ResolvedInterpretation, ResolvedScene};
-use crate::visible::{FaceHit, Ray, TOUCH};
+use crate::visible::{FaceHit, Ray, SolidSpan, TOUCH};
 use crate::wells::WellHit;
 use glam::{Vec3, Vec4};
 use model::Region;
@@ -19,18 +19,23 @@ use ttf::{linear_from_srgb, srgb_from_linear};
 
 /// The points that stop rays.
 pub(crate) fn stopping_points(resolved: &ResolvedScene, view_rays: &[ViewRay]) -> Points {
-    let hits = view_rays.iter().map(|ray| (ray, stopping_hit(resolved, &Ray::from(*ray), f32::MIN)));
-    Points::of(resolved, hits)
+    let rays: Vec<Ray> = view_rays.iter().map(|ray| Ray::from(*ray)).collect();
+    let hits = rays.iter().zip(starts(resolved, &rays)).map(|(ray, start)| stopping_hit(resolved, ray, start));
+    Points::of(resolved, view_rays.iter().zip(hits))
 }
 
 /// Straight RGBA of rays: of what stops each, and of what lies behind a ground that is not opaque. Fastest
 /// for rays that are neighbours in the picture.
 pub(crate) fn trace(resolved: &ResolvedScene, light: Option<&LightVolume>, view_rays: &[ViewRay]) -> Vec<Vec4> {
+    let rays: Vec<Ray> = view_rays.iter().map(|ray| Ray::from(*ray)).collect();
     let segments: Vec<RaySegment> = view_rays
         .iter()
-        .map(|view_ray| {
-            let ray = Ray::from(*view_ray);
-            RaySegment { view_ray, ray, hit: stopping_hit(resolved, &ray, f32::MIN), start: f32::MIN }
+        .zip(rays.iter().zip(starts(resolved, &rays)))
+        .map(|(view_ray, (ray, start))| RaySegment {
+            view_ray,
+            ray: *ray,
+            hit: stopping_hit(resolved, ray, start),
+            start: start.at,
         })
         .collect();
     let mut colours = seen(resolved, light, &segments);
@@ -42,7 +47,8 @@ pub(crate) fn trace(resolved: &ResolvedScene, light: Option<&LightVolume>, view_
         {
             let after = resolved.solid.next_span(&segment.ray, ground.t).map_or(f32::INFINITY, |span| span.end);
             through.push(n);
-            behind.push(RaySegment { hit: stopping_hit(resolved, &segment.ray, after), start: ground.t, ..*segment });
+            let hit = stopping_hit(resolved, &segment.ray, Start { at: after, ..Start::OF_RAY });
+            behind.push(RaySegment { hit, start: ground.t, ..*segment });
         }
     }
     for (n, behind) in through.into_iter().zip(seen(resolved, light, &behind)) {
@@ -99,33 +105,60 @@ pub(crate) fn encoded(linear: Vec3) -> Vec3 {
     Vec3::from_array(linear.to_array().map(coded))
 }
 
-/// What stops a ray in this scene at or after distance `start`: a well, a face of the block or of a cut-out,
+/// Where a ray begins.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Start {
+    /// Distance before which nothing stops it, voxels.
+    pub at: f32,
+    /// Distance before which it is known to meet no rock, voxels.
+    pub clear: f32,
+}
+
+impl Start {
+    /// At the beginning of the ray, about which nothing is known.
+    pub const OF_RAY: Self = Self { at: f32::MIN, clear: f32::MIN };
+}
+
+/// Where rays begin that are neighbours in the picture, pixel by pixel: all of them pass the air together, then those of
+/// each pixel.
+fn starts(resolved: &ResolvedScene, rays: &[Ray]) -> Vec<Start> {
+    let (Some(relief), Some(interpretation)) = (&resolved.relief, resolved.interpretation) else {
+        return vec![Start::OF_RAY; rays.len()];
+    };
+    let in_block = |ray: &Ray| resolved.solid.box_interval(ray).unwrap_or([f32::MAX, f32::MIN]);
+    let wider = |[a, b]: [f32; 2], [c, d]: [f32; 2]| [a.min(c), b.max(d)];
+    let [enter, exit] = rays.iter().map(in_block).fold([f32::MAX, f32::MIN], wider);
+    let clear = |rays: &[Ray], from: f32| relief.clear_until(interpretation.model, rays, [from, exit]);
+    let of_all = clear(rays, enter);
+    let per_pixel = (resolved.scene.samples * resolved.scene.samples) as usize;
+    let of_pixel = |rays: &[Ray]| if rays.len() > 1 { clear(rays, of_all) } else { of_all };
+    let start = |rays: &[Ray]| vec![Start { clear: of_pixel(rays), ..Start::OF_RAY }; rays.len()];
+    rays.chunks(per_pixel).flat_map(start).collect()
+}
+
+/// What stops a ray in this scene: a well, a face of the block or of a cut-out,
 /// the ground, or nothing.
-pub(crate) fn stopping_hit(resolved: &ResolvedScene, ray: &Ray, start: f32) -> RayHit {
+pub(crate) fn stopping_hit(resolved: &ResolvedScene, ray: &Ray, start: Start) -> RayHit {
     let hit = stopping_rock(resolved, ray, start);
     match resolved.tubes.as_ref().and_then(|tubes| tubes.hit(ray, hit.t())) {
-        Some(well) if well.t > start => RayHit::Well(well),
+        Some(well) if well.t > start.at => RayHit::Well(well),
         _ => hit,
     }
 }
 
-fn stopping_rock(resolved: &ResolvedScene, ray: &Ray, start: f32) -> RayHit {
+fn stopping_rock(resolved: &ResolvedScene, ray: &Ray, start: Start) -> RayHit {
     match resolved.scene.media.faces {
         Faces::All => first_hit(resolved, ray, start),
         Faces::None => RayHit::Background,
         Faces::CutOuts => {
             let Some([enter, _]) = resolved.solid.box_interval(ray) else { return RayHit::Background };
-            let mut from = start;
+            let mut from = start.at;
             for _ in 0..=resolved.solid.cut_outs.len() + 1 {
                 let Some(span) = resolved.solid.next_span(ray, from) else { return RayHit::Background };
                 let front = span.entry.t <= enter + TOUCH;
-                match (&resolved.relief, resolved.interpretation) {
-                    (Some(relief), Some(interpretation)) if relief.is_air(interpretation.model, span.entry.point) => {
-                        if let Some(hit) = relief.march(interpretation.model, ray, span.entry.t, span.end) {
-                            return RayHit::Ground(hit);
-                        }
-                    }
-                    _ if !front => return RayHit::Face(span.entry),
+                match through_air(resolved, ray, &span, start.clear) {
+                    Some(Some(ground)) => return RayHit::Ground(ground),
+                    None if !front => return RayHit::Face(span.entry),
                     _ => {}
                 }
                 from = span.end;
@@ -156,24 +189,29 @@ impl RayHit {
     }
 }
 
-/// The first face of rock at or after distance `start`, or the ground if that face lies in air.
-pub(crate) fn first_hit(resolved: &ResolvedScene, ray: &Ray, start: f32) -> RayHit {
-    let mut from = start;
+/// The first face of rock, or the ground if that face lies in air.
+pub(crate) fn first_hit(resolved: &ResolvedScene, ray: &Ray, start: Start) -> RayHit {
+    let mut from = start.at;
     for _ in 0..=resolved.solid.cut_outs.len() + 1 {
         let Some(span) = resolved.solid.next_span(ray, from) else { return RayHit::Background };
-        let (Some(relief), Some(ResolvedInterpretation { model, .. })) = (&resolved.relief, resolved.interpretation)
-        else {
-            return RayHit::Face(span.entry);
-        };
-        if !relief.is_air(model, span.entry.point) {
-            return RayHit::Face(span.entry);
+        match through_air(resolved, ray, &span, start.clear) {
+            None => return RayHit::Face(span.entry),
+            Some(Some(ground)) => return RayHit::Ground(ground),
+            Some(None) => from = span.end,
         }
-        if let Some(hit) = relief.march(model, ray, span.entry.t, span.end) {
-            return RayHit::Ground(hit);
-        }
-        from = span.end;
     }
     RayHit::Background
+}
+
+/// The ground that a ray meets in a stretch of the block that begins in air, if any; `None` if it begins in rock. Before
+/// the distance `clear` there is air.
+fn through_air(resolved: &ResolvedScene, ray: &Ray, span: &SolidSpan, clear: f32) -> Option<Option<GroundHit>> {
+    let (relief, model) = (resolved.relief.as_ref()?, resolved.interpretation?.model);
+    if span.entry.t >= clear && !relief.is_air(model, span.entry.point) {
+        return None;
+    }
+    let from = span.entry.t.max(clear);
+    Some((from < span.end).then(|| relief.march(model, ray, from, span.end)).flatten())
 }
 
 /// The change of the hit on its plane for a step of one pixel to the right (n = 0) or down (n = 1), voxels.

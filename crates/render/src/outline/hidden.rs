@@ -7,7 +7,7 @@
 use crate::camera::View;
 use crate::media::march::gather;
 use crate::resolved::ResolvedScene;
-use crate::shade::first_hit;
+use crate::shade::{Start, first_hit};
 use crate::visible::Ray;
 use glam::{DVec2, DVec3};
 
@@ -31,7 +31,7 @@ const BISECTIONS: usize = 7;
 pub(super) fn covered_by(resolved: &ResolvedScene, p: DVec3) -> f64 {
     let view_ray = resolved.view.ray(resolved.view.project(p));
     let t = (p - view_ray.origin).dot(view_ray.direction);
-    t - f64::from(first_hit(resolved, &Ray::from(view_ray), f32::MIN).t())
+    t - f64::from(first_hit(resolved, &Ray::from(view_ray), Start::OF_RAY).t())
 }
 
 /// Whether media or wells in front of a point hide lines there: the transmittance is below one half.

@@ -32,7 +32,7 @@ use crate::media::Faces;
 use crate::outline::draw::OutlineLines;
 use crate::resolved::ResolvedScene;
 use crate::scene::Scene;
-use crate::shade::{RayHit, stopping_hit};
+use crate::shade::{RayHit, Start, stopping_hit};
 use crate::visible::Ray;
 use face::face_areas;
 use glam::DVec2;
@@ -237,7 +237,7 @@ fn covered(resolved: &ResolvedScene, progress: &Progress) -> Result<Option<GrayI
             let hits = (0..RAYS * RAYS).filter(|n| {
                 let inside = DVec2::new(f64::from(n % RAYS) + 0.5, f64::from(n / RAYS) + 0.5) / f64::from(RAYS);
                 let ray = Ray::from(resolved.view.ray(DVec2::new(f64::from(x), f64::from(y)) + inside));
-                matches!(stopping_hit(resolved, &ray, f32::MIN), RayHit::Ground(_) | RayHit::Well(_))
+                matches!(stopping_hit(resolved, &ray, Start::OF_RAY), RayHit::Ground(_) | RayHit::Well(_))
             });
             (hits.count() as u32 * 255 / (RAYS * RAYS)) as u8
         };
