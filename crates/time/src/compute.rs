@@ -115,24 +115,20 @@ pub fn geologic_time(
     if solution.hubs.len() == 0 {
         return Ok(GeologicTime { tau: Volume::filled(size, f32::NAN), known: 0.0, not_monotone: 0.0, steps: 0 });
     }
-    let rounds = if interpretation.cuts.is_empty() { &[][..] } else { &ROUNDS };
-    let slack = |is_last: bool| if is_last { 1.0 } else { SLACK };
-    solution.minimise("solving for geologic time", slack(rounds.is_empty()), progress)?;
+    solution.minimise("solving for geologic time", progress)?;
     solution.weigh_vertices();
-    for (n, round) in rounds.iter().enumerate() {
-        solution.match_faults(round, progress)?;
-        solution.merge(round.merge);
-        solution.minimise("matching both sides of faults", slack(n + 1 == rounds.len()), progress)?;
+    if !interpretation.cuts.is_empty() {
+        for round in ROUNDS {
+            solution.match_faults(&round, progress)?;
+            solution.merge(round.merge);
+            solution.minimise("matching both sides of faults", progress)?;
+        }
     }
     solution.finish()
 }
 
 /// Memory that is needed for each voxel beside the volume and its candidates.
 pub(crate) const BYTES_A_VOXEL: usize = 40;
-
-/// How many tolerances the residual may be of what is still to be matched across faults: until then a closer solution
-/// only holds wrong throws the faster. With 1 the whole takes 1.4 times as long and isochrons beyond faults are worse.
-const SLACK: f64 = 3.0;
 
 /// What one round of matching does.
 struct Round {
@@ -206,11 +202,11 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// Moves s to the minimum, as closely as `slack` tolerances.
-    fn minimise(&mut self, stage: &str, slack: f64, progress: &Progress) -> Result<(), TimeError> {
+    /// Moves s to the minimum.
+    fn minimise(&mut self, stage: &str, progress: &Progress) -> Result<(), TimeError> {
         progress.begin(stage, self.settings.most_steps as u64);
         let mut s = std::mem::take(&mut self.s);
-        let done = self.system().minimise(&mut s, self.settings.most_steps, slack * self.settings.tolerance, progress);
+        let done = self.system().minimise(&mut s, self.settings.most_steps, self.settings.tolerance, progress);
         self.s = s;
         self.steps += done?;
         Ok(())
