@@ -122,3 +122,25 @@ fn stacks_lie_between_their_horizons_and_textures_follow_time() {
     run_in(at, "parameterize p.petro --computed --size 8x8x8").done();
     assert_eq!(render("again"), computed);
 }
+
+#[test]
+fn faults_that_reflections_and_horizons_tell_are_proposed_together_and_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let made = run_in(at, "synth s --size 96x80x96 --seed 1 --snr 8 --json").done().json();
+    run_in(at, "import s/survey.sgy p.petro").done();
+    run_in(at, "fault propose p.petro").failed(&["candidates"]);
+    run_in(at, "extract p.petro").done();
+    // The proposals that are not minor: how many reflections alone tell, and how many a horizon.
+    let proposed = || {
+        let told = run_in(at, "fault propose p.petro --json").done().json();
+        let all = told["proposals"].as_array().unwrap().clone();
+        let is_large = |proposal: &&serde_json::Value| proposal["is_minor"] == false;
+        let (reflections, horizons): (Vec<_>, Vec<_>) =
+            all.iter().filter(is_large).partition(|proposal| proposal["horizons"].as_array().unwrap().is_empty());
+        [reflections.len(), horizons.len()]
+    };
+    assert_eq!(proposed(), [3, 0], "the survey has three faults");
+    add_horizon(at, &made["horizons"], "Alpha");
+    assert_eq!(proposed(), [1, 2], "the one that dies out hardly offsets Alpha; the others are not proposed twice");
+}

@@ -1,9 +1,11 @@
 //! Geologic time in the window: computed by a button, a horizon by one click, layers by none.
 
+use super::command::applied;
 use super::driven::{Driven, click, document, state, wait};
 use super::picking::{click_in, interpreting, picking};
 use eframe::egui::Modifiers;
 use egui_kittest::kittest::{NodeT, Queryable};
+use project::command::{Command, RemoveHorizon};
 use state::Tool;
 
 #[test]
@@ -12,6 +14,9 @@ fn one_click_makes_a_horizon_and_a_second_corrects_it() {
     let mut harness = interpreting(folder.path());
     click(&mut harness, "Sections");
     harness.run_steps(3);
+    for label in ["Lay beds flat", "Missing beds"] {
+        assert!(harness.get_by_label(label).accesskit_node().is_disabled(), "{label} needs geologic time");
+    }
     click(&mut harness, "Geologic time");
     wait(&mut harness, "time is a volume", |h| document(h).volumes.iter().any(|entry| entry.name == "time"));
     wait(&mut harness, "it can be computed again", |h| h.query_by_label("Geologic time again").is_some());
@@ -26,5 +31,20 @@ fn one_click_makes_a_horizon_and_a_second_corrects_it() {
     // The project has layers already: a button that says so.
     let button = harness.get_by_label("Illustrate now");
     assert!(button.accesskit_node().is_disabled());
+    assert!(state(&harness).notices.iter().all(|notice| !notice.failed));
+}
+
+#[test]
+fn a_volume_without_horizons_gets_layers_by_one_button() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = interpreting(folder.path());
+    for name in ["Top", "Base"] {
+        applied(&mut harness, &Command::RemoveHorizon(RemoveHorizon { name: name.to_owned() }));
+    }
+    harness.run_steps(3);
+    click(&mut harness, "Illustrate now");
+    let bounded = |h: &Driven| document(h).horizons.iter().any(|entry| entry.name == "Level 1");
+    wait(&mut harness, "a level of geologic time bounds layers", bounded);
+    assert!(document(&harness).volumes.iter().any(|entry| entry.name == "time"));
     assert!(state(&harness).notices.iter().all(|notice| !notice.failed));
 }
