@@ -39,7 +39,8 @@ impl Bricks<'_> {
         let fitting = (self.together * BYTES_A_TRIANGLE / BYTES_NEAR) as f64 / triangles_a_line;
         let most = (fitting as usize).saturating_sub(2 * reach).clamp(LEAST_LINES, COLUMN);
         let lines = area.x.len().div_ceil(area.x.len().div_ceil(most));
-        let (mut distance, mut leaf): (Vec<u8>, Vec<u32>) = Default::default();
+        let samples = area.traces() * nz;
+        let (mut distance, mut leaf) = (Vec::<u8>::with_capacity(samples), Vec::<u32>::with_capacity(samples));
         for first in area.x.clone().step_by(lines) {
             progress.check()?;
             let strip = Area { x: first..(first + lines).min(area.x.end), y: area.y.clone() };
