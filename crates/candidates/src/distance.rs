@@ -29,7 +29,7 @@ mod triangle;
 use crate::error::InterpError;
 use crate::forest::Forest;
 use crate::lanes::widest;
-pub(crate) use index::cell_triangle;
+pub(crate) use index::{BRICK as ROW_CELLS, CellRow, cell_triangle};
 use index::{CellIndex, TriangleLists};
 use rayon::prelude::*;
 use search::ColumnBlock;
@@ -238,15 +238,15 @@ impl<'a> LeafDistances<'a> {
 /// Rows of a block: distances and leaf ids of each.
 type BlockRows<'a> = Vec<(&'a mut [u8], &'a mut [u32])>;
 
-/// Distances and leaf ids of columns among triangles that are given with their cells, in a volume of `size`. Columns and
-/// cells count from the same trace.
+/// Distances and leaf ids of columns among triangles that are given with their cells, in rows of [`ROW_CELLS`], in a volume
+/// of `size`. Columns and cells count from the same trace.
 ///
 /// # Errors
 /// [`InterpError::Cancelled`].
 pub(crate) fn columns_among(
     size: [usize; 3],
     settings: &DistanceSettings,
-    cells: Vec<([usize; 2], CellTriangle)>,
+    cells: Vec<CellRow>,
     x: Range<usize>,
     y: Range<usize>,
     progress: &Progress,

@@ -13,22 +13,12 @@ use survey::Progress;
 use survey::sample::{Sample, SampleType, SamplesMut};
 use survey::source::{Block, BlockSource, SourceError};
 
-const TYPES: [SampleType; 7] = [
-    SampleType::Int8,
-    SampleType::Uint8,
-    SampleType::Int16,
-    SampleType::Uint16,
-    SampleType::Int32,
-    SampleType::Uint32,
-    SampleType::Float32,
-];
-
 /// The type of that name.
 fn type_named(name: &str) -> PyResult<SampleType> {
-    TYPES.into_iter().find(|known| known.name() == name).ok_or_else(|| {
+    SampleType::named(name).ok_or_else(|| {
         PyTypeError::new_err(format!(
             "samples of {name} cannot be stored; expected {}",
-            TYPES.map(|t| t.name()).join(", ")
+            SampleType::ALL.map(SampleType::name).join(", ")
         ))
     })
 }
@@ -141,15 +131,7 @@ impl BlockSource for Supplied {
 
     fn read_block(&mut self, block: &Block, out: SamplesMut<'_>, progress: &Progress) -> Result<(), SourceError> {
         progress.check()?;
-        match out {
-            SamplesMut::Int8(out) => self.fill(block, out),
-            SamplesMut::Uint8(out) => self.fill(block, out),
-            SamplesMut::Int16(out) => self.fill(block, out),
-            SamplesMut::Uint16(out) => self.fill(block, out),
-            SamplesMut::Int32(out) => self.fill(block, out),
-            SamplesMut::Uint32(out) => self.fill(block, out),
-            SamplesMut::Float32(out) => self.fill(block, out),
-        }
+        survey::of_any_type!(out, |samples| self.fill(block, samples))
     }
 }
 

@@ -10,16 +10,21 @@
 //! tells.
 
 use super::error::StoreError;
+use std::collections::VecDeque;
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use survey::arrays::NamedArrays;
 use survey::positional::PlacedFile;
 use survey::source::SourceError;
 
 /// Bytes of a checksum.
 const CHECKSUM: usize = 4;
+
+/// Files that stay open: tasks read many short stretches of the same few parts.
+const OPEN_FILES: usize = 64;
 
 /// The file that tells in which start of the system the folder was written.
 const SYSTEM: &str = ".system";
@@ -31,6 +36,15 @@ const PRESENT_START: &str = "/proc/sys/kernel/random/boot_id";
 #[derive(Debug)]
 pub struct FolderArrays {
     folder: PathBuf,
+    opened: Mutex<VecDeque<OpenPart>>,
+}
+
+/// A part that was read.
+#[derive(Debug)]
+struct OpenPart {
+    array: String,
+    part: usize,
+    file: Arc<PlacedFile>,
 }
 
 impl FolderArrays {
@@ -48,12 +62,30 @@ impl FolderArrays {
         }
         fs::create_dir_all(folder).map_err(fail)?;
         fs::write(folder.join(SYSTEM), present).map_err(fail)?;
-        Ok(Self { folder: folder.to_owned() })
+        Ok(Self { folder: folder.to_owned(), opened: Mutex::default() })
     }
 
     fn path(&self, array: &str, part: usize) -> PathBuf {
         let part = if part == usize::MAX { "all".to_owned() } else { part.to_string() };
         self.folder.join(array).join(part)
+    }
+
+    fn opened(&self) -> MutexGuard<'_, VecDeque<OpenPart>> {
+        self.opened.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The file of a part, which may be open already.
+    fn file(&self, array: &str, part: usize) -> io::Result<Arc<PlacedFile>> {
+        let mut opened = self.opened();
+        if let Some(known) = opened.iter().find(|known| known.part == part && known.array == array) {
+            return Ok(Arc::clone(&known.file));
+        }
+        let file = Arc::new(PlacedFile::open(&self.path(array, part))?);
+        if opened.len() == OPEN_FILES {
+            opened.pop_front();
+        }
+        opened.push_back(OpenPart { array: array.to_owned(), part, file: Arc::clone(&file) });
+        Ok(file)
     }
 
     fn fail(&self, action: &'static str, array: &str, part: usize, source: io::Error) -> SourceError {
@@ -86,7 +118,9 @@ impl NamedArrays for FolderArrays {
         written.and_then(|()| fs::rename(&partial, &path)).map_err(|source| {
             let _ = fs::remove_file(&partial);
             self.fail("written", array, part, source)
-        })
+        })?;
+        self.opened().retain(|known| known.part != part || known.array != array);
+        Ok(())
     }
 
     fn is_whole(&self, array: &str, part: usize) -> bool {
@@ -102,11 +136,13 @@ impl NamedArrays for FolderArrays {
     }
 
     fn read(&self, array: &str, part: usize, offset: u64, out: &mut [u8]) -> Result<(), SourceError> {
-        let file = PlacedFile::open(&self.path(array, part));
-        file.and_then(|file| file.read_exact_at(offset, out)).map_err(|source| self.fail("read", array, part, source))
+        self.file(array, part)
+            .and_then(|file| file.read_exact_at(offset, out))
+            .map_err(|source| self.fail("read", array, part, source))
     }
 
     fn remove(&self, array: &str) {
+        self.opened().retain(|known| known.array != array);
         // What cannot be removed goes with the folder.
         let _ = fs::remove_dir_all(self.folder.join(array));
     }
@@ -126,6 +162,9 @@ mod tests {
         let mut out = [0; 4];
         arrays.read("z-0", 3, 2, &mut out).unwrap();
         assert_eq!((&out, arrays.length("z-0", 3).unwrap()), (b"2345", 10));
+        arrays.write("z-0", 3, b"9876543210").unwrap();
+        arrays.read("z-0", 3, 2, &mut out).unwrap();
+        assert_eq!(&out, b"7654");
         assert!(arrays.is_whole("z-0", 3) && arrays.is_whole("done", usize::MAX));
         let missing = arrays.read("z-0", 4, 0, &mut out).unwrap_err().to_string();
         assert!(missing.contains("z-0") && missing.contains("missing"), "{missing}");
@@ -140,6 +179,8 @@ mod tests {
         assert!(!again.is_whole("z-0", 3));
         again.remove("z-0");
         assert!(again.length("z-0", 3).is_err());
+        arrays.remove("z-0");
+        assert!(arrays.read("z-0", 3, 0, &mut out).is_err());
     }
 
     #[test]

@@ -20,6 +20,24 @@ pub enum SampleType {
 }
 
 impl SampleType {
+    /// All of them.
+    pub const ALL: [Self; 7] =
+        [Self::Int8, Self::Uint8, Self::Int16, Self::Uint16, Self::Int32, Self::Uint32, Self::Float32];
+
+    /// The type of a name, as Zarr spells it.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|known| known.name() == name)
+    }
+
+    /// Bytes of a sample.
+    pub const fn bytes(self) -> usize {
+        match self {
+            Self::Int8 | Self::Uint8 => 1,
+            Self::Int16 | Self::Uint16 => 2,
+            Self::Int32 | Self::Uint32 | Self::Float32 => 4,
+        }
+    }
+
     /// Its name as Zarr spells it.
     pub const fn name(self) -> &'static str {
         match self {
@@ -51,6 +69,33 @@ pub enum SamplesMut<'a> {
     Uint32(&'a mut [u32]),
     /// Of [`SampleType::Float32`].
     Float32(&'a mut [f32]),
+}
+
+/// Evaluates an expression on the slice in [`SamplesMut`], whatever its type: what is generic then stands once.
+///
+/// ```
+/// # use survey::sample::{Sample, SamplesMut};
+/// fn set<T: Sample>(out: &mut [T], value: f32) {
+///     out.fill(T::from_f32(value));
+/// }
+/// let mut values = [0i16; 2];
+/// let out = SamplesMut::Int16(&mut values);
+/// survey::of_any_type!(out, |samples| set(samples, 7.0));
+/// assert_eq!(values, [7, 7]);
+/// ```
+#[macro_export]
+macro_rules! of_any_type {
+    ($out:expr, |$samples:ident| $body:expr) => {
+        match $out {
+            $crate::sample::SamplesMut::Int8($samples) => $body,
+            $crate::sample::SamplesMut::Uint8($samples) => $body,
+            $crate::sample::SamplesMut::Int16($samples) => $body,
+            $crate::sample::SamplesMut::Uint16($samples) => $body,
+            $crate::sample::SamplesMut::Int32($samples) => $body,
+            $crate::sample::SamplesMut::Uint32($samples) => $body,
+            $crate::sample::SamplesMut::Float32($samples) => $body,
+        }
+    };
 }
 
 /// A numeric type that samples of a volume may have.

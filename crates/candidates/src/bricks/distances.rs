@@ -1,9 +1,10 @@
 //! The stage `distances`: the closest leaf of every voxel, in columns of traces ([`crate::distance`]).
 
 use super::Bricks;
-use super::tiles::{Area, Tiling};
+use super::run::BYTES_A_TRIANGLE;
+use super::tiles::{Area, Halo, Tiling};
 use super::trees::Cell;
-use crate::distance::{CandidateColumns, CellTriangle, columns_among};
+use crate::distance::{CandidateColumns, CellRow, CellTriangle, ROW_CELLS, columns_among};
 use crate::error::InterpError;
 use bytemuck::Zeroable;
 use std::ops::Range;
@@ -12,8 +13,12 @@ use survey::Progress;
 /// Edge of a column, traces: that of the files in which candidates are stored.
 pub const COLUMN: usize = 128;
 
-/// Inlines of a column that are searched together, if their triangles fit.
-const LINES: usize = 64;
+/// Least inlines of a column that are searched together.
+const LEAST_LINES: usize = 8;
+
+/// Bytes that the search takes for each triangle near its inlines: 20 as they are read, with room to grow, and 16 in each
+/// interval of depth that the triangle reaches into.
+const BYTES_NEAR: u64 = 52;
 
 /// Triangles in a voxel, where there are many.
 const DENSE: f64 = 0.7;
@@ -29,18 +34,18 @@ impl Bricks<'_> {
         let area = self.columns().area(column);
         let nz = self.size[2];
         let reach = self.settings.distance.max_distance.ceil() as usize + 2;
-        let mut lines = LINES;
-        let triangles =
-            |lines: usize| DENSE * (lines + 2 * reach) as f64 * (area.y.len() + 2 * reach) as f64 * nz as f64;
-        while lines > 8 && triangles(lines) > self.together as f64 {
-            lines /= 2;
-        }
-        let (mut distance, mut leaf): (Vec<u8>, Vec<u32>) = Default::default();
+        // As many inlines as fit with those around them, which are searched again for the next ones.
+        let triangles_a_line = DENSE * (area.y.len() + 2 * reach) as f64 * nz as f64;
+        let fitting = (self.together * BYTES_A_TRIANGLE / BYTES_NEAR) as f64 / triangles_a_line;
+        let most = (fitting as usize).saturating_sub(2 * reach).clamp(LEAST_LINES, COLUMN);
+        let lines = area.x.len().div_ceil(area.x.len().div_ceil(most));
+        let samples = area.traces() * nz;
+        let (mut distance, mut leaf) = (Vec::<u8>::with_capacity(samples), Vec::<u32>::with_capacity(samples));
         for first in area.x.clone().step_by(lines) {
             progress.check()?;
             let strip = Area { x: first..(first + lines).min(area.x.end), y: area.y.clone() };
-            let around = self.columns().with_halo(&strip, super::tiles::Halo::around(reach));
-            let cells = self.cells_within(&around.x, &around.y)?;
+            let around = self.columns().with_halo(&strip, Halo::around(reach));
+            let cells = self.cells_within(&around)?;
             let size = [around.x.len(), around.y.len(), nz];
             let local = |range: &Range<usize>, from: usize| range.start - from..range.end - from;
             let (x, y) = (local(&strip.x, around.x.start), local(&strip.y, around.y.start));
@@ -54,9 +59,10 @@ impl Bricks<'_> {
         self.write("leaf", column, &leaf)
     }
 
-    /// The triangles whose cells lie in an area, by cell of the area.
-    fn cells_within(&self, x: &Range<usize>, y: &Range<usize>) -> Result<Vec<([usize; 2], CellTriangle)>, InterpError> {
-        let (mut found, mut room) = (Vec::new(), Vec::new());
+    /// The triangles whose cells lie in an area, by cell of the area, in rows of [`ROW_CELLS`].
+    fn cells_within(&self, Area { x, y }: &Area) -> Result<Vec<CellRow>, InterpError> {
+        let mut rows: Vec<CellRow> = vec![Vec::new(); x.len().div_ceil(ROW_CELLS)];
+        let mut room = Vec::new();
         for (batch, id, leaf) in self.forest()?.leaves_within(x, y)? {
             let [start, end] = leaf.triangles.map(|at| at as usize);
             room.resize(end - start, Cell::zeroed());
@@ -65,11 +71,12 @@ impl Bricks<'_> {
                 let (cell_x, cell_y) = (usize::from(cell.x), usize::from(cell.y));
                 if x.contains(&cell_x) && y.contains(&cell_y) {
                     let triangle = CellTriangle { z: cell.z, code: id << 2 | cell.corner };
-                    found.push(([cell_x - x.start, cell_y - y.start], triangle));
+                    let at = [cell_x - x.start, cell_y - y.start];
+                    rows[at[0] / ROW_CELLS].push((at.map(|cell| cell as u16), triangle));
                 }
             }
         }
-        Ok(found)
+        Ok(rows)
     }
 
     /// Count of columns of 128 × 128 traces, numbered along crosslines first.

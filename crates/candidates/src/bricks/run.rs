@@ -15,7 +15,7 @@ use survey::candidates::ForestRows;
 const BYTES_A_SAMPLE: u64 = 20;
 
 /// Bytes that trees take for each triangle of the surfaces in work.
-const BYTES_A_TRIANGLE: u64 = 130;
+pub(super) const BYTES_A_TRIANGLE: u64 = 130;
 
 /// Traces that the widest halo adds on both sides of a brick.
 const WIDEST_HALO: u64 = 2 * 24;

@@ -17,6 +17,9 @@ use std::ops::Range;
 /// Edge of a brick, cells.
 pub(crate) const BRICK: usize = 4;
 
+/// Triangles of a row of bricks, each with its cell.
+pub(crate) type CellRow = Vec<([u16; 2], CellTriangle)>;
+
 /// Cells of a brick.
 const CELLS: usize = BRICK * BRICK;
 
@@ -161,15 +164,15 @@ impl CellIndex {
         Self { first: 0, rows: VecDeque::new(), counts }
     }
 
-    /// An index of triangles that are given with their cells.
-    pub(crate) fn of_cells(size: [usize; 3], cells: Vec<([usize; 2], CellTriangle)>) -> Self {
+    /// An index of triangles that are given with their cells, row by row.
+    pub(crate) fn of_cells(size: [usize; 3], rows: Vec<CellRow>) -> Self {
         let mut index = Self::new(size);
-        let mut rows: Vec<Vec<([usize; 2], CellTriangle)>> = (0..index.counts[0]).map(|_| Vec::new()).collect();
-        for (cell, triangle) in cells {
-            rows[cell[0] / BRICK].push((cell, triangle));
-        }
         let [_, bricks, intervals] = index.counts;
-        index.rows = rows.into_iter().map(|row| BrickRow::of_cells(row.into_iter(), [bricks, intervals])).collect();
+        let made = rows.into_iter().map(|row| {
+            let cells = row.into_iter().map(|(cell, triangle)| (cell.map(usize::from), triangle));
+            BrickRow::of_cells(cells, [bricks, intervals])
+        });
+        index.rows = made.collect();
         index
     }
 

@@ -50,7 +50,7 @@ pub(super) fn execute(
         polarity: change.polarity,
         source: Source {
             path: info.source.map_or_else(|| change.path.clone(), PathBuf::from),
-            bytes: (size.iter().product::<usize>() * bytes_of(sample_type)) as u64,
+            bytes: (size.iter().product::<usize>() * sample_type.bytes()) as u64,
             reading: format!("stored volume of {type_name}"),
         },
         geometry: own_lattice(draft, geometry),
@@ -72,32 +72,14 @@ pub(super) fn execute(
     }))
 }
 
-const TYPES: [SampleType; 7] = [
-    SampleType::Int8,
-    SampleType::Uint8,
-    SampleType::Int16,
-    SampleType::Uint16,
-    SampleType::Int32,
-    SampleType::Uint32,
-    SampleType::Float32,
-];
-
 fn sample_type(stored: &StoredVolume) -> Result<SampleType, StoreError> {
     let found = stored.type_name();
-    TYPES.into_iter().find(|known| known.name() == found).ok_or_else(|| StoreError::WrongType {
+    SampleType::named(&found).ok_or_else(|| StoreError::WrongType {
         path: stored.path().to_owned(),
         array: "0".to_owned(),
         expected: "numbers of up to four bytes",
         found,
     })
-}
-
-fn bytes_of(sample_type: SampleType) -> usize {
-    match sample_type {
-        SampleType::Int8 | SampleType::Uint8 => 1,
-        SampleType::Int16 | SampleType::Uint16 => 2,
-        SampleType::Int32 | SampleType::Uint32 | SampleType::Float32 => 4,
-    }
 }
 
 /// The blocks of a stored volume.
@@ -130,15 +112,7 @@ impl BlockSource for StoredBlocks {
 
     fn read_block(&mut self, block: &Block, out: SamplesMut<'_>, progress: &Progress) -> Result<(), SourceError> {
         progress.check()?;
-        match out {
-            SamplesMut::Int8(out) => self.fill(block, out),
-            SamplesMut::Uint8(out) => self.fill(block, out),
-            SamplesMut::Int16(out) => self.fill(block, out),
-            SamplesMut::Uint16(out) => self.fill(block, out),
-            SamplesMut::Int32(out) => self.fill(block, out),
-            SamplesMut::Uint32(out) => self.fill(block, out),
-            SamplesMut::Float32(out) => self.fill(block, out),
-        }
+        survey::of_any_type!(out, |samples| self.fill(block, samples))
     }
 }
 
