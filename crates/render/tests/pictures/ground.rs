@@ -1,16 +1,19 @@
-//! The march to the ground beside short steps that evaluate the model itself.
+//! The march to the ground beside short steps that evaluate the model itself, and a translucent ground in closed form.
 
+use crate::block::Block;
+use crate::media::draw;
 use glam::Vec3;
 use model::{ModelSettings, StructuralModel};
 use render::ground::{Relief, is_air};
 use render::visible::Ray;
-use render::{Ground, Scene, VoxelBox};
+use render::{Background, Camera, Ground, Outlines, Scene, VoxelBox};
 use survey::horizon::Horizon;
 use survey::stratigraphy::{Contact, StratigraphicHorizon};
 use survey::{Progress, SurveyGeometry, VerticalUnit};
 use synth::closed_form::ClosedForm;
 use synth::shapes::Diapir;
 use synth::{SynthSettings, Synthetic};
+use ttf::{Colour, TextureLibrary, TransferFunctions};
 
 #[test]
 fn it_agrees_with_walking() {
@@ -64,4 +67,27 @@ fn agrees_with_walking(geometry: &SurveyGeometry, model: &StructuralModel) {
     assert!(hits > 100, "{hits}");
     assert!(far * 100 <= hits, "{far} of {hits}");
     assert!(other * 100 <= 2 * hits, "{other} of {hits} have another layer");
+}
+
+#[test]
+fn ground_lets_as_much_light_through_as_its_opacity_says() {
+    let geometry = SurveyGeometry::regular([41, 31, 41], 25.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::flat(&geometry, &[10.0, 27.0]);
+    let block = Block::of(&closed, &TransferFunctions::default(), &TextureLibrary::builtin().unwrap());
+    let with = |opacity: f32| Scene {
+        camera: Camera { elevation_deg: 90.0, ..Camera::default() },
+        ground: Some(Ground { opacity, ..Ground::default() }),
+        outlines: Outlines::none(),
+        background: Background::Colour(Colour::BLACK),
+        size_px: [20, 16],
+        samples: 1,
+        ..Scene::default()
+    };
+    let at = |opacity: f32| {
+        let pixel = draw(&with(opacity), &block.inputs(&[])).get_pixel(10, 8).0;
+        f64::from(ttf::linear_from_srgb(f32::from(pixel[1]) / 255.0))
+    };
+    // In front of a black background the remaining light is the fraction given by the opacity.
+    let (opaque, half, none) = (at(1.0), at(0.5), at(0.0));
+    assert!(opaque > 0.05 && (half - 0.5 * opaque).abs() < 0.01 && none == 0.0, "{opaque} {half} {none}");
 }

@@ -10,4 +10,5 @@ mod ground;
 mod kept;
 mod media;
 mod scene;
+mod surfaces;
 mod vector;
