@@ -15,6 +15,7 @@ use crate::visible::{FaceHit, Ray, SolidSpan, TOUCH};
 use crate::wells::WellHit;
 use glam::{Vec3, Vec4};
 use model::Region;
+use std::iter::repeat_n;
 use ttf::{linear_from_srgb, srgb_from_linear};
 
 /// The points that stop rays.
@@ -132,7 +133,7 @@ fn starts(resolved: &ResolvedScene, rays: &[Ray]) -> Vec<Start> {
     let of_all = clear(rays, enter);
     let per_pixel = (resolved.scene.samples * resolved.scene.samples) as usize;
     let of_pixel = |rays: &[Ray]| if rays.len() > 1 { clear(rays, of_all) } else { of_all };
-    let start = |rays: &[Ray]| vec![Start { clear: of_pixel(rays), ..Start::OF_RAY }; rays.len()];
+    let start = |rays: &[Ray]| repeat_n(Start { clear: of_pixel(rays), ..Start::OF_RAY }, rays.len());
     rays.chunks(per_pixel).flat_map(start).collect()
 }
 
