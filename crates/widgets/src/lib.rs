@@ -6,6 +6,7 @@
 //! - [`event_order`]: a click counts where it was made, and a notch of the wheel is a line;
 //! - [`histogram`] and [`opacity_curve`]: the values of a volume, and an RGBA function drawn over them;
 //! - [`obstacle`] and [`percent`]: controls that say why they do nothing, and shares shown in percent;
+//! - [`dialogue`]: a dialogue in the middle of the window;
 //! - [`keyboard`]: what Enter and Escape do in every dialogue and field, and names changed in place;
 //! - [`page`]: a figure's page as it will be printed, on which labels are dragged;
 //! - [`raster`]: paints what egui draws into an image, without a display.
@@ -14,6 +15,7 @@
 
 pub mod canvas;
 mod colour_well;
+pub mod dialogue;
 pub mod event_order;
 pub mod fields;
 pub mod form;

@@ -4,8 +4,7 @@
 //! : 1.
 
 use eframe::egui::{
-    Color32, Context, CornerRadius, FontFamily, FontId, Frame, Margin, Shadow, Stroke, Style, TextStyle, Theme, Vec2,
-    Visuals,
+    Color32, Context, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style, TextStyle, Theme, Vec2, Visuals,
 };
 
 /// Ochre, as in rock paintings.
@@ -24,11 +23,6 @@ pub fn install(ctx: &Context) {
     ctx.set_style_of(Theme::Dark, style(Theme::Dark));
     // Where the desktop states no preference, the light theme is used.
     ctx.options_mut(|options| options.fallback_theme = Theme::Light);
-}
-
-/// The frame of a dialogue, with a margin.
-pub fn dialogue(ctx: &Context) -> Frame {
-    Frame::popup(&ctx.global_style()).inner_margin(Margin::same(20)).corner_radius(CornerRadius::same(10))
 }
 
 fn style(theme: Theme) -> Style {

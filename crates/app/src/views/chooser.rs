@@ -6,10 +6,10 @@
 use super::notices;
 use crate::state::{Action, Choice, Dialogue, FileContent, Place, State, Target};
 use crate::work::folder::Folder;
-use eframe::egui::{Context, Id, Modal, RichText, ScrollArea, TextEdit, Ui};
+use eframe::egui::{Context, RichText, ScrollArea, TextEdit, Ui};
 use std::path::{Path, PathBuf};
+use widgets::dialogue;
 use widgets::keyboard::is_entered;
-use widgets::theme;
 
 /// The chooser.
 pub struct Chooser {
@@ -35,7 +35,7 @@ impl Chooser {
             self.text = self.home.join("").display().to_string();
             self.listing.forget();
         }
-        let modal = Modal::new(Id::unique("chooser")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
+        let modal = dialogue::show(ctx, "chooser", |ui| {
             ui.set_width(640.0_f32.min(ctx.content_rect().width() - 60.0));
             ui.heading(title(choice));
             ui.label(explanation(choice));

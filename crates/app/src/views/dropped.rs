@@ -3,9 +3,9 @@
 
 use crate::state::{Action, Choice, Dialogue, FileContent, Notice, Place, State, Target};
 use crate::views::chooser;
-use eframe::egui::{Align2, Color32, Context, FontId, Id, LayerId, Modal, Order};
+use eframe::egui::{Align2, Color32, Context, FontId, Id, LayerId, Order};
 use std::path::{Path, PathBuf};
-use widgets::theme;
+use widgets::dialogue;
 
 /// The file that was dropped last, until the window can take it in.
 #[derive(Default)]
@@ -90,7 +90,7 @@ fn project_of(path: &Path) -> Option<PathBuf> {
 
 /// Asks what a file holds.
 pub fn dialogue(ctx: &Context, path: &Path, actions: &mut Vec<Action>) {
-    let modal = Modal::new(Id::unique("dropped")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
+    let modal = dialogue::show(ctx, "dropped", |ui| {
         ui.set_width(420.0);
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         ui.heading(format!("What is {name}?"));

@@ -2,16 +2,16 @@
 
 use super::notices;
 use crate::state::{Action, Dialogue, ExportForm, Layout, Place, SectionVolumes, Session, Shown, State};
-use eframe::egui::{Button, Checkbox, Context, DragValue, Grid, Id, Modal, Spinner, TextEdit, Ui, Vec2};
+use eframe::egui::{Button, Checkbox, Context, DragValue, Grid, Spinner, TextEdit, Ui, Vec2};
 use figure::Annotation;
 use pictures::SparseHorizon;
 use pictures::figures::FigureFormat;
 use render::{LabelChange, Scene};
 use std::path::Path;
+use widgets::dialogue;
 use widgets::keyboard::is_entered;
 use widgets::obstacle::{needs, unless};
 use widgets::page::PagePreview;
-use widgets::theme;
 
 /// Largest side of a picture, pixels.
 const LARGEST: u32 = 16_000;
@@ -51,7 +51,7 @@ pub fn show(
     actions: &mut Vec<Action>,
 ) -> bool {
     let mut asks = false;
-    let modal = Modal::new(Id::unique("export")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
+    let modal = dialogue::show(ctx, "export", |ui| {
         ui.heading("Export the picture");
         ui.horizontal_top(|ui| {
             ui.vertical(|ui| {

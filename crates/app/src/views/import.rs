@@ -6,8 +6,8 @@ use crate::state::{Action, Place, State, Target};
 use crate::work::Work;
 use crate::work::scan::{self, Reading, SurveyScan};
 use eframe::egui::{
-    Align, Button, CollapsingHeader, Color32, ComboBox, Context, DragValue, Grid, Id, Layout, Mesh, Modal, Pos2, Rect,
-    Role, ScrollArea, Sense, Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
+    Align, Button, CollapsingHeader, Color32, ComboBox, Context, DragValue, Grid, Layout, Mesh, Pos2, Rect, Role,
+    ScrollArea, Sense, Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use image::RgbaImage;
@@ -16,6 +16,7 @@ use project::document::Polarity;
 use segy::{FileUnit, KeptDuplicate, LengthUnit, LineSource, SegyInfo, SegyOptions, TraceWeight};
 use std::path::{Path, PathBuf};
 use survey::{Setting, SurveyGeometry};
+use widgets::dialogue;
 use widgets::fields;
 use widgets::form;
 use widgets::keyboard::is_entered;
@@ -72,7 +73,7 @@ impl Import {
             scan::survey(&path_read, &options, progress)
         });
         let room = ctx.content_rect().size();
-        let modal = Modal::new(Id::unique("import")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
+        let modal = dialogue::show(ctx, "import", |ui| {
             ui.set_width((room.x - 120.0).clamp(560.0, 1040.0));
             let file = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
             ui.heading(format!("Read {file}"));

@@ -6,17 +6,15 @@ use super::notices;
 use crate::state::{Action, FileContent, Place, Session, State};
 use crate::work::Work;
 use crate::work::scan::{self, InterpretationScan, Reading};
-use eframe::egui::{
-    Button, CollapsingHeader, ComboBox, Context, DragValue, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui,
-};
+use eframe::egui::{Button, CollapsingHeader, ComboBox, Context, DragValue, Grid, ScrollArea, Spinner, TextEdit, Ui};
 use formats::{Column, Format, HorizonShape, ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
 use project::command::{AddFault, AddHorizon, Age, Command};
 use std::path::{Path, PathBuf};
 use survey::{Contact, Setting};
+use widgets::dialogue;
 use widgets::form;
 use widgets::keyboard::is_entered;
 use widgets::obstacle::{needs, unless};
-use widgets::theme;
 
 /// The dialogue.
 #[derive(Default)]
@@ -61,7 +59,7 @@ impl Interpretation {
                 FileContent::Horizon => scan::horizon(&file, &geometry, &options),
             });
         }
-        let modal = Modal::new(Id::unique("interpretation")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
+        let modal = dialogue::show(ctx, "interpretation", |ui| {
             ui.set_width(620.0);
             ui.heading(if kind == FileContent::Fault { "Add a fault" } else { "Add a horizon" });
             ui.weak(path.display().to_string());

@@ -4,9 +4,10 @@ use super::notices;
 use super::tiles::Tiles;
 use crate::state::{Action, Choice, Dialogue, Place, Session, State};
 use crate::work::Swatches;
-use eframe::egui::{Context, Id, Modal, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, WidgetInfo, vec2};
+use eframe::egui::{Context, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, WidgetInfo, vec2};
 use project::command::{Command, SetLayer};
 use ttf::{LayerStyle, Pattern};
+use widgets::dialogue;
 use widgets::theme;
 
 /// Size of a swatch, points.
@@ -33,7 +34,7 @@ impl Patterns {
         actions: &mut Vec<Action>,
     ) {
         let room = ctx.content_rect().size();
-        let modal = Modal::new(Id::unique("patterns")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
+        let modal = dialogue::show(ctx, "patterns", |ui| {
             ui.set_width((room.x - 120.0).clamp(400.0, 940.0));
             ui.heading(format!("Pattern of {layer}"));
             notices::show(ui, state, Place::Dialogue, actions);

@@ -8,8 +8,8 @@ use crate::state::picking::place_of;
 use crate::state::{Action, Dialogue, Place, Session, ShareForm, ShareKind, State};
 use crate::work::{RunningLine, SharePreview};
 use eframe::egui::{
-    Align2, Button, Color32, ComboBox, Context, DragValue, FontId, Grid, Id, Modal, Pos2, ProgressBar, Rect, Role,
-    ScrollArea, Sense, Stroke, StrokeKind, TextEdit, TextureHandle, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Button, Color32, ComboBox, Context, DragValue, FontId, Grid, Pos2, ProgressBar, Rect, Role, ScrollArea,
+    Sense, Stroke, StrokeKind, TextEdit, TextureHandle, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use project::command::{AddNote, Command, RemoveNote};
@@ -19,9 +19,9 @@ use review::{DENSITIES, MOST_SECTIONS, glb, html};
 use std::sync::Arc;
 use survey::VerticalUnit;
 use survey::block::VoxelBox;
+use widgets::dialogue;
 use widgets::keyboard::is_entered;
 use widgets::obstacle::{needs, unless};
-use widgets::theme;
 
 /// Width of the labels in front of the fields, points: one column for all of them.
 const LABELS: f32 = 134.0;
@@ -107,7 +107,7 @@ impl ShareView {
             (self.sent, self.note.text) = (None, String::new());
         }
         let mut asks = false;
-        let modal = Modal::new(Id::unique("share")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
+        let modal = dialogue::show(ctx, "share", |ui| {
             ui.heading("Share the block");
             ui.horizontal_top(|ui| {
                 ui.vertical(|ui| {

@@ -6,13 +6,13 @@ use crate::state::{
     Action, Choice, Compare, Dialogue, ExportForm, Layout, Look, Panel, PickingStep, Session, StandardView, State,
     Tool, camera,
 };
-use eframe::egui::{Context, Grid, Id, Key, Modal, Modifiers, ScrollArea};
+use eframe::egui::{Context, Grid, Key, Modifiers, ScrollArea};
 use glam::DVec2;
 use interp::holes::FillSettings;
 use project::command::{Command, FillHorizon};
 use render::{FaceData, Scene};
+use widgets::dialogue;
 use widgets::keyboard::{Listener, is_entered};
-use widgets::theme;
 
 /// What a key does to an open project.
 type Deed = fn(&Session) -> Option<Action>;
@@ -245,7 +245,7 @@ pub fn obey(ctx: &Context, state: &State, listener: &Listener, actions: &mut Vec
 /// Shows the table: two columns for everywhere, one for interpreting.
 pub fn dialogue(ctx: &Context, actions: &mut Vec<Action>) {
     let room = ctx.content_rect().size();
-    let modal = Modal::new(Id::unique("shortcuts")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
+    let modal = dialogue::show(ctx, "shortcuts", |ui| {
         ui.set_width((room.x - 100.0).min(1060.0));
         ui.heading("Shortcuts");
         ui.add_space(4.0);

@@ -2,15 +2,15 @@
 
 use super::notices;
 use crate::state::{Action, Dialogue, Place, State, SurfaceForm};
-use eframe::egui::{Button, ComboBox, Context, Grid, Id, Modal, TextEdit};
+use eframe::egui::{Button, ComboBox, Context, Grid, TextEdit};
 use formats::{Format, SurfaceKind};
+use widgets::dialogue;
 use widgets::keyboard::is_entered;
 use widgets::obstacle::{needs, unless};
-use widgets::theme;
 
 /// Shows the dialogue.
 pub fn dialogue(ctx: &Context, state: &State, form: &SurfaceForm, actions: &mut Vec<Action>) {
-    let modal = Modal::new(Id::unique("surface")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
+    let modal = dialogue::show(ctx, "surface", |ui| {
         ui.set_width(440.0);
         ui.heading(format!("Export {} {}", form.kind, form.name));
         notices::show(ui, state, Place::Dialogue, actions);

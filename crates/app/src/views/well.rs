@@ -5,17 +5,17 @@ use crate::state::{Action, Notice, Place, State};
 use crate::work::Work;
 use crate::work::folder::{Folder, FolderListing};
 use crate::work::scan::Reading;
-use eframe::egui::{Button, Context, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
+use eframe::egui::{Button, Context, Grid, ScrollArea, Spinner, TextEdit, Ui};
 use formats::ZUnit;
 use formats::well::{WellFiles, WellOptions, read_well};
 use project::command::{AddWell, Command};
 use std::path::{Path, PathBuf};
 use survey::Setting;
+use widgets::dialogue;
 use widgets::fields;
 use widgets::form;
 use widgets::keyboard::is_entered;
 use widgets::obstacle::{needs, unless};
-use widgets::theme;
 
 /// File extensions of tables.
 const TABLES: [&str; 3] = ["csv", "txt", "dat"];
@@ -53,7 +53,7 @@ impl WellDialogue {
                 read_well(&files_read, &options_read).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
             Ok(report.notes.iter().chain(&report.warnings).map(fields::note).collect())
         });
-        let modal = Modal::new(Id::unique("well")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
+        let modal = dialogue::show(ctx, "well", |ui| {
             ui.set_width(620.0_f32.min(ctx.content_rect().width() - 60.0));
             ui.heading("Add a well");
             ui.weak(path.display().to_string());
