@@ -6,6 +6,7 @@ use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Align, Button, ComboBox, DragValue, Grid, Layout, ProgressBar, Ui};
 use interp::{ExtractSettings, Extremum, Method};
 use project::command::{AttributeKind, Command, ComputeAttribute, ComputeTime};
+use project::document::Document;
 use project::error::Noun;
 use project::interpretation::times::has_time;
 use time::TimeSettings;
@@ -137,10 +138,7 @@ fn without_picks(ui: &mut Ui, session: &Session, is_extracted: bool, has_volume:
         let name = if has_time(&session.document) { "Geologic time again" } else { "Geologic time" };
         let hint = "The age of every voxel, from the candidates and the faults: then one click makes a horizon";
         if unless(ui, why, Button::new(name)).on_hover_text(hint).clicked() {
-            let name = match session.document.volumes.iter().any(|entry| entry.name == TIME) {
-                false => TIME.to_owned(),
-                true => free_name(&session.document, Noun::Volume, TIME),
-            };
+            let name = volume_name(&session.document, "time");
             let command = ComputeTime { name, settings: TimeSettings::default(), memory_bytes: None };
             actions.push(Action::Apply(Box::new(Command::Time(command))));
             actions.push(Action::Picking(PickingStep::Use(Tool::Time)));
@@ -174,7 +172,7 @@ fn without_picks(ui: &mut Ui, session: &Session, is_extracted: bool, has_volume:
             if unless(ui, why, Button::new(label)).on_hover_text(hint).clicked() {
                 let command = ComputeAttribute {
                     kind,
-                    name: free_name(&session.document, Noun::Volume, volume),
+                    name: volume_name(&session.document, volume),
                     volume: None,
                     dip: Default::default(),
                     semblance: Default::default(),
@@ -186,5 +184,8 @@ fn without_picks(ui: &mut Ui, session: &Session, is_extracted: bool, has_volume:
     });
 }
 
-/// Name of the first volume of geologic time.
-const TIME: &str = "time";
+/// A name for a volume: with a number where there is one of that name already.
+fn volume_name(document: &Document, name: &str) -> String {
+    let is_taken = document.volumes.iter().any(|entry| entry.name == name);
+    if is_taken { free_name(document, Noun::Volume, name) } else { name.to_owned() }
+}

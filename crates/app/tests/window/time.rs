@@ -31,6 +31,11 @@ fn one_click_makes_a_horizon_and_a_second_corrects_it() {
     // The project has layers already: a button that says so.
     let button = harness.get_by_label("Illustrate now");
     assert!(button.accesskit_node().is_disabled());
+    for (label, volume) in [("Lay beds flat", "flattened"), ("Missing beds", "missing beds")] {
+        harness.get_by_label(label).click_accesskit();
+        harness.run_steps(3);
+        wait(&mut harness, label, |h| document(h).volumes.iter().any(|entry| entry.name == volume));
+    }
     assert!(state(&harness).notices.iter().all(|notice| !notice.failed));
 }
 
@@ -41,7 +46,10 @@ fn a_volume_without_horizons_gets_layers_by_one_button() {
     for name in ["Top", "Base"] {
         applied(&mut harness, &Command::RemoveHorizon(RemoveHorizon { name: name.to_owned() }));
     }
-    harness.run_steps(3);
+    wait(&mut harness, "they are gone", |h| document(h).horizons.is_empty());
+    click(&mut harness, "Interpret");
+    let can = |h: &Driven| h.query_by_label("Illustrate now").is_some_and(|b| !b.accesskit_node().is_disabled());
+    wait(&mut harness, "nothing stands in the way of layers", can);
     click(&mut harness, "Illustrate now");
     let bounded = |h: &Driven| document(h).horizons.iter().any(|entry| entry.name == "Level 1");
     wait(&mut harness, "a level of geologic time bounds layers", bounded);
