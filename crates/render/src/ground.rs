@@ -9,8 +9,8 @@
 //! secant method if it crosses a single sheet of one block, and by bisection otherwise. Where the ray crosses
 //! a fault into rock, it hits the fault scarp, whose normal is that of the fault.
 //!
-//! Rays that are neighbours in the picture share the way through the air ([`Relief::clear_until`]): one march of their middle ray
-//! with room around it for all of them.
+//! Rays that are neighbours in the picture share the way through the air: one march of their middle ray with room around it
+//! for all of them.
 //!
 //! The march evaluates only horizons that form the ground somewhere in the box ([`Relief::horizons`]). Deeper
 //! ones cannot form it, and those truncated by an erosion surface do not change what is air.
