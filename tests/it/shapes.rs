@@ -117,3 +117,60 @@ fn points_with_normals_are_a_body_which_erosion_may_cut() {
     assert!(worn != picture("whole"), "what stands out is shaded");
     run_in(at, "check b.petro").done();
 }
+
+/// A TSurf of corners (X, Y, depth) and triangles that count them from 0.
+fn tsurf(corners: &[[f64; 3]], triangles: &[[usize; 3]]) -> String {
+    let head = "GOCAD TSurf 1\nHEADER {\nname:x\n}\nGOCAD_ORIGINAL_COORDINATE_SYSTEM\nAXIS_NAME \"X\" \"Y\" \"Z\"\n\
+                AXIS_UNIT \"m\" \"m\" \"m\"\nZPOSITIVE Depth\nEND_ORIGINAL_COORDINATE_SYSTEM\nTFACE\n";
+    let corner = |(n, [x, y, z]): (usize, &[f64; 3])| format!("VRTX {} {x} {y} {z}\n", n + 1);
+    let triangle = |[a, b, c]: &[usize; 3]| format!("TRGL {} {} {}\n", a + 1, b + 1, c + 1);
+    let corners: String = corners.iter().enumerate().map(corner).collect();
+    format!("{head}{corners}{}END\n", triangles.iter().map(triangle).collect::<String>())
+}
+
+/// Corners and triangles of a grid of places, from shares along rows and columns.
+fn rolled(rows: usize, columns: usize, at: impl Fn(f64, f64) -> [f64; 3]) -> (Vec<[f64; 3]>, Vec<[usize; 3]>) {
+    let nodes = |n: usize| (n / (columns + 1), n % (columns + 1));
+    let corners = (0..(rows + 1) * (columns + 1)).map(nodes);
+    let corners = corners.map(|(row, column)| at(row as f64 / rows as f64, column as f64 / columns as f64)).collect();
+    let cells = (0..rows * columns).map(|n| n / columns * (columns + 1) + n % columns);
+    (corners, cells.flat_map(|n| [[n, n + 1, n + columns + 1], [n + 1, n + columns + 2, n + columns + 1]]).collect())
+}
+
+#[test]
+fn what_is_no_fault_or_no_horizon_is_said_when_it_is_added() {
+    use std::f64::consts::{PI, TAU};
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    run_in(at, "create p.petro --bounds 0,1000,0,800,0,800 --size 41x33x41").done();
+    let write = |name: &str, (corners, triangles): (Vec<[f64; 3]>, Vec<[usize; 3]>)| {
+        fs::write(at.join(name), tsurf(&corners, &triangles)).unwrap();
+    };
+    // A ball from nearly one pole to the other: the hole at the upper one is small.
+    let ball = |down: f64, turn: f64| {
+        let (from_top, around) = (0.1 * PI + 0.9 * PI * down, TAU * turn);
+        let ring = 150.0 * from_top.sin();
+        [500.0 + ring * around.cos(), 400.0 + ring * around.sin(), 400.0 - 150.0 * from_top.cos()]
+    };
+    write("ball.ts", rolled(12, 16, ball));
+    write("plane.ts", rolled(6, 6, |s, t| [300.0 + 200.0 * s, 800.0 * t, 800.0 * s]));
+    let listed = || run_in(at, "fault list p.petro --json").done().json()["faults"].as_array().unwrap().len();
+    run_in(at, "fault add p.petro ball.ts --name F").failed(&["folds back over itself", "split it into two faults"]);
+    assert_eq!(listed(), 0, "nothing half done");
+    run_in(at, "fault add p.petro plane.ts --name F").done();
+    let again = run_in(at, "fault add p.petro plane.ts --name G").done();
+    assert!(again.stdout.contains("it is the same surface as fault \"F\""), "{}", again.stdout);
+    let holed = run_in(at, "horizon add p.petro ball.ts --name Stock --shape any").done();
+    assert!(holed.stdout.contains("but for a hole with an edge of 289 m"), "{}", holed.stdout);
+    run_in(at, "horizon remove p.petro Stock").done();
+    run_in(at, "horizon add p.petro ball.ts --name Stock --contact intrusive")
+        .failed(&["it is open inside the volume"]);
+    // An overturned fold, whose triangles have an edge as long as any sheet's.
+    let fold = |s: f64, t: f64| {
+        let along = 3.0 * s - 1.5;
+        [500.0 + 208.0 * (along.powi(3) - 0.8 * along), 800.0 * t, 400.0 + 180.0 * along]
+    };
+    write("fold.ts", rolled(30, 8, fold));
+    let sheet = run_in(at, "horizon add p.petro fold.ts --name Fold").done();
+    assert!(!sheet.stdout.contains("hole"), "{}", sheet.stdout);
+}

@@ -111,6 +111,12 @@ pub fn is_closed(horizon: &Horizon, geometry: &SurveyGeometry) -> bool {
     mesh.is_some_and(|mesh| Shape::of(&horizon.name, mesh, geometry).is_ok_and(|shape| shape.is_closed()))
 }
 
+/// Length of the border of a horizon's triangles, m, where they may be meant as a body but leave a hole.
+pub fn hole_m(horizon: &Horizon, geometry: &SurveyGeometry) -> Option<f64> {
+    let mesh = horizon.any_shape().filter(|mesh| !mesh.triangles.is_empty())?;
+    Shape::of(&horizon.name, mesh, geometry).ok()?.hole_m()
+}
+
 /// Checks that a horizon of any shape can be part of a model, as far as it alone tells: its triangles are one two-sided
 /// surface that does not cross itself, and a body is closed or reaches the edge of the volume.
 ///

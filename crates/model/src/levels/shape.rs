@@ -57,6 +57,16 @@ impl<'a> Shape<'a> {
         self.mesh.is_closed()
     }
 
+    /// Length of its border, m, where it may be a body with a hole: the border is less than half as long as that of a disc
+    /// of the same area. Of a sheet, however it is folded, the border is longer.
+    pub fn hole_m(&self) -> Option<f64> {
+        let at = |v: u32| self.mesh.mesh.vertices[v as usize];
+        let border: f64 = self.mesh.border.iter().map(|&[a, b]| at(a).distance(at(b))).sum();
+        let area: f64 =
+            self.mesh.mesh.triangles.iter().map(|&[a, b, c]| 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).length()).sum();
+        (border > 0.0 && border < (std::f64::consts::PI * area).sqrt()).then_some(border)
+    }
+
     /// The corners, voxels.
     pub fn corners(&self) -> impl Iterator<Item = Vec3> + '_ {
         let voxel = self.metric.inverse();

@@ -6,9 +6,11 @@ use crate::document::{FaultEntry, is_zero};
 use crate::folder::Draft;
 use crate::interpretation::assembly::rebuild_all;
 use formats::{ImportOptions, ImportReport};
+use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use survey::Progress;
+use survey::fault::Fault;
+use survey::{Note, Progress, SurveyGeometry};
 use ttf::Colour;
 
 /// Reads a fault into the project.
@@ -84,7 +86,7 @@ impl AddFault {
         let name = self.options.name.clone().or_else(|| Some(self.name.clone()));
         let options = ImportOptions { name, ..self.options.clone() };
         let mut found = formats::read_fault(&self.path, &geometry, &options)?;
-        let (mut fault, report) = match found.len() {
+        let (mut fault, mut report) = match found.len() {
             1 => found.remove(0),
             _ => {
                 let names = found.iter().map(|(fault, _)| fault.name.clone()).collect();
@@ -95,6 +97,7 @@ impl AddFault {
         fault.name.clone_from(&self.name);
         fault.truncated_by.clone_from(&self.truncated_by);
         fault.grown_m = self.grown_m;
+        check_new(&fault, draft, &geometry, &mut report, progress)?;
         let hash = content::hash_fault(&fault);
         let (file, new) = draft.generation("faults", &self.name, "json")?;
         store::write_fault(&new, &fault)?;
@@ -111,6 +114,25 @@ impl AddFault {
         rebuild_all(draft, progress)?;
         Ok(Effect::FaultAdded(Box::new(FaultAdded { triangles: fault.mesh.triangles.len(), report })))
     }
+}
+
+/// Refuses a surface that no model can hold as a fault, and says where the project has the same already.
+fn check_new(
+    fault: &Fault,
+    draft: &Draft,
+    geometry: &SurveyGeometry,
+    report: &mut ImportReport,
+    progress: &Progress,
+) -> Result<(), ProjectError> {
+    let alone = Fault { truncated_by: None, ..fault.clone() };
+    FaultNetwork::build(geometry, &[alone], progress)?;
+    for entry in &draft.document.faults {
+        if content::read_fault(draft.root(), entry)?.mesh == fault.mesh {
+            let text = format!("it is the same surface as fault \"{}\": remove one of them", entry.name);
+            report.warnings.push(Note::from(text));
+        }
+    }
+    Ok(())
 }
 
 /// The report of an added fault.

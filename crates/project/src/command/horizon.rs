@@ -85,6 +85,14 @@ impl AddHorizon {
             report.notes.push("it is closed, so it cuts the other horizons as an intrusive contact".to_owned());
         }
         model::check_surface(&horizon, contact, &geometry)?;
+        if !contact.is_intrusive()
+            && let Some(border_m) = model::hole_m(&horizon, &geometry)
+        {
+            report.warnings.push(Note::from(format!(
+                "its triangles enclose a body but for a hole with an edge of {border_m:.0} m; it is taken as an open surface. If \
+                 it is a body, close it, or give --contact intrusive to be told where it is open"
+            )));
+        }
         let others = load_all(draft, progress)?;
         self.as_limbs(&mut horizon, &others, &mut report);
         let position = position(&self.age, draft, &horizon, contact, &others)?;
