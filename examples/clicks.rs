@@ -16,7 +16,7 @@ use std::collections::HashMap;
 use std::error::Error;
 use std::time::Instant;
 use survey::Progress;
-use time::{Event, Seed};
+use time::{Event, Seed, Support};
 
 /// Distance within which a node is found, samples.
 const FOUND: f32 = 1.0;
@@ -27,15 +27,54 @@ struct Known {
     z: f32,
 }
 
-/// Which nodes an event goes through.
-fn found(event: &Event, nodes: &[Known], ny: usize) -> Vec<bool> {
-    let mut depths: HashMap<usize, Vec<f32>> = HashMap::new();
+/// For each node the support and the distance, in samples, of the place of an event that lies closest on its trace.
+fn nearest(event: &Event, nodes: &[Known], ny: usize) -> Vec<Option<(Support, f32)>> {
+    let mut on_trace: HashMap<usize, Vec<(Support, f32)>> = HashMap::new();
     for node in &event.nodes {
-        depths.entry(usize::from(node.x) * ny + usize::from(node.y)).or_default().push(node.z);
+        on_trace.entry(usize::from(node.x) * ny + usize::from(node.y)).or_default().push((node.support, node.z));
     }
-    let is_near =
-        |node: &Known| depths.get(&node.trace).is_some_and(|own| own.iter().any(|z| (z - node.z).abs() <= FOUND));
-    nodes.iter().map(is_near).collect()
+    let closest = |node: &Known| {
+        let own = on_trace.get(&node.trace)?.iter().map(|(support, z)| (*support, (z - node.z).abs()));
+        own.min_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    nodes.iter().map(closest).collect()
+}
+
+/// Counts of nodes: those that an event covers, and those of them that it goes through, by what holds it there.
+#[derive(Default)]
+struct Counts {
+    covered: [usize; 3],
+    found: [usize; 3],
+    nodes: usize,
+}
+
+const SUPPORTS: [Support; 3] = [Support::Tracked, Support::Snapped, Support::Between];
+
+impl Counts {
+    fn add(&mut self, nearest: &[Option<(Support, f32)>]) {
+        self.nodes += nearest.len();
+        for (support, distance) in nearest.iter().flatten() {
+            let n = SUPPORTS.iter().position(|other| other == support).unwrap_or_default();
+            self.covered[n] += 1;
+            self.found[n] += usize::from(*distance <= FOUND);
+        }
+    }
+
+    fn print(&self) {
+        let percent = |part: usize, whole: usize| 100.0 * part as f64 / whole.max(1) as f64;
+        let row = |name: &str, covered: usize, found: usize| {
+            println!(
+                "  {name}: {:.1} % of the nodes, {:.1} % of these found",
+                percent(covered, self.nodes),
+                percent(found, covered)
+            );
+        };
+        for (n, support) in SUPPORTS.iter().enumerate() {
+            row(&format!("{support:?}").to_lowercase(), self.covered[n], self.found[n]);
+        }
+        row("tracked and snapped", self.covered[..2].iter().sum(), self.found[..2].iter().sum());
+        row("all", self.covered.iter().sum(), self.found.iter().sum());
+    }
 }
 
 /// The middle of the largest part of the nodes that is wrong: the one farthest from its edge.
@@ -125,15 +164,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     let seed = |node: &Known| Seed { trace: [node.trace / ny, node.trace % ny], z: node.z };
     let mut shares = vec![Vec::new(); clicks];
+    let mut counts: Vec<Counts> = (0..clicks).map(|_| Counts::default()).collect();
     let mut slowest = 0.0f64;
     let mut first_two = Vec::new();
     for place in 0..places {
         let mut seeds = vec![seed(&nodes[(2 * place + 1) * nodes.len() / (2 * places)])];
-        for share in &mut shares {
+        for (share, counts) in shares.iter_mut().zip(&mut counts) {
             let start = Instant::now();
             let Some(event) = times.reflections.event(&times.tau, &seeds, &times.cuts) else { break };
             slowest = slowest.max(start.elapsed().as_secs_f64());
-            let right = found(&event, &nodes, ny);
+            let nearest = nearest(&event, &nodes, ny);
+            counts.add(&nearest);
+            let right: Vec<bool> = nearest.iter().map(|at| at.is_some_and(|(_, off)| off <= FOUND)).collect();
             share.push(right.iter().filter(|right| **right).count() as f64 / right.len() as f64);
             let Some(next) = worst(&nodes, &right, [nx, ny]) else { break };
             seeds.push(seed(&nodes[next]));
@@ -150,6 +192,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let least = share.iter().copied().fold(f64::INFINITY, f64::min);
         let mean = share.iter().sum::<f64>() / share.len() as f64;
         println!("{} clicks: mean {:.1} %, least {:.1} %", n + 1, 100.0 * mean, 100.0 * least);
+        counts[n].print();
     }
     println!("slowest event {slowest:.3} s");
     let mut applied = 0;

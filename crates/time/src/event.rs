@@ -2,11 +2,11 @@
 //!
 //! A level of τ alone is as exact as τ. Where a patch of a reflection lies along most of the level, the event goes
 //! through all of the patch, also where τ is a few samples off; beside other reflections of its kind it goes to them;
-//! elsewhere it is the level. With more than one seed the level varies from place to place: it is the mean of the
-//! seeds' times with weights 1/d⁸, where a fault between a seed and a place makes their distance [`BEYOND_FAULT`] times as
-//! long, and seeds after the first are taken to be [`CORRECTION`] times as far away. So a further seed corrects what the
-//! first got wrong around it, in another fault block all of the block, and nothing is solved for again. Space: voxels.
+//! elsewhere it is the level. With more than one seed the level varies from place to place (`claims`): a further seed
+//! corrects what the first got wrong around it, and in another fault block all of the block; what lies along the first
+//! seed's own patch stays. Nothing is solved for again. Space: voxels.
 
+use crate::claims::{Holding, levels};
 use crate::cut::Cut;
 use crate::isochron::crossings;
 use crate::reflections::Reflections;
@@ -78,12 +78,6 @@ const OFF: f32 = 6.0;
 const LEAST_SHARE: f64 = 0.6;
 /// Traces around a seed within which its patch tells its time.
 const SEED_AROUND: usize = 8;
-/// Distances across a fault count so many times.
-const BEYOND_FAULT: f32 = 8.0;
-/// Distances from a seed that corrects count so many times: within a block it changes what lies within about two fifths of
-/// its distance from the first.
-const CORRECTION: f32 = 2.5;
-
 /// What a seed may point at: a reflection, or the level through the seed.
 #[derive(Debug, Clone, Copy)]
 struct Target {
@@ -112,9 +106,14 @@ impl Reflections {
             placed.push(self.place(tau, seed, &target)?);
         }
         let first = placed.first()?;
-        let level = |x: usize, y: usize| level_at(&placed, [x, y], cuts);
         let own: Vec<u32> = placed.iter().filter_map(|seed| seed.hub).collect();
-        Some(self.along(tau, level, first.time, first.kind, &own))
+        if placed.len() == 1 {
+            return Some(self.along(tau, |_| first.time, first.time, first.kind, &own));
+        }
+        let mut holdings: Vec<Holding> = placed.iter().map(|seed| self.holding(tau, seed)).collect();
+        holdings[0].others = self.patches_along(tau, first);
+        let level = levels(&holdings, cuts, [tau.size()[0], tau.size()[1]]);
+        Some(self.along(tau, |trace| level[trace], first.time, first.kind, &own))
     }
 
     /// What a seed points at. The reflections within reach on its trace, and the level through the seed itself, are
@@ -174,50 +173,89 @@ impl Reflections {
         time.is_finite().then_some(Placed { seed, hub: target.hub, kind: target.kind, time })
     }
 
+    /// What a seed holds: its trace, and where its patch lies along its level.
+    fn holding(&self, tau: &Volume<f32>, Placed { seed, hub, time, .. }: &Placed) -> Holding {
+        let hubs = self.hubs();
+        let [nx, ny, _] = hubs.size;
+        let crossing = |trace: usize| crossings(tau.trace(trace / ny, trace % ny), *time).next();
+        let along: Vec<Option<f32>> = (0..nx * ny).into_par_iter().map(crossing).collect();
+        let is_held = |trace: &usize| {
+            let Some(level) = along[*trace] else { return false };
+            hubs.on_trace(*trace).any(|v| Some(hubs.hub[v]) == *hub && (hubs.z[v] - level).abs() <= OFF)
+        };
+        let patch = (0..nx * ny).filter(is_held).collect();
+        let depth = along.iter().map(|level| level.unwrap_or(seed.z)).collect();
+        Holding { time: *time, trace: seed.trace[0] * ny + seed.trace[1], patch, others: Vec::new(), depth }
+    }
+
+    /// The traces of each patch but a seed's own that lies along the seed's level.
+    fn patches_along(&self, tau: &Volume<f32>, Placed { hub, kind, time, .. }: &Placed) -> Vec<Vec<usize>> {
+        let hubs = self.hubs();
+        let levels = self.levels(tau, |_| *time);
+        let belongs = self.belonging(&levels, *kind);
+        let mut patches = vec![Vec::new(); hubs.len()];
+        for (trace, levels) in levels.iter().enumerate() {
+            for v in hubs.on_trace(trace).filter(|&v| belongs[hubs.hub[v] as usize]) {
+                if off(levels, hubs.z[v]) <= OFF {
+                    patches[hubs.hub[v] as usize].push(trace);
+                }
+            }
+        }
+        if let Some(own) = hub {
+            patches[*own as usize].clear();
+        }
+        patches.retain(|patch| !patch.is_empty());
+        patches
+    }
+
+    /// Where a level that may vary from trace to trace crosses each trace.
+    fn levels(&self, tau: &Volume<f32>, level: impl Fn(usize) -> f32 + Sync) -> Vec<Vec<f32>> {
+        let [nx, ny, _] = self.hubs().size;
+        let on = |trace: usize| crossings(tau.trace(trace / ny, trace % ny), level(trace)).collect();
+        (0..nx * ny).into_par_iter().map(on).collect()
+    }
+
+    /// Which patches of a kind lie along a level with most of their vertices.
+    fn belonging(&self, levels: &[Vec<f32>], kind: Option<Extremum>) -> Vec<bool> {
+        let hubs = self.hubs();
+        // For each patch, how many of its vertices lie along the level, and how many have a level on their trace at all.
+        let mut counts = vec![[0u32; 2]; hubs.len()];
+        for (trace, levels) in levels.iter().enumerate() {
+            for v in hubs.on_trace(trace).filter(|&v| kind == Some(hubs.kind[hubs.hub[v] as usize])) {
+                let off = off(levels, hubs.z[v]);
+                let count = &mut counts[hubs.hub[v] as usize];
+                count[0] += u32::from(off <= ALONG);
+                count[1] += u32::from(off.is_finite());
+            }
+        }
+        let most = |[along, there]: [u32; 2]| along > 0 && f64::from(along) >= LEAST_SHARE * f64::from(there);
+        counts.into_iter().map(most).collect()
+    }
+
     /// The event along a level that may vary from trace to trace.
     fn along(
         &self,
         tau: &Volume<f32>,
-        level: impl Fn(usize, usize) -> f32 + Sync,
+        level: impl Fn(usize) -> f32 + Sync,
         time: f32,
         kind: Option<Extremum>,
         own: &[u32],
     ) -> Event {
         let hubs = self.hubs();
         let [nx, ny, _] = hubs.size;
-        let crossings: Vec<Vec<f32>> = (0..nx * ny)
-            .into_par_iter()
-            .map(|trace| crossings(tau.trace(trace / ny, trace % ny), level(trace / ny, trace % ny)).collect())
-            .collect();
-        let off = |trace: usize, z: f32| {
-            crossings[trace].iter().map(|at| (at - z).abs()).min_by(f32::total_cmp).unwrap_or(f32::INFINITY)
-        };
-        let of_kind = |v: usize| kind == Some(hubs.kind[hubs.hub[v] as usize]);
-        // For each patch, how many of its vertices lie along the level, and how many have a level on their trace at all.
-        let mut counts = vec![[0u32; 2]; hubs.len()];
-        for trace in 0..nx * ny {
-            for v in hubs.on_trace(trace).filter(|&v| of_kind(v)) {
-                let off = off(trace, hubs.z[v]);
-                let count = &mut counts[hubs.hub[v] as usize];
-                count[0] += u32::from(off <= ALONG);
-                count[1] += u32::from(off.is_finite());
-            }
-        }
-        let belongs = |hub: u32| {
-            let [along, there] = counts[hub as usize];
-            along > 0 && (own.contains(&hub) || f64::from(along) >= LEAST_SHARE * f64::from(there))
-        };
+        let levels = self.levels(tau, level);
+        let belongs = self.belonging(&levels, kind);
         let nodes = (0..nx * ny)
             .into_par_iter()
             .flat_map_iter(|trace| {
                 let nearest = |at: f32, reach: f32, patch: bool| {
                     hubs.on_trace(trace)
-                        .filter(|&v| of_kind(v) && (hubs.z[v] - at).abs() <= reach)
-                        .filter(|&v| !patch || belongs(hubs.hub[v]))
+                        .filter(|&v| kind == Some(hubs.kind[hubs.hub[v] as usize]) && (hubs.z[v] - at).abs() <= reach)
+                        .filter(|&v| !patch || belongs[hubs.hub[v] as usize] || own.contains(&hubs.hub[v]))
                         .min_by(|&v, &w| (hubs.z[v] - at).abs().total_cmp(&(hubs.z[w] - at).abs()))
                         .map(|v| hubs.z[v])
                 };
-                let mut nodes: Vec<Node> = crossings[trace]
+                let mut nodes: Vec<Node> = levels[trace]
                     .iter()
                     .map(|&at| {
                         let tracked = nearest(at, OFF, true).map(|z| (z, Support::Tracked));
@@ -234,6 +272,11 @@ impl Reflections {
     }
 }
 
+/// Distance of a sample from the level closest to it, samples; infinite where there is none.
+fn off(levels: &[f32], z: f32) -> f32 {
+    levels.iter().map(|at| (at - z).abs()).min_by(f32::total_cmp).unwrap_or(f32::INFINITY)
+}
+
 /// The traces around a seed.
 fn around(seed: &Seed, count: [usize; 2]) -> impl Iterator<Item = (usize, usize)> {
     let [x, y] = [0, 1].map(|axis| {
@@ -241,22 +284,4 @@ fn around(seed: &Seed, count: [usize; 2]) -> impl Iterator<Item = (usize, usize)
         at.saturating_sub(SEED_AROUND)..(at + SEED_AROUND + 1).min(count[axis])
     });
     x.flat_map(move |x| y.clone().map(move |y| (x, y)))
-}
-
-/// The level at a trace.
-fn level_at(seeds: &[Placed], trace: [usize; 2], cuts: &[Cut]) -> f32 {
-    if let [only] = seeds {
-        return only.time;
-    }
-    let (mut sum, mut weights) = (0.0f64, 0.0f64);
-    for (n, Placed { seed, time, .. }) in seeds.iter().enumerate() {
-        let [dx, dy] = [0, 1].map(|axis| trace[axis] as f32 - seed.trace[axis] as f32);
-        let beyond = cuts.iter().any(|cut| cut.separates(seed.trace, seed.z, trace, seed.z));
-        let locally = if n == 0 { 1.0 } else { CORRECTION };
-        let distance = dx.hypot(dy).max(0.1) * locally * if beyond { BEYOND_FAULT } else { 1.0 };
-        let weight = f64::from(distance).powi(-8);
-        sum += weight * f64::from(*time);
-        weights += weight;
-    }
-    (sum / weights) as f32
 }

@@ -35,6 +35,7 @@
 //!
 //! Deliberately absent: files, projects, pictures, and the growing of candidates.
 
+mod claims;
 mod coherence;
 mod compute;
 mod cut;
