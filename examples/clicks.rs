@@ -16,15 +16,19 @@ use std::collections::HashMap;
 use std::error::Error;
 use std::time::Instant;
 use survey::Progress;
-use time::{Event, Seed, Support};
+use time::{Cut, Event, Seed, Support};
 
 /// Distance within which a node is found, samples.
 const FOUND: f32 = 1.0;
+
+/// Distance from a fault within which beds are dragged and interpretations step down over several traces.
+const BESIDE_FAULT: f32 = 5.0;
 
 /// A node of the interpretation.
 struct Known {
     trace: usize,
     z: f32,
+    beside_fault: bool,
 }
 
 /// For each node the support and the distance, in samples, of the place of an event that lies closest on its trace.
@@ -51,9 +55,11 @@ struct Counts {
 const SUPPORTS: [Support; 3] = [Support::Tracked, Support::Snapped, Support::Between];
 
 impl Counts {
-    fn add(&mut self, nearest: &[Option<(Support, f32)>]) {
-        self.nodes += nearest.len();
-        for (support, distance) in nearest.iter().flatten() {
+    fn add(&mut self, nearest: &[Option<(Support, f32)>], nodes: &[Known], beside_fault: bool) {
+        let chosen: Vec<_> =
+            nearest.iter().zip(nodes).filter(|(_, node)| node.beside_fault == beside_fault).map(|(at, _)| at).collect();
+        self.nodes += chosen.len();
+        for (support, distance) in chosen.into_iter().flatten() {
             let n = SUPPORTS.iter().position(|other| other == support).unwrap_or_default();
             self.covered[n] += 1;
             self.found[n] += usize::from(*distance <= FOUND);
@@ -150,7 +156,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut nodes = Vec::new();
     for sheet in from_horizon(&horizon, &geometry, &FaultNetwork::none()) {
         let inside = sheet.z.iter().enumerate().filter(|(_, z)| **z >= 0.0 && **z <= (nz - 1) as f32);
-        nodes.extend(inside.map(|(trace, z)| Known { trace, z: *z }));
+        nodes.extend(inside.map(|(trace, &z)| {
+            let near = |cut: &Cut| cut.side([trace / ny, trace % ny], z).abs() <= BESIDE_FAULT;
+            Known { trace, z, beside_fault: times.cuts.iter().any(near) }
+        }));
     }
     nodes.sort_by_key(|node| node.trace);
     let near = |node: &&Known| {
@@ -164,7 +173,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     let seed = |node: &Known| Seed { trace: [node.trace / ny, node.trace % ny], z: node.z };
     let mut shares = vec![Vec::new(); clicks];
-    let mut counts: Vec<Counts> = (0..clicks).map(|_| Counts::default()).collect();
+    let mut counts: Vec<[Counts; 2]> = (0..clicks).map(|_| Default::default()).collect();
     let mut slowest = 0.0f64;
     let mut first_two = Vec::new();
     for place in 0..places {
@@ -174,7 +183,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let Some(event) = times.reflections.event(&times.tau, &seeds, &times.cuts) else { break };
             slowest = slowest.max(start.elapsed().as_secs_f64());
             let nearest = nearest(&event, &nodes, ny);
-            counts.add(&nearest);
+            counts.iter_mut().zip([false, true]).for_each(|(counts, beside)| counts.add(&nearest, &nodes, beside));
             let right: Vec<bool> = nearest.iter().map(|at| at.is_some_and(|(_, off)| off <= FOUND)).collect();
             share.push(right.iter().filter(|right| **right).count() as f64 / right.len() as f64);
             let Some(next) = worst(&nodes, &right, [nx, ny]) else { break };
@@ -192,7 +201,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         let least = share.iter().copied().fold(f64::INFINITY, f64::min);
         let mean = share.iter().sum::<f64>() / share.len() as f64;
         println!("{} clicks: mean {:.1} %, least {:.1} %", n + 1, 100.0 * mean, 100.0 * least);
-        counts[n].print();
+        for (counts, where_from) in counts[n].iter().zip(["farther than 5 traces from every fault", "beside faults"]) {
+            println!(
+                " {where_from}, {:.1} % of all nodes",
+                100.0 * counts.nodes as f64 / (share.len() * nodes.len()) as f64
+            );
+            counts.print();
+        }
     }
     println!("slowest event {slowest:.3} s");
     let mut applied = 0;
