@@ -200,7 +200,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (n, share) in shares.iter().enumerate().filter(|(_, share)| !share.is_empty()) {
         let least = share.iter().copied().fold(f64::INFINITY, f64::min);
         let mean = share.iter().sum::<f64>() / share.len() as f64;
-        println!("{} clicks: mean {:.1} %, least {:.1} %", n + 1, 100.0 * mean, 100.0 * least);
+        let mut sorted = share.clone();
+        sorted.sort_by(f64::total_cmp);
+        let median = sorted[sorted.len() / 2];
+        let [mean, median, least] = [mean, median, least].map(|share| 100.0 * share);
+        println!("{} clicks: mean {mean:.1} %, median {median:.1} %, least {least:.1} %", n + 1);
         for (counts, where_from) in counts[n].iter().zip(["farther than 5 traces from every fault", "beside faults"]) {
             println!(
                 " {where_from}, {:.1} % of all nodes",

@@ -33,13 +33,7 @@ const NOTES: &str = "
   did cutting patches into tiles or where their vertices disagree: they are left out.
 - On real surveys no fault is found without horizons: on F3 (both crops) and Penobscot patches go on across faults, and no
   surface has more ends than patches that go on. `fault propose` tells more once there is a horizon.
-- Penobscot, Horizon B, no fault drawn, one click at each of fifteen places of it (`clicks PROJECT B 3 15`, the survey of
-  docs/real-data.md, `--fault-evidence 100`, compared with the interpretation on its own nodes): within 4 ms of it on 74 to
-  77 % of the nodes from fourteen places, 4 % from one in a small block behind a fault; 72 % on average. A second click in the
-  middle of the largest part that is wrong makes 69 to 81 % (22 % from that place), a third 76 to 82 % (62 %). A click as a
-  command takes 0.1 to 0.2 s. With the four faults of docs/real-data.md drawn, 78 to 82 % from places outside the small blocks
-  and 73 to 83 % after the second click, by an earlier method: across the faults of a graben forty samples do not tell the
-  throw.
+- Penobscot, Horizon B by clicks: see `docs/clicks.sh`.
 - Where reflections are chaotic time is not known: of noise at most 1 % is, of Penobscot 96 %.
 - Times were taken while the machine did other work.
 ";

@@ -204,6 +204,6 @@ fn an_event_goes_through_its_patch_where_time_is_off_and_a_second_seed_corrects_
     let (off, event) = worst(&[first, second], &tau);
     let right =
         event.nodes.iter().filter(|n| (strat(f32::from(n.x), f32::from(n.y), n.z) - wanted).abs() < 0.2).count();
-    // Two fifths of 22 traces around the second seed, and all that the first already had.
-    assert!(right as f32 > 0.65 * event.nodes.len() as f32, "{right} of {}, {off}", event.nodes.len());
+    // The second seed holds the rest of the patch.
+    assert!(right as f32 > 0.85 * event.nodes.len() as f32, "{right} of {}, {off}", event.nodes.len());
 }
