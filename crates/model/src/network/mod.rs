@@ -10,9 +10,11 @@
 
 mod blocks;
 mod build;
+mod crossing;
 mod outline;
 mod surface;
 
+pub use crossing::FaultCrossing;
 pub use surface::FaultSurface;
 
 use crate::report::ModelError;
