@@ -217,12 +217,12 @@ fn what_contradicts_itself_is_said_when_it_is_added_and_when_it_is_drawn() {
     write("b.ts", rolled(6, 6, |s, t| [700.0 - 400.0 * s, 800.0 * t, 800.0 * s]));
     write("c.ts", rolled(6, 6, |s, t| [700.0 - 230.0 * s, 800.0 * t, 460.0 * s]));
     run_in(at, "fault add p.petro a.ts --name A").done();
+    let short = run_in(at, "fault add p.petro c.ts --name C").done();
+    assert!(!short.stdout.contains("cross near"), "{}", short.stdout);
+    run_in(at, "fault remove p.petro C").done();
     let crossing = "faults \"A\" and \"B\" cross near inline";
     let added = run_in(at, "fault add p.petro b.ts --name B").done();
     assert!(added.stdout.contains(crossing) && added.stdout.contains("four blocks"), "{}", added.stdout);
-    let short = run_in(at, "fault add p.petro c.ts --name C").done();
-    assert!(!short.stdout.contains("\"A\" and \"C\" cross"), "{}", short.stdout);
-    run_in(at, "fault remove p.petro C").done();
     let flat = "x,y,depth\n0,0,300\n1000,0,300\n0,800,300\n1000,800,300\n";
     fs::write(at.join("flat.csv"), flat).unwrap();
     run_in(at, "horizon add p.petro flat.csv --name Flat").done();
@@ -259,4 +259,32 @@ fn what_contradicts_itself_is_said_when_it_is_added_and_when_it_is_drawn() {
         .failed(&["its triangles cross each other", "near"]);
     let listed = run_in(at, "horizon list p.petro --json").done().json();
     assert_eq!(listed["horizons"].as_array().unwrap().len(), 4, "nothing half done");
+}
+
+#[test]
+fn points_off_a_map_are_mispicks_of_one_horizon_and_limbs_beside_another_of_scattered_points() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    run_in(at, "create p.petro --bounds 0,1000,0,800,0,800 --size 41x33x41").done();
+    // Every twelfth point lies 250 m below the others.
+    let points = |depth: f64, lower: f64| {
+        let rows = (0..96).map(|n| {
+            let (x, y) = ((f64::from(n) * 0.754_877).fract() * 1000.0, (f64::from(n) * 0.569_84).fract() * 800.0);
+            let off = (f64::from(n) * 0.381).fract() + if n % 12 == 5 { lower } else { 0.0 };
+            format!("{x},{y},{}\n", depth + off)
+        });
+        format!("x,y,depth\n{}", rows.collect::<String>())
+    };
+    fs::write(at.join("odd.csv"), points(300.0, 250.0)).unwrap();
+    fs::write(at.join("even.csv"), points(150.0, 0.0)).unwrap();
+    let alone = run_in(at, "horizon add p.petro odd.csv --name Odd").done();
+    assert!(alone.stdout.contains("mis-picks?") && !alone.stdout.contains("any shape"), "{}", alone.stdout);
+    run_in(at, "undo p.petro").done();
+    run_in(at, "horizon add p.petro even.csv --name Even").done();
+    let beside = run_in(at, "horizon add p.petro odd.csv --name Odd").done();
+    let limbs = "8 of its points lie far off a map through their neighbours: they are taken as a surface of any shape";
+    assert!(beside.stdout.contains(limbs) && !beside.stdout.contains("mis-picks?"), "{}", beside.stdout);
+    run_in(at, "undo p.petro").done();
+    let map = run_in(at, "horizon add p.petro odd.csv --name Odd --shape map").done();
+    assert!(map.stdout.contains("mis-picks?") && !map.stdout.contains("limbs"), "{}", map.stdout);
 }

@@ -290,6 +290,8 @@ pub enum ModelNote {
         faults: [String; 2],
         /// Inline and crossline number of a place where they do.
         lines: [f64; 2],
+        /// Number of other pairs that cross as well.
+        others: usize,
     },
 }
 
@@ -352,12 +354,19 @@ impl fmt::Display for ModelNote {
                 "bodies \"{younger}\" and \"{older}\" overlap near inline {inline:.0}, crossline {crossline:.0}; \
                  \"{younger}\", which is younger, is drawn there"
             ),
-            Self::FaultsCross { faults: [a, b], lines: [inline, crossline] } => write!(
-                f,
-                "faults \"{a}\" and \"{b}\" cross near inline {inline:.0}, crossline {crossline:.0} and both go on beyond, so \
-                 that they cut the rock into four blocks there; if one of them ends at the other, state that it is \
-                 truncated by it"
-            ),
+            Self::FaultsCross { faults: [a, b], lines: [inline, crossline], others } => {
+                write!(
+                    f,
+                    "faults \"{a}\" and \"{b}\" cross near inline {inline:.0}, crossline {crossline:.0} and both go on \
+                     beyond, so that they cut the rock into four blocks there; if one of them ends at the other, state \
+                     that it is truncated by it"
+                )?;
+                match others {
+                    0 => Ok(()),
+                    1 => write!(f, ". Another pair of faults crosses as well"),
+                    _ => write!(f, ". {others} other pairs of faults cross as well"),
+                }
+            }
         }
     }
 }

@@ -3,10 +3,11 @@
 //! Each fault is looked at at some thousand nodes of its grid where it is real. One goes through another where, beside
 //! what is real of that one, its nodes lie on both of its sides by more than a few voxels, and one of them close to it.
 
-use super::FaultNetwork;
-use crate::report::ModelNote;
+use super::{FaultNetwork, FaultSurface, build};
+use crate::report::{ModelError, ModelNote};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+use survey::fault::Fault;
 use survey::geometry::SurveyGeometry;
 
 /// Nodes of a fault that are looked at along each side of its grid, about.
@@ -41,13 +42,9 @@ impl FaultNetwork {
         pairs.par_iter().filter_map(crossing).collect()
     }
 
-    /// [`Self::crossings`] in words.
-    pub fn crossing_notes(&self, geometry: &SurveyGeometry) -> Vec<ModelNote> {
-        let note = |crossing: FaultCrossing| ModelNote::FaultsCross {
-            faults: crossing.faults.map(|f| self.surfaces[f].name.clone()),
-            lines: geometry.lines_from_voxel(crossing.at.as_dvec3().truncate()).to_array(),
-        };
-        self.crossings(geometry.size()).into_iter().map(note).collect()
+    /// The first of [`Self::crossings`] in words, with the number of the others.
+    pub(crate) fn crossing_note(&self, geometry: &SurveyGeometry) -> Option<ModelNote> {
+        note(self.crossings(geometry.size()), &self.surfaces, geometry)
     }
 
     /// Nodes of a fault where it is real and inside the volume, voxels.
@@ -85,4 +82,38 @@ impl FaultNetwork {
         let step = nu.max(nv).div_ceil(NODES) as f64 * self.surfaces[a].spacing_m;
         (most.min(-least) > BEYOND_CELLS * other.spacing_m && distance < 2.0 * step).then_some(at)
     }
+}
+
+fn note(crossings: Vec<FaultCrossing>, surfaces: &[FaultSurface], geometry: &SurveyGeometry) -> Option<ModelNote> {
+    let first = crossings.first()?;
+    Some(ModelNote::FaultsCross {
+        faults: first.faults.map(|f| surfaces[f].name.clone()),
+        lines: geometry.lines_from_voxel(first.at.as_dvec3().truncate()).to_array(),
+        others: crossings.len() - 1,
+    })
+}
+
+/// The note that a fault crosses others, where it does: each as it was drawn, before any of them is continued. Those at
+/// which one ends are to be left out.
+///
+/// # Errors
+/// [`ModelError`] for a fault without area, or one that folds over itself.
+pub fn drawn_crossing(
+    geometry: &SurveyGeometry,
+    fault: &Fault,
+    others: &[Fault],
+) -> Result<Option<ModelNote>, ModelError> {
+    let drawn = |fault: &Fault| Ok::<_, ModelError>(build::drawn(geometry, fault)?.0.surface);
+    let surfaces = others.par_iter().chain(rayon::iter::once(fault)).map(drawn).collect::<Vec<_>>();
+    let surfaces = surfaces.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let count = surfaces.len();
+    let network = FaultNetwork {
+        surfaces,
+        truncation: vec![None; count],
+        order: (0..count).collect(),
+        signatures: Vec::new(),
+        table: Vec::new(),
+    };
+    let own = network.crossings(geometry.size()).into_iter().filter(|crossing| crossing.faults[1] == others.len());
+    Ok(note(own.collect(), &network.surfaces, geometry))
 }

@@ -6,7 +6,6 @@ use crate::document::{FaultEntry, is_zero};
 use crate::folder::Draft;
 use crate::interpretation::assembly::rebuild_all;
 use formats::{ImportOptions, ImportReport};
-use glam::DVec3;
 use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -127,29 +126,19 @@ fn check_new(
 ) -> Result<(), ProjectError> {
     let alone = Fault { truncated_by: None, ..fault.clone() };
     FaultNetwork::build(geometry, std::slice::from_ref(&alone), progress)?;
-    let (low, high) = bounds(fault);
+    let mut others = Vec::new();
     for entry in &draft.document.faults {
         let other = content::read_fault(draft.root(), entry)?;
-        let (other_low, other_high) = bounds(&other);
         if other.mesh == fault.mesh {
             let text = format!("it is the same surface as fault \"{}\": remove one of them", entry.name);
             report.warnings.push(Note::from(text));
-        } else if fault.truncated_by.as_ref() != Some(&other.name)
-            && low.cmple(other_high).all()
-            && high.cmpge(other_low).all()
-        {
-            let pair = [Fault { truncated_by: None, ..other }, alone.clone()];
-            let notes = FaultNetwork::build(geometry, &pair, progress)?.crossing_notes(geometry);
-            report.warnings.extend(notes.iter().map(|note| Note::from(note.to_string())));
+        } else if fault.truncated_by.as_ref() != Some(&other.name) {
+            others.push(other);
         }
     }
+    let crossing = model::drawn_crossing(geometry, &alone, &others)?;
+    report.warnings.extend(crossing.map(|note| Note::from(note.to_string())));
     Ok(())
-}
-
-/// The box around a fault, world coordinates.
-fn bounds(fault: &Fault) -> (DVec3, DVec3) {
-    let corners = fault.mesh.vertices.iter();
-    corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
 }
 
 /// The report of an added fault.
