@@ -282,7 +282,7 @@ fn points_off_a_map_are_mispicks_of_one_horizon_and_limbs_beside_another_of_scat
     run_in(at, "undo p.petro").done();
     run_in(at, "horizon add p.petro even.csv --name Even").done();
     let beside = run_in(at, "horizon add p.petro odd.csv --name Odd").done();
-    let limbs = "8 of its points lie far off a map through their neighbours: they are taken as a surface of any shape";
+    let limbs = "9 of its points lie far off a map through their neighbours: they are taken as a surface of any shape";
     assert!(beside.stdout.contains(limbs) && !beside.stdout.contains("mis-picks?"), "{}", beside.stdout);
     run_in(at, "undo p.petro").done();
     let map = run_in(at, "horizon add p.petro odd.csv --name Odd --shape map").done();
