@@ -44,7 +44,7 @@ impl FaultNetwork {
 
     /// The first of [`Self::crossings`] in words, with the number of the others.
     pub(crate) fn crossing_note(&self, geometry: &SurveyGeometry) -> Option<ModelNote> {
-        note(self.crossings(geometry.size()), &self.surfaces, geometry)
+        note(&self.crossings(geometry.size()), &self.surfaces, geometry)
     }
 
     /// Nodes of a fault where it is real and inside the volume, voxels.
@@ -84,7 +84,7 @@ impl FaultNetwork {
     }
 }
 
-fn note(crossings: Vec<FaultCrossing>, surfaces: &[FaultSurface], geometry: &SurveyGeometry) -> Option<ModelNote> {
+fn note(crossings: &[FaultCrossing], surfaces: &[FaultSurface], geometry: &SurveyGeometry) -> Option<ModelNote> {
     let first = crossings.first()?;
     Some(ModelNote::FaultsCross {
         faults: first.faults.map(|f| surfaces[f].name.clone()),
@@ -114,6 +114,7 @@ pub fn drawn_crossing(
         signatures: Vec::new(),
         table: Vec::new(),
     };
-    let own = network.crossings(geometry.size()).into_iter().filter(|crossing| crossing.faults[1] == others.len());
-    Ok(note(own.collect(), &network.surfaces, geometry))
+    let mut own = network.crossings(geometry.size());
+    own.retain(|crossing| crossing.faults[1] == others.len());
+    Ok(note(&own, &network.surfaces, geometry))
 }
