@@ -273,7 +273,7 @@ fn faults_that_cross_are_told_from_those_that_meet_or_pass() {
         let network = FaultNetwork::build(&geometry(), faults, &Progress::silent()).unwrap();
         network.crossings(SIZE)
     };
-    let found = crossings(&[north.clone(), beside.clone(), east.clone()]);
+    let found = crossings(&[north.clone(), beside, east.clone()]);
     let pairs: Vec<[usize; 2]> = found.iter().map(|crossing| crossing.faults).collect();
     assert_eq!(pairs, [[0, 2], [1, 2]]);
     // Places lie on both of their faults.
