@@ -30,6 +30,7 @@ fn option(setting: Setting) -> (&'static str, &'static str) {
         Setting::ZFactor => ("--z-factor", ""),
         Setting::Null => ("--null", ""),
         Setting::PlaceBy => ("--place-by", ""),
+        Setting::Shape => ("--shape", ""),
         Setting::ValueOrder => ("--value-order", ""),
         Setting::MdUnit => ("--md-unit", ""),
         Setting::RotatedGrids => ("--when-rotated", ""),

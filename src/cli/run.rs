@@ -275,7 +275,8 @@ fn parameterize(
         size[2],
         out.display()
     ));
-    for note in &model.report().notes {
+    // What contradicts itself has been said as a warning.
+    for note in model.report().notes.iter().filter(|note| !note.is_contradiction()) {
         report.say(format!("  {note}"));
     }
     for stage in &rock.stages {

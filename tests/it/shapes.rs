@@ -174,3 +174,117 @@ fn what_is_no_fault_or_no_horizon_is_said_when_it_is_added() {
     let sheet = run_in(at, "horizon add p.petro fold.ts --name Fold").done();
     assert!(!sheet.stdout.contains("hole"), "{}", sheet.stdout);
 }
+
+#[test]
+fn a_horizon_of_scattered_points_alone_tells_whether_it_is_overturned() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    for seed in [3, 5, 8] {
+        let made = run_in(at, &format!("synth s{seed} --overturned --size 40x36x32 --seed {seed}")).done();
+        if seed == 3 {
+            create(at, &made.stdout);
+        }
+        for n in 4..=6 {
+            let points = fs::read_to_string(at.join(format!("s{seed}/horizons/H{n}.csv"))).unwrap().lines().count();
+            let added = run_in(at, &format!("horizon add o.petro s{seed}/horizons/H{n}.csv --name H")).done();
+            let told = "several limbs lie over one place on the map (if not: --shape map)";
+            let is_told = added.stdout.contains(told) && added.stdout.contains("any shape");
+            assert!(is_told, "seed {seed}, H{n}, {points} lines: {}", added.stdout);
+            run_in(at, "undo o.petro").done();
+        }
+    }
+    // As many points of a folded and faulted map, in the same block.
+    let rows = (0..70).map(|n| {
+        let (x, y) = ((f64::from(n) * 0.754_877).fract() * 390.0, (f64::from(n) * 0.569_84).fract() * 350.0);
+        let z = 150.0 + 40.0 * (x / 60.0).sin() + if x > 150.0 + 0.3 * y { 50.0 } else { 0.0 };
+        format!("{},{},{z}\n", 612_000.0 + x, 5_178_000.0 + y)
+    });
+    fs::write(at.join("map.csv"), format!("x,y,depth\n{}", rows.collect::<String>())).unwrap();
+    let map = run_in(at, "horizon add o.petro map.csv --name Map").done();
+    assert!(!map.stdout.contains("overturned") && !map.stdout.contains("any shape"), "{}", map.stdout);
+}
+
+#[test]
+fn what_contradicts_itself_is_said_when_it_is_added_and_when_it_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    run_in(at, "create p.petro --bounds 0,1000,0,800,0,800 --size 41x33x41").done();
+    let write = |name: &str, (corners, triangles): (Vec<[f64; 3]>, Vec<[usize; 3]>)| {
+        fs::write(at.join(name), tsurf(&corners, &triangles)).unwrap();
+    };
+    // Two planes that cross in the middle of the block, and one that ends a little beyond the first.
+    write("a.ts", rolled(6, 6, |s, t| [300.0 + 400.0 * s, 800.0 * t, 800.0 * s]));
+    write("b.ts", rolled(6, 6, |s, t| [700.0 - 400.0 * s, 800.0 * t, 800.0 * s]));
+    write("c.ts", rolled(6, 6, |s, t| [700.0 - 230.0 * s, 800.0 * t, 460.0 * s]));
+    run_in(at, "fault add p.petro a.ts --name A").done();
+    let short = run_in(at, "fault add p.petro c.ts --name C").done();
+    assert!(!short.stdout.contains("cross near"), "{}", short.stdout);
+    run_in(at, "fault remove p.petro C").done();
+    let crossing = "faults \"A\" and \"B\" cross near inline";
+    let added = run_in(at, "fault add p.petro b.ts --name B").done();
+    assert!(added.stdout.contains(crossing) && added.stdout.contains("four blocks"), "{}", added.stdout);
+    let flat = "x,y,depth\n0,0,300\n1000,0,300\n0,800,300\n1000,800,300\n";
+    fs::write(at.join("flat.csv"), flat).unwrap();
+    run_in(at, "horizon add p.petro flat.csv --name Flat").done();
+    let drawn = |out: &str| run_in(at, &format!("render p.petro {out} --size 120x90 --device cpu --samples 1")).done();
+    assert!(drawn("x.png").stderr.contains(crossing));
+    run_in(at, "fault truncate p.petro B --by A").done();
+    assert!(!drawn("y.png").stderr.contains("cross near"));
+    // Two balls that share room, and one beside them.
+    let ball = |x: f64| {
+        move |down: f64, turn: f64| {
+            let (from_top, around) = (std::f64::consts::PI * down, std::f64::consts::TAU * turn);
+            let ring = 120.0 * from_top.sin();
+            [x + ring * around.cos(), 400.0 + ring * around.sin(), 400.0 - 120.0 * from_top.cos()]
+        }
+    };
+    for (name, x) in [("P", 300.0), ("Q", 420.0), ("R", 750.0)] {
+        write(&format!("{name}.ts"), rolled(16, 20, ball(x)));
+    }
+    run_in(at, "horizon add p.petro P.ts --name P").done();
+    let overlap = "bodies \"P\" and \"Q\" overlap near inline";
+    let added = run_in(at, "horizon add p.petro Q.ts --name Q").done();
+    assert!(added.stdout.contains(overlap), "{}", added.stdout);
+    let beside = run_in(at, "horizon add p.petro R.ts --name R").done();
+    assert!(!beside.stdout.contains("overlap"), "{}", beside.stdout);
+    assert!(drawn("z.png").stderr.contains(overlap));
+    assert!(run_in(at, "parameterize p.petro --size 20x16x20").done().stderr.contains(overlap));
+    // A sheet that goes through itself is no surface, and leaves the project as it was.
+    let looped = |s: f64, t: f64| {
+        let along = 2.6 * s - 1.3;
+        [500.0 + 300.0 * (along.powi(3) - along), 800.0 * t, 200.0 + 250.0 * along * along]
+    };
+    write("looped.ts", rolled(31, 6, looped));
+    run_in(at, "horizon add p.petro looped.ts --name L --shape any")
+        .failed(&["its triangles cross each other", "near"]);
+    let listed = run_in(at, "horizon list p.petro --json").done().json();
+    assert_eq!(listed["horizons"].as_array().unwrap().len(), 4, "nothing half done");
+}
+
+#[test]
+fn points_off_a_map_are_mispicks_of_one_horizon_and_limbs_beside_another_of_scattered_points() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    run_in(at, "create p.petro --bounds 0,1000,0,800,0,800 --size 41x33x41").done();
+    // Every twelfth point lies 250 m below the others.
+    let points = |depth: f64, lower: f64| {
+        let rows = (0..96).map(|n| {
+            let (x, y) = ((f64::from(n) * 0.754_877).fract() * 1000.0, (f64::from(n) * 0.569_84).fract() * 800.0);
+            let off = (f64::from(n) * 0.381).fract() + if n % 12 == 5 { lower } else { 0.0 };
+            format!("{x},{y},{}\n", depth + off)
+        });
+        format!("x,y,depth\n{}", rows.collect::<String>())
+    };
+    fs::write(at.join("odd.csv"), points(300.0, 250.0)).unwrap();
+    fs::write(at.join("even.csv"), points(150.0, 0.0)).unwrap();
+    let alone = run_in(at, "horizon add p.petro odd.csv --name Odd").done();
+    assert!(alone.stdout.contains("mis-picks?") && !alone.stdout.contains("any shape"), "{}", alone.stdout);
+    run_in(at, "undo p.petro").done();
+    run_in(at, "horizon add p.petro even.csv --name Even").done();
+    let beside = run_in(at, "horizon add p.petro odd.csv --name Odd").done();
+    let limbs = "9 of its points lie far off a map through their neighbours: they are taken as a surface of any shape";
+    assert!(beside.stdout.contains(limbs) && !beside.stdout.contains("mis-picks?"), "{}", beside.stdout);
+    run_in(at, "undo p.petro").done();
+    let map = run_in(at, "horizon add p.petro odd.csv --name Odd --shape map").done();
+    assert!(map.stdout.contains("mis-picks?") && !map.stdout.contains("limbs"), "{}", map.stdout);
+}

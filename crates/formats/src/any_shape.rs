@@ -1,7 +1,8 @@
 //! Tells which horizons are no height fields: triangles with an overturned limb or around a body, scattered points whose
-//! neighbours on the map lie far from their neighbours in space.
+//! neighbours on the map lie far from their neighbours in space, or that are a height field only as seen from aside.
 
 use super::placement::world_xy;
+use super::sideways::{self, Told};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use survey::geometry::SurveyGeometry;
@@ -19,6 +20,8 @@ const FARTHER: f64 = 2.5;
 const SHARE: f64 = 0.08;
 /// Points that are looked at, at most; every pair of them is compared.
 const MOST_POINTS: usize = 2000;
+/// Points that are looked at from every side, at most.
+const MOST_SEEN: usize = 400;
 /// Fewer points tell nothing.
 const FEWEST_POINTS: usize = 12;
 
@@ -41,17 +44,25 @@ pub(super) fn of_mesh(mesh: &TriangleMesh) -> Option<Shape> {
     }
 }
 
-/// Whether scattered points (voxel x and y, vertical value) are overturned: on a height field the nearest on the map are
-/// about the nearest in space, whatever its slope; on an overturned limb they belong to other limbs. A hundred points on
-/// such a fold lie too far apart to tell; then its place among the other horizons does.
-pub(super) fn is_overturned(points: &[(DVec2, f32)], geometry: &SurveyGeometry) -> bool {
-    let every = points.len().div_ceil(MOST_POINTS).max(1);
+/// Whether scattered points (voxel x and y, vertical value) are overturned: their neighbours on the map lie on other
+/// limbs, or they are a height field as seen from aside that turns its underside up.
+pub(super) fn of_points(points: &[(DVec2, f32)], geometry: &SurveyGeometry) -> Told {
     let vertical = geometry.metric_from_voxel().z_axis.length() / geometry.vertical.interval;
     let place = |(voxel, z): &(DVec2, f32)| world_xy(geometry, *voxel).extend(f64::from(*z) * vertical);
-    let places: Vec<DVec3> = points.iter().step_by(every).map(place).collect();
-    if places.len() < FEWEST_POINTS {
-        return false;
+    let places =
+        |most: usize| -> Vec<DVec3> { points.iter().step_by(points.len().div_ceil(most).max(1)).map(place).collect() };
+    if points.len() < FEWEST_POINTS {
+        Told::Map
+    } else if is_torn(&places(MOST_POINTS)) {
+        Told::Overturned
+    } else {
+        sideways::told(&places(MOST_SEEN))
     }
+}
+
+/// Whether the nearest points on the map are not about the nearest in space, as they are on a height field, whatever its
+/// slope. A hundred points on a fold lie too far apart to tell.
+fn is_torn(places: &[DVec3]) -> bool {
     let is_torn = |n: usize| {
         let nearest = |distance: &dyn Fn(DVec3) -> f64| {
             let mut others: Vec<(f64, usize)> =
@@ -88,18 +99,19 @@ mod tests {
     #[test]
     fn steep_and_faulted_points_are_height_fields_and_overturned_ones_are_not() {
         for count in [50, 90, 150, 600] {
-            assert!(!is_overturned(&scattered(count, |x, _| 100.0 + 1.7 * x), &geometry()), "a dip of 60 degrees");
+            let is_map = |points: &[(DVec2, f32)]| of_points(points, &geometry()) == Told::Map;
+            assert!(is_map(&scattered(count, |x, _| 100.0 + 1.7 * x)), "a dip of 60 degrees");
             let fault = |x: f64, y: f64| 300.0 + if x > 700.0 + 0.2 * y { 150.0 } else { 0.0 };
-            assert!(!is_overturned(&scattered(count, fault), &geometry()), "a throw of 150 m");
+            assert!(is_map(&scattered(count, fault)), "a throw of 150 m");
             let folds = |x: f64, y: f64| 400.0 + 150.0 * (x / 90.0).sin() + 60.0 * (y / 150.0).cos();
-            assert!(!is_overturned(&scattered(count, folds), &geometry()), "folds");
+            assert!(is_map(&scattered(count, folds)), "folds");
             let fold = RecumbentFold::fitting(&geometry());
             let point = |n: usize| {
                 let (y, z) = ((n as f64 * 0.754_877).fract() * 1250.0, (n as f64 * 0.569_840).fract() * 800.0);
                 (DVec2::new(fold.x_of(-250.0, z), y) / 25.0, z as f32)
             };
-            let found = is_overturned(&(0..count).map(point).collect::<Vec<_>>(), &geometry());
-            assert!(found || count < 150, "{count}");
+            let found = of_points(&(0..count).map(point).collect::<Vec<_>>(), &geometry());
+            assert_eq!(found, Told::Overturned, "{count}");
         }
     }
 }

@@ -11,6 +11,7 @@ use super::raw::{RawPoint, RawShape, RawSurface};
 use super::report::{Gridding, ImportReport, Settled};
 use super::scatter;
 use super::sheets::{self, Crowded, MAX_DEPTHS, NodeValues};
+use super::sideways::Told;
 use super::vertical::VerticalRule;
 use super::{Format, FormatError, SurfaceKind};
 use glam::{DVec2, DVec3};
@@ -19,7 +20,7 @@ use survey::Progress;
 use survey::geometry::SurveyGeometry;
 use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
 use survey::mesh::TriangleMesh;
-use survey::remedy::Note;
+use survey::remedy::{Note, Setting};
 
 /// Depths at one node that differ by less than this, in samples, are the same depth given twice.
 const SAME_DEPTH: f64 = 0.05;
@@ -199,11 +200,11 @@ fn from_points(
                 notes.push("fewer than three points: nothing lies between them".into());
             }
             let pairs: Vec<_> = placed.voxels.iter().zip(points).map(|(v, p)| (*v, p.z as f32)).collect();
-            if options.shape.is_none() && any_shape::is_overturned(&pairs, geometry) {
-                return Ok(any_shape(
-                    notes,
-                    Some("its points are overturned: several limbs lie over one place on the map"),
-                ));
+            let told = if options.shape.is_none() { any_shape::of_points(&pairs, geometry) } else { Told::Map };
+            if told == Told::Overturned {
+                let fact = "its points are overturned: several limbs lie over one place on the map";
+                let note = Note::unless(fact, Setting::Shape.stated_as("map"));
+                return Ok(Nodes { warnings: vec![note], ..any_shape(notes, None) });
             }
             let gridded = scatter::grid(&pairs, geometry, options.gap_m, tolerance).map_err(|_| crowded(file, name))?;
             if gridded.repeated > 0 {
@@ -213,6 +214,12 @@ fn from_points(
                 ));
             }
             let off_map = gridded.outliers.map(|o| (o.count, Note::from(o.sentence(geometry.vertical.unit))));
+            let mut warnings: Vec<Note> = off_map.iter().map(|(_, note)| note.clone()).collect();
+            if told == Told::Unclear {
+                let fact = "its points are taken as a map, but seen from aside some of them seem to lie upside down, as on an \
+                            overturned limb";
+                warnings.push(Note::unless(fact, Setting::Shape.stated_as("any")));
+            }
             let count = |q| gridded.sheets.iter().flat_map(|s| &s.quality).filter(|k| **k == q).count();
             let (picked, filled) = (count(Quality::Picked), count(Quality::Filled));
             return Ok(Nodes {
@@ -221,7 +228,7 @@ fn from_points(
                 sheets: gridded.sheets,
                 outside: placed.outside,
                 notes,
-                warnings: off_map.iter().map(|(_, note)| note.clone()).collect(),
+                warnings,
                 surface: any_shape(Vec::new(), None).surface,
                 off_map,
             });

@@ -84,6 +84,7 @@ mod raw;
 mod report;
 mod scatter;
 mod sheets;
+mod sideways;
 mod sticks;
 mod table;
 mod text;

@@ -69,9 +69,10 @@ mod touching;
 pub use below::Below;
 pub use contacts::ContactRules;
 pub use levels::{
-    CutLattice, Equations, LevelSurface, NodeBox, Terms, check_surface, hole_m, is_closed, resampled, surface_through,
+    CutLattice, Equations, LevelSurface, NodeBox, Terms, bodies_overlap, check_surface, hole_m, is_closed, resampled,
+    surface_through,
 };
-pub use network::{BlockSignature, FaultNetwork, FaultSurface, Truncation};
+pub use network::{BlockSignature, FaultCrossing, FaultNetwork, FaultSurface, Truncation, drawn_crossing};
 pub use report::{InferredPlacement, ModelError, ModelNote, ModelReport, SurfaceProblem};
 pub use settings::ModelSettings;
 pub use structural::{Region, StructuralModel};

@@ -284,6 +284,22 @@ pub enum ModelNote {
         /// Inline and crossline number of a place in both.
         lines: [f64; 2],
     },
+    /// Two faults cross, and both go on beyond.
+    FaultsCross {
+        /// Their names.
+        faults: [String; 2],
+        /// Inline and crossline number of a place where they do.
+        lines: [f64; 2],
+        /// Number of other pairs that cross as well.
+        others: usize,
+    },
+}
+
+impl ModelNote {
+    /// Whether parts of the interpretation contradict one another: what is drawn there may not be what was meant.
+    pub fn is_contradiction(&self) -> bool {
+        matches!(self, Self::BodiesOverlap { .. } | Self::FaultsCross { .. } | Self::Misfit { .. })
+    }
 }
 
 impl fmt::Display for ModelNote {
@@ -338,6 +354,19 @@ impl fmt::Display for ModelNote {
                 "bodies \"{younger}\" and \"{older}\" overlap near inline {inline:.0}, crossline {crossline:.0}; \
                  \"{younger}\", which is younger, is drawn there"
             ),
+            Self::FaultsCross { faults: [a, b], lines: [inline, crossline], others } => {
+                write!(
+                    f,
+                    "faults \"{a}\" and \"{b}\" cross near inline {inline:.0}, crossline {crossline:.0} and both go on \
+                     beyond, so that they cut the rock into four blocks there; if one of them ends at the other, state \
+                     that it is truncated by it"
+                )?;
+                match others {
+                    0 => Ok(()),
+                    1 => write!(f, ". Another pair of faults crosses as well"),
+                    _ => write!(f, ". {others} other pairs of faults cross as well"),
+                }
+            }
         }
     }
 }

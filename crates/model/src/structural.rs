@@ -111,6 +111,7 @@ impl StructuralModel {
         }
         let faults = FaultNetwork::build(geometry, faults, progress)?;
         let size = geometry.size();
+        report.notes.extend(faults.crossing_note(geometry));
         let lattice = MarginLattice::with_margin(size, settings.margin_for(size));
         let rules = ContactRules::new(stratigraphy);
         let given = Given { geometry, horizons: &ordered, contacts: rules.contacts(), faults: &faults };

@@ -252,3 +252,48 @@ fn what_cannot_be_a_body_is_refused_with_the_place() {
     let alone = Horizon::of_surface("alone", scattered(&fold, 0.0, 60, 1));
     assert_eq!(surface_problem(build(vec![(alone, Contact::Conformable)])), SurfaceProblem::PointsAlone);
 }
+
+#[test]
+fn a_sliver_between_two_faults_with_points_and_no_node_of_a_lattice_is_a_block_and_disturbs_none() {
+    // The block between the faults is a voxel thick; lattices of a series have nodes one and a half to six apart.
+    let faults = [30.45, 31.55].map(|x| {
+        let corners = [(-2.0, -2.0), (52.0, -2.0), (52.0, 82.0), (-2.0, 82.0)];
+        let vertices = corners.map(|(y, z)| geometry().world_from_voxel(DVec3::new(x, y, z))).to_vec();
+        survey::Fault::new(format!("F{x}"), TriangleMesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]] })
+    });
+    // Two flat horizons, three voxels deeper in the sliver and six beyond it.
+    let points = |depth: f64| -> Vec<Vec3> {
+        let place = |n: usize| {
+            let (a, b) = ((n as f64 * 0.754_877).fract(), (n as f64 * 0.569_84).fract());
+            let (x, throw) = match n % 3 {
+                0 => (30.0 * a, 0.0),
+                1 => (30.6 + 0.8 * a, 3.0),
+                _ => (32.0 + 28.0 * a, 6.0),
+            };
+            DVec3::new(x, 50.0 * b, depth + throw).as_vec3()
+        };
+        (0..120).map(place).collect()
+    };
+    let scattered = |name: &str, depth: f64| {
+        let vertices = points(depth).iter().map(|p| geometry().world_from_voxel(p.as_dvec3())).collect();
+        Horizon::of_surface(name, TriangleMesh { vertices, triangles: Vec::new() })
+    };
+    let depths = [25.0, 50.0];
+    let horizons = [scattered("young", depths[0]), scattered("old", depths[1])];
+    let named = |h: &Horizon| StratigraphicHorizon { name: h.name.clone(), contact: Contact::Conformable };
+    let stratigraphy = Stratigraphy { horizons: horizons.iter().map(named).collect(), layer_names: Vec::new() };
+    let (settings, quiet) = (ModelSettings::default(), Progress::silent());
+    let model = StructuralModel::build(&geometry(), &stratigraphy, &horizons, &faults, &settings, &quiet).unwrap();
+    let blocks = [10.0, 31.0, 50.0].map(|x| model.block_at(Vec3::new(x, 25.0, 40.0)));
+    assert!(blocks[0] != blocks[1] && blocks[1] != blocks[2], "{blocks:?}");
+    for (h, &depth) in depths.iter().enumerate() {
+        let worst = |block: u16| {
+            let off = |p: Vec3| model.level(h, block).unwrap().offset_m(p).abs();
+            points(depth).into_iter().filter(|p| model.block_at(*p) == block).map(off).fold(0.0, f32::max)
+        };
+        // The blocks beside it are not disturbed.
+        assert!(worst(blocks[0]) < 0.1 && worst(blocks[2]) < 0.1, "{} {}", worst(blocks[0]), worst(blocks[2]));
+        let in_sliver = points(depth).into_iter().filter(|p| model.block_at(*p) == blocks[1]).count();
+        assert!(in_sliver >= 38, "{in_sliver}");
+    }
+}

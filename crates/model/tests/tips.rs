@@ -2,7 +2,7 @@
 //! tip, and nothing changes beyond it, also where horizons have hardly any data.
 
 use glam::{DVec2, DVec3, Vec3};
-use model::{ModelSettings, StructuralModel};
+use model::{FaultNetwork, ModelSettings, StructuralModel};
 use survey::horizon::{NodeGrid, Quality, Sheet};
 use survey::stratigraphy::{Contact, StratigraphicHorizon, Stratigraphy};
 use survey::{Fault, Horizon, Progress, SurveyGeometry, TriangleMesh, VerticalUnit};
@@ -251,4 +251,39 @@ fn twenty_small_faults_break_nothing_but_themselves() {
         let past = [(1.0 + a, 0.0), (-1.0 - a, 0.0), (0.0, 1.0 + b), (0.0, -1.0 - b)];
         assert!(past.iter().all(|&(a, b)| !is_real(a, b)), "fault {f} is too long");
     }
+}
+
+/// A rectangle, from a corner along two sides, voxels.
+fn rectangle(name: &str, corner: DVec3, along: DVec3, down: DVec3) -> Fault {
+    let corners = [corner, corner + along, corner + along + down, corner + down];
+    let vertices = corners.map(|p| geometry().world_from_voxel(p)).to_vec();
+    Fault::new(name, TriangleMesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]] })
+}
+
+#[test]
+fn faults_that_cross_are_told_from_those_that_meet_or_pass() {
+    let north = rectangle("N", DVec3::new(30.0, 5.0, 5.0), DVec3::new(0.0, 75.0, 0.0), DVec3::new(20.0, 0.0, 60.0));
+    // Through the middle of it, and shorter: from one side to two voxels beyond it; beside it; above its tip.
+    let east = rectangle("E", DVec3::new(5.0, 45.0, 5.0), DVec3::new(70.0, 0.0, 0.0), DVec3::new(0.0, 0.0, 60.0));
+    let short = rectangle("S", DVec3::new(5.0, 45.0, 30.0), DVec3::new(35.0, 0.0, 0.0), DVec3::new(0.0, 0.0, 2.0));
+    let beside = rectangle("B", DVec3::new(60.0, 5.0, 5.0), DVec3::new(0.0, 75.0, 0.0), DVec3::new(15.0, 0.0, 60.0));
+    let low = rectangle("L", DVec3::new(30.0, 5.0, 40.0), DVec3::new(0.0, 75.0, 0.0), DVec3::new(8.0, 0.0, 25.0));
+    let high = rectangle("H", DVec3::new(5.0, 45.0, 2.0), DVec3::new(70.0, 0.0, 0.0), DVec3::new(0.0, 0.0, 25.0));
+    let crossings = |faults: &[Fault]| {
+        let network = FaultNetwork::build(&geometry(), faults, &Progress::silent()).unwrap();
+        network.crossings(SIZE)
+    };
+    let found = crossings(&[north.clone(), beside, east.clone()]);
+    let pairs: Vec<[usize; 2]> = found.iter().map(|crossing| crossing.faults).collect();
+    assert_eq!(pairs, [[0, 2], [1, 2]]);
+    // Places lie on both of their faults.
+    for (crossing, x) in found.iter().zip([30.0, 60.0]) {
+        let at = crossing.at.as_dvec3();
+        let slope = if x < 50.0 { 20.0 } else { 15.0 } / 60.0;
+        assert!((at.y - 45.0).abs() < 4.0 && (at.x - x - slope * (at.z - 5.0)).abs() < 4.0, "{at}");
+    }
+    assert_eq!(crossings(&[north.clone(), short]), []);
+    assert_eq!(crossings(&[low, high]), []);
+    let ends = Fault { truncated_by: Some("N".into()), ..east };
+    assert_eq!(crossings(&[north, ends]), []);
 }

@@ -64,7 +64,8 @@ impl Rock {
     }
 }
 
-/// Builds the model alone, from which sections and maps are cut; `None` for a project without horizons.
+/// Builds the model alone, from which sections and maps are cut; `None` for a project without horizons. Warns of what
+/// contradicts itself.
 ///
 /// # Errors
 /// Data are damaged, the interpretation does not make a solid model, or the user cancelled.
@@ -74,6 +75,8 @@ pub fn structural_model(
 ) -> Result<Option<(StructuralModel, Stage)>, ProjectError> {
     let start = Instant::now();
     let model = solid::structural_model(project.root(), project.document(), progress)?;
+    let notes = model.iter().flat_map(|model| &model.report().notes);
+    notes.filter(|note| note.is_contradiction()).for_each(|note| progress.warn(note.to_string()));
     Ok(model.map(|model| (model, Stage::new("model", start.elapsed()))))
 }
 

@@ -56,6 +56,8 @@ pub enum Setting {
     Null,
     /// Whether line numbers or X, Y place points that have both.
     PlaceBy,
+    /// Whether a horizon is a map or of any shape.
+    Shape,
     /// Order of a grid's values.
     ValueOrder,
     /// Unit of lengths along a well.
@@ -99,6 +101,7 @@ impl Setting {
             Self::ZFactor => "factor on depths",
             Self::Null => "value of holes",
             Self::PlaceBy => "placement",
+            Self::Shape => "shape",
             Self::ValueOrder => "order of values",
             Self::MdUnit => "unit along the well",
             Self::RotatedGrids => "rotated grids",

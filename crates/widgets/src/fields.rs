@@ -25,6 +25,7 @@ pub fn field(setting: Setting) -> Option<&'static str> {
         Setting::Columns => "Columns",
         Setting::Null => "Value of holes",
         Setting::PlaceBy => "Placed by",
+        Setting::Shape => "Shape",
         Setting::ValueOrder => "Order of values",
         Setting::MdUnit => "Lengths along the well",
         Setting::Datum => "Datum above sea level, m",

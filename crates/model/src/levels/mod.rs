@@ -20,7 +20,7 @@ pub use oriented::surface_through;
 
 use super::network::FaultNetwork;
 use super::report::{ModelError, ModelNote, SurfaceProblem};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use series::{Series, SeriesPoint};
 use shape::{Shape, problem};
 use std::sync::Arc;
@@ -298,18 +298,47 @@ impl Given<'_> {
         let bodies: Vec<usize> = (0..self.horizons.len())
             .filter(|&h| self.contacts[h].is_intrusive() && levels.surfaces[h].iter().any(Option::is_some))
             .collect();
-        let metric = self.geometry.metric_from_voxel();
-        let deep = OVERLAP * (0..3).map(|axis| metric.col(axis).length() as f32).fold(0.0, f32::max);
         for (n, &younger) in bodies.iter().enumerate() {
             for &older in &bodies[n + 1..] {
                 let (Some(a), Some(b)) = (&levels.surfaces[younger][0], &levels.surfaces[older][0]) else { continue };
-                let shared = |node: &usize| a.field.values[*node] > deep && b.offset_m(a.field.place(*node)) > deep;
-                let Some(at) = (0..a.field.values.len()).find(shared) else { continue };
-                let p = a.field.place(at).as_dvec3();
-                let lines = self.geometry.lines_from_voxel(p.truncate()).to_array();
-                let [younger, older] = [younger, older].map(|h| self.horizons[h].name.clone());
-                levels.notes.push(ModelNote::BodiesOverlap { younger, older, lines });
+                let note = overlap([younger, older].map(|h| self.horizons[h].name.as_str()), [a, b], self.geometry);
+                levels.notes.extend(note);
             }
         }
     }
+}
+
+/// The note that two bodies share room, if they do.
+fn overlap([younger, older]: [&str; 2], [a, b]: [&LevelSurface; 2], geometry: &SurveyGeometry) -> Option<ModelNote> {
+    let metric = geometry.metric_from_voxel();
+    let deep = OVERLAP * (0..3).map(|axis| metric.col(axis).length() as f32).fold(0.0, f32::max);
+    let shared = |node: &usize| a.field.values[*node] > deep && b.offset_m(a.field.place(*node)) > deep;
+    let at = (0..a.field.values.len()).find(shared)?;
+    let lines = geometry.lines_from_voxel(a.field.place(at).as_dvec3().truncate()).to_array();
+    Some(ModelNote::BodiesOverlap { younger: younger.to_owned(), older: older.to_owned(), lines })
+}
+
+/// The note that two bodies, the younger one first, share room, if they do. Horizons without triangles share none. Their
+/// signed distances are computed where their extents meet.
+///
+/// # Errors
+/// [`ModelError::Surface`]: one of them is no body; or the user cancelled.
+pub fn bodies_overlap(
+    [younger, older]: [&Horizon; 2],
+    geometry: &SurveyGeometry,
+    progress: &Progress,
+) -> Result<Option<ModelNote>, ModelError> {
+    let meshes = [younger, older].map(|body| body.any_shape().filter(|mesh| !mesh.triangles.is_empty()));
+    let [Some(a), Some(b)] = meshes else { return Ok(None) };
+    let bounds = |mesh: &TriangleMesh| {
+        let corners = mesh.vertices.iter();
+        corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
+    };
+    let ((low, high), (other_low, other_high)) = (bounds(a), bounds(b));
+    if low.cmpgt(other_high).any() || high.cmplt(other_low).any() {
+        return Ok(None);
+    }
+    let level = |body: &Horizon, mesh| Shape::of(&body.name, mesh, geometry)?.body(progress);
+    let (a, b) = (level(younger, a)?, level(older, b)?);
+    Ok(overlap([younger.name.as_str(), older.name.as_str()], [&a, &b], geometry))
 }

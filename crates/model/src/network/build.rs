@@ -25,8 +25,24 @@ pub(super) struct Built {
     pub vertices: Vec<DVec3>,
 }
 
-/// Builds the surface of `fault`; its extent is still empty.
+/// Builds the surface of `fault`, continued over its whole grid; its extent is still that of its nodes.
 pub(super) fn build(geometry: &SurveyGeometry, fault: &Fault) -> Result<Built, ModelError> {
+    let (mut built, edge_m) = drawn(geometry, fault)?;
+    let HeightField { size, z, .. } = &mut built.surface.surface;
+    if z.iter().all(|w| w.is_nan()) {
+        // Smaller than a cell, or beside the grid: its plane is all there is.
+        z.fill(0.0);
+    }
+    let spacing_m = built.surface.spacing_m;
+    let radius = (1.5 * edge_m / spacing_m).clamp(10.0, 40.0) as f32;
+    let extension = Extension { radius, noise: 0.25 * spacing_m as f32, slope: [0.0; 2] };
+    extension.extend(*size, z);
+    Ok(built)
+}
+
+/// The surface of `fault` where it was drawn, NaN beyond, with an extent of one cell there and of none beyond; and the
+/// usual length of an edge of its triangles, m.
+pub(super) fn drawn(geometry: &SurveyGeometry, fault: &Fault) -> Result<(Built, f64), ModelError> {
     let metric = geometry.metric_from_voxel();
     let voxels: Vec<DVec3> = fault.mesh.vertices.iter().map(|&v| geometry.voxel_from_world(v)).collect();
     let points: Vec<DVec3> = voxels.iter().map(|&v| metric * v).collect();
@@ -76,14 +92,8 @@ pub(super) fn build(geometry: &SurveyGeometry, fault: &Fault) -> Result<Built, M
         triangles.iter().map(|t| t.map(|v| v as u32)).collect(),
     );
 
-    let mut w = rasterise(fault, geometry, &patch, &voxels, grid_origin, size, spacing_m)?;
-    if w.iter().all(|w| w.is_nan()) {
-        // Smaller than a cell, or beside the grid: its plane is all there is.
-        w.fill(0.0);
-    }
-    let radius = (1.5 * edge_m / spacing_m).clamp(10.0, 40.0) as f32;
-    let extension = Extension { radius, noise: 0.25 * spacing_m as f32, slope: [0.0; 2] };
-    extension.extend(size, &mut w);
+    let w = rasterise(fault, geometry, &patch, &voxels, grid_origin, size, spacing_m)?;
+    let extent = w.iter().map(|w| if w.is_nan() { -1.0 } else { 1.0 }).collect();
     let used: Vec<DVec3> = {
         let mut ids: Vec<usize> = triangles.iter().flatten().copied().collect();
         ids.sort_unstable();
@@ -95,10 +105,10 @@ pub(super) fn build(geometry: &SurveyGeometry, fault: &Fault) -> Result<Built, M
         frame_from_voxel: frame * metric,
         frame_offset: -(frame * origin),
         spacing_m,
-        extent: HeightField { origin: grid_origin, size, z: vec![0.0; w.len()] },
+        extent: HeightField { origin: grid_origin, size, z: extent },
         surface: HeightField { origin: grid_origin, size, z: w },
     };
-    Ok(Built { surface, patch, vertices: used })
+    Ok((Built { surface, patch, vertices: used }, edge_m))
 }
 
 fn area(points: &[DVec3], t: &[usize; 3]) -> f64 {

@@ -10,15 +10,18 @@
 
 mod blocks;
 mod build;
+mod crossing;
 mod outline;
 mod surface;
 
+pub use crossing::{FaultCrossing, drawn_crossing};
 pub use surface::FaultSurface;
 
 use crate::report::ModelError;
 use build::Built;
 use glam::{DVec3, Vec3};
 use outline::{Reach, Target};
+use rayon::prelude::*;
 use survey::fault::Fault;
 use survey::geometry::SurveyGeometry;
 use survey::height_field::{FAR, HeightField};
@@ -103,11 +106,13 @@ impl FaultNetwork {
         }
         let order = truncation_order(faults)?;
         progress.begin("faults", faults.len() as u64);
-        let mut built = Vec::with_capacity(faults.len());
-        for fault in faults {
-            built.push(build::build(geometry, fault)?);
+        let one = |fault: &Fault| -> Result<Built, ModelError> {
+            let built = build::build(geometry, fault)?;
             progress.step(1)?;
-        }
+            Ok(built)
+        };
+        let made: Vec<Result<Built, ModelError>> = faults.par_iter().map(one).collect();
+        let mut built = made.into_iter().collect::<Result<Vec<Built>, ModelError>>()?;
         let truncation: Vec<Option<Truncation>> = faults
             .iter()
             .zip(&built)
@@ -117,10 +122,9 @@ impl FaultNetwork {
                 Some(Truncation { by, positive: 2 * positive >= own.vertices.len() })
             })
             .collect();
-        for f in 0..built.len() {
-            let z = extent(geometry, &built, f, truncation[f], faults[f].grown_m);
-            built[f].surface.extent.z = z;
-        }
+        let extent_of = |f: usize| extent(geometry, &built, f, truncation[f], faults[f].grown_m);
+        let extents: Vec<Vec<f32>> = (0..built.len()).into_par_iter().map(extent_of).collect();
+        built.iter_mut().zip(extents).for_each(|(built, z)| built.surface.extent.z = z);
         let surfaces: Vec<FaultSurface> = built.into_iter().map(|b| b.surface).collect();
         let signatures =
             blocks::occurring(&surfaces, &truncation, &order, geometry.size(), geometry.metric_from_voxel(), progress)?;

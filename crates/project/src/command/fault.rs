@@ -125,13 +125,19 @@ fn check_new(
     progress: &Progress,
 ) -> Result<(), ProjectError> {
     let alone = Fault { truncated_by: None, ..fault.clone() };
-    FaultNetwork::build(geometry, &[alone], progress)?;
+    FaultNetwork::build(geometry, std::slice::from_ref(&alone), progress)?;
+    let mut others = Vec::new();
     for entry in &draft.document.faults {
-        if content::read_fault(draft.root(), entry)?.mesh == fault.mesh {
+        let other = content::read_fault(draft.root(), entry)?;
+        if other.mesh == fault.mesh {
             let text = format!("it is the same surface as fault \"{}\": remove one of them", entry.name);
             report.warnings.push(Note::from(text));
+        } else if fault.truncated_by.as_ref() != Some(&other.name) {
+            others.push(other);
         }
     }
+    let crossing = model::drawn_crossing(geometry, &alone, &others)?;
+    report.warnings.extend(crossing.map(|note| Note::from(note.to_string())));
     Ok(())
 }
 

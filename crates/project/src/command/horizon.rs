@@ -97,6 +97,11 @@ impl AddHorizon {
         self.as_limbs(&mut horizon, &others, &mut report);
         let position = position(&self.age, draft, &horizon, contact, &others)?;
         let contacts = draft.document.stratigraphy().horizons.iter().map(|h| h.contact).collect::<Vec<_>>();
+        if contact.is_intrusive() {
+            let bodies: Vec<(usize, &Horizon)> =
+                others.iter().enumerate().filter(|(n, _)| contacts[*n].is_intrusive()).collect();
+            note_overlaps(&horizon, position, &bodies, &geometry, &mut report, progress)?;
+        }
         let contacts = [&contacts[..position], &[contact], &contacts[position..]].concat();
         self.check_order(&mut horizon, &others, position, &ContactRules::of(contacts), &geometry, &mut report)?;
         let hash = content::hash_horizon(&horizon);
@@ -168,6 +173,23 @@ impl AddHorizon {
         let name = self.options.name.clone().or_else(|| Some(self.name.clone()));
         ImportOptions { name, ..self.options.clone() }
     }
+}
+
+/// Notes with which of the project's bodies, each with its place in the list, a new one shares room.
+fn note_overlaps(
+    body: &Horizon,
+    position: usize,
+    bodies: &[(usize, &Horizon)],
+    geometry: &SurveyGeometry,
+    report: &mut ImportReport,
+    progress: &Progress,
+) -> Result<(), ProjectError> {
+    for &(n, other) in bodies {
+        let pair = if n < position { [other, body] } else { [body, other] };
+        let note = model::bodies_overlap(pair, geometry, progress)?;
+        report.warnings.extend(note.map(|note| Note::from(note.to_string())));
+    }
+    Ok(())
 }
 
 /// Leaves a horizon nothing but its scattered points, and the report without what was said of the map between them.

@@ -297,6 +297,27 @@ mod tests {
         check(&horizon("young", &young), &horizon("old", &old), &geometry()).unwrap();
     }
 
+    #[test]
+    fn a_horizon_is_placed_where_most_others_lie_on_their_side_of_it() {
+        let flat: [fn(f32, f32) -> f32; 5] = [|_, _| 20.0, |_, _| 60.0, |_, _| 100.0, |_, _| 140.0, |x, _| 70.0 + x];
+        let [a, b, c, d, between] = flat.map(|depth| horizon("h", &[depth]));
+        let others = [a, b, c, d];
+        let conformable = [Contact::Conformable; 5];
+        let place = |horizon: &Horizon, others: &[Horizon]| place_among(horizon, others, &conformable, &geometry());
+        assert_eq!(place(&between, &others), 2);
+        assert_eq!(place(&between, &[]), 0);
+        let place_of = |depth| place(&horizon("h", &[depth]), &others);
+        assert_eq!((place_of(|_, _| 5.0), place_of(|_, _| 190.0)), (0, 4));
+        // It crosses the second one, and lies above it at most traces.
+        assert_eq!(place_of(|x, _| 45.0 + x), 1);
+        // A body says nothing, wherever it lies in the list and in depth.
+        let triangles = synth::shapes::Diapir::fitting(&geometry()).mesh(&geometry(), 20);
+        let [a, b, c, d] = others;
+        let with_body = [a, Horizon::of_surface("body", triangles), b, c, d];
+        let contacts = [0, 1, 2, 3, 4].map(|n| if n == 1 { Contact::Intrusive } else { Contact::Conformable });
+        assert_eq!(place_among(&between, &with_body, &contacts, &geometry()), 3);
+    }
+
     /// Points scattered over two beds of a recumbent fold, by a low-discrepancy sequence in y and z.
     #[test]
     fn few_scattered_points_of_overturned_beds_are_ordered_by_age() {

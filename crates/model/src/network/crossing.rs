@@ -1,0 +1,120 @@
+//! Faults that cross in an X: both were drawn on both sides of the other.
+//!
+//! Each fault is looked at at some thousand nodes of its grid where it is real. One goes through another where, beside
+//! what is real of that one, its nodes lie on both of its sides by more than a few voxels, and one of them close to it.
+
+use super::{FaultNetwork, FaultSurface, build};
+use crate::report::{ModelError, ModelNote};
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+use survey::fault::Fault;
+use survey::geometry::SurveyGeometry;
+
+/// Nodes of a fault that are looked at along each side of its grid, about.
+const NODES: usize = 64;
+/// A fault that ends within so many cells of another one's far side ends at it.
+const BEYOND_CELLS: f64 = 4.0;
+
+/// Two faults that cross, and where.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FaultCrossing {
+    /// Indices of the faults, the first given one first.
+    pub faults: [usize; 2],
+    /// A place where they do, voxels.
+    pub at: Vec3,
+}
+
+impl FaultNetwork {
+    /// The pairs of faults that cross inside a volume of `size` voxels and go on beyond. A fault that is said to end at
+    /// another does not cross it.
+    pub fn crossings(&self, size: [usize; 3]) -> Vec<FaultCrossing> {
+        let count = self.surfaces.len();
+        if count < 2 {
+            return Vec::new();
+        }
+        let places: Vec<Vec<DVec3>> = (0..count).into_par_iter().map(|f| self.real_places(f, size)).collect();
+        let pairs: Vec<[usize; 2]> = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b])).collect();
+        let crossing = |&[a, b]: &[usize; 2]| {
+            let at = self.place_through(&places[a], a, b)?;
+            self.place_through(&places[b], b, a)?;
+            Some(FaultCrossing { faults: [a, b], at: at.as_vec3() })
+        };
+        pairs.par_iter().filter_map(crossing).collect()
+    }
+
+    /// The first of [`Self::crossings`] in words, with the number of the others.
+    pub(crate) fn crossing_note(&self, geometry: &SurveyGeometry) -> Option<ModelNote> {
+        note(&self.crossings(geometry.size()), &self.surfaces, geometry)
+    }
+
+    /// Nodes of a fault where it is real and inside the volume, voxels.
+    fn real_places(&self, fault: usize, size: [usize; 3]) -> Vec<DVec3> {
+        let surface = &self.surfaces[fault];
+        let [nu, nv] = surface.surface.size;
+        let voxel_from_frame = surface.frame_from_voxel.inverse();
+        let last = DVec3::from_array(size.map(|n| n as f64 - 1.0));
+        let step = nu.max(nv).div_ceil(NODES);
+        let nodes = (0..nu).step_by(step).flat_map(|i| (0..nv).step_by(step).map(move |j| (i, j)));
+        let place = |(i, j): (usize, usize)| {
+            let [u, v] = [i as i32 + surface.surface.origin[0], j as i32 + surface.surface.origin[1]];
+            let on_it = DVec3::new(f64::from(u), f64::from(v), f64::from(surface.surface.z[i * nv + j]));
+            let p = voxel_from_frame * (on_it - surface.frame_offset);
+            let is_inside = p.cmpge(DVec3::ZERO).all() && p.cmple(last).all();
+            (is_inside && self.is_real(fault, p.as_vec3())).then_some(p)
+        };
+        nodes.filter_map(place).collect()
+    }
+
+    /// Where fault `a`, by its places, passes through what is real of `b` and goes on beyond.
+    fn place_through(&self, places: &[DVec3], a: usize, b: usize) -> Option<DVec3> {
+        let other = &self.surfaces[b];
+        let (mut least, mut most) = (0.0f64, 0.0f64);
+        let mut closest: Option<(f64, DVec3)> = None;
+        for &p in places.iter().filter(|p| self.is_real(b, p.as_vec3())) {
+            let side = other.side(p);
+            (least, most) = (least.min(side), most.max(side));
+            if closest.is_none_or(|(distance, _)| side.abs() < distance) {
+                closest = Some((side.abs(), p));
+            }
+        }
+        let (distance, at) = closest?;
+        let [nu, nv] = self.surfaces[a].surface.size;
+        let step = nu.max(nv).div_ceil(NODES) as f64 * self.surfaces[a].spacing_m;
+        (most.min(-least) > BEYOND_CELLS * other.spacing_m && distance < 2.0 * step).then_some(at)
+    }
+}
+
+fn note(crossings: &[FaultCrossing], surfaces: &[FaultSurface], geometry: &SurveyGeometry) -> Option<ModelNote> {
+    let first = crossings.first()?;
+    Some(ModelNote::FaultsCross {
+        faults: first.faults.map(|f| surfaces[f].name.clone()),
+        lines: geometry.lines_from_voxel(first.at.as_dvec3().truncate()).to_array(),
+        others: crossings.len() - 1,
+    })
+}
+
+/// The note that a fault crosses others, where it does: each as it was drawn, before any of them is continued. Those at
+/// which one ends are to be left out.
+///
+/// # Errors
+/// [`ModelError`] for a fault without area, or one that folds over itself.
+pub fn drawn_crossing(
+    geometry: &SurveyGeometry,
+    fault: &Fault,
+    others: &[Fault],
+) -> Result<Option<ModelNote>, ModelError> {
+    let drawn = |fault: &Fault| Ok::<_, ModelError>(build::drawn(geometry, fault)?.0.surface);
+    let surfaces = others.par_iter().chain(rayon::iter::once(fault)).map(drawn).collect::<Vec<_>>();
+    let surfaces = surfaces.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let count = surfaces.len();
+    let network = FaultNetwork {
+        surfaces,
+        truncation: vec![None; count],
+        order: (0..count).collect(),
+        signatures: Vec::new(),
+        table: Vec::new(),
+    };
+    let mut own = network.crossings(geometry.size());
+    own.retain(|crossing| crossing.faults[1] == others.len());
+    Ok(note(&own, &network.surfaces, geometry))
+}
