@@ -9,13 +9,13 @@ use glam::DVec2;
 use ttf::Colour;
 
 /// Between the block's edge and the names, points: the first distance at which most names are free.
-const GAPS_PT: [f64; 3] = [12.0, 18.0, 26.0];
+const GAPS_PT: [f64; 3] = [16.0, 22.0, 30.0];
 /// From one name to the next, as a share of their size.
 const LINE: f64 = 1.25;
 /// So many names more than stand beside their layers' ends are listed: they spread above and below.
-const SPREAD: f64 = 10.0;
+const SPREAD: f64 = 16.0;
 /// Radius of the dot at the end of a leader, points, and most as a share of the layer's thickness.
-const DOT: (f64, f64) = (1.3, 0.35);
+const DOT: (f64, f64) = (0.8, 0.3);
 
 /// Room that names take to the right of a block of many layers whose right edge is so long, points; none where the
 /// names of most layers have room along them.

@@ -200,7 +200,8 @@ fn leader(anchors: &[DVec2], name: &str, faces: &[Vec<DVec2>], room: &mut LabelR
 /// A name with a line from a dot on what it names.
 pub(super) fn led([anchor, end]: [DVec2; 2], dot: f64, name: &str, text: Text) -> Group {
     let line = Path::line(&[anchor, end]);
-    let rim = Stroke::new(FRAME_PT + 1.4, Ink::glass(Colour::WHITE, RIM_OPACITY));
+    // In proportion to the dot, so that leaders side by side do not cover the edge behind them.
+    let rim = Stroke::new(FRAME_PT + 1.4 * (dot / DOT_PT).powi(4), Ink::glass(Colour::WHITE, RIM_OPACITY));
     Group::new(GroupKind::Annotation, format!("leader to {name}")).with([
         PathItem::stroked(line.clone(), rim).into(),
         PathItem::stroked(line, Stroke::new(FRAME_PT, QUIET_INK)).into(),
