@@ -214,8 +214,8 @@ fn choices(ui: &mut Ui, has_layers: bool, next: &mut ExportForm) {
 
 /// Says which horizons were hardly picked; returns whether there are none, or a picture is wanted all the same.
 fn accept(ui: &mut Ui, sparse: &[SparseHorizon], next: &mut ExportForm) -> bool {
-    for horizon in sparse {
-        ui.colored_label(ui.visuals().warn_fg_color, capital(&horizon.sentence()));
+    for sentence in pictures::sparse_sentences(sparse) {
+        ui.colored_label(ui.visuals().warn_fg_color, capital(&sentence));
     }
     if !sparse.is_empty() {
         ui.checkbox(&mut next.accepts_sparse, "Draw it all the same");
