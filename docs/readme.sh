@@ -11,7 +11,7 @@ petroglyph=${PETROGLYPH:-target/debug/petroglyph}
     --title "A folded and faulted basin below an unconformity" \
     --caption "Block diagram with a corner cut away. The sandstone and marl above the unconformity lie on an eroded \
 fold of sandstone, limestone and shale. Half-arrows show which side of each fault went down, and numbers its throw \
-on the face on which they stand; where a contact is dotted and queried it was continued beyond the data."
+on the face on which they stand; where a contact is in short dashes and queried it was continued beyond the data."
 "$petroglyph" render "$project" "$folder/section-rock.png" --crossline 560 --section-blend 0 --annotate all \
     --size-cm 17x9 --dpi 150 --credit "synthetic survey"
 

@@ -172,7 +172,7 @@ fn very_many_layers_and_very_small_faces_make_valid_files() {
 #[cfg(feature = "window")]
 mod window {
     use super::*;
-    use ::app::state::{Compare, ExportForm, Layout, Look, Panel, Session, Shown, Snapshot};
+    use ::app::state::{Compare, ExportForm, Layout, Look, Panel, SectionFill, Session, Shown, Snapshot};
     use ::app::views::overlay::Overlay;
     use ::app::views::print::Page;
     use ::app::views::sections::Sections;
@@ -181,6 +181,11 @@ mod window {
 
     /// What the window exports of a project looked at in some way.
     fn exported(at: &Path, look: impl Fn(&mut Session)) -> RgbImage {
+        filled(at, SectionFill::Measured, look)
+    }
+
+    /// The same, with something else on sections.
+    fn filled(at: &Path, section_fill: SectionFill, look: impl Fn(&mut Session)) -> RgbImage {
         let opened = ::project::Project::open(&at.join("p.petro")).unwrap();
         let (root, document) = (opened.root().to_owned(), opened.document().clone());
         let mut session = Session::new(Snapshot { root, document, history: Vec::new() }, None);
@@ -191,6 +196,7 @@ mod window {
             dpi: 60.0,
             legend: Shown::Yes,
             scale_bar: Shown::Yes,
+            section_fill,
             ..ExportForm::new(path)
         };
         let mapped = Mapped::Structure(1);
@@ -213,10 +219,11 @@ mod window {
         let at = folder.path();
         let block = exported(at, |_| {});
         assert!(block == typed(at, ""), "block");
-        let sections = exported(at, |session| {
+        let show = |session: &mut Session| {
             session.view.layout = Layout::Sections;
             session.view.slices = [19.0, 11.0, 25.0];
-        });
+        };
+        let sections = exported(at, show);
         let lines = {
             let opened = ::project::Project::open(&at.join("p.petro")).unwrap();
             let geometry = opened.document().geometry.clone().unwrap();
@@ -228,6 +235,11 @@ mod window {
         // The comparison fails on another picture: the neighbouring inline.
         let other = format!("--block --inline {} --crossline {crossline} --slice {z}", inline + 1.0);
         assert!(sections != typed(at, &other), "another inline is another picture");
+        let half = filled(at, SectionFill::Half, show);
+        assert!(half == typed(at, &format!("{same} --section-blend 0.5")), "half rock, half measured");
+        let rock = filled(at, SectionFill::Rock, show);
+        assert!(rock == typed(at, &format!("{same} --section-blend 0")), "rock");
+        assert!(rock != half && half != sections, "three pictures");
         let map = exported(at, |session| session.view.layout = Layout::Map);
         assert!(map == typed(at, "--block --map Bravo"), "map");
         let compared = exported(at, |session| {

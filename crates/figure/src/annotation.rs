@@ -14,7 +14,7 @@ pub enum Annotation {
     Faults,
     /// Names of wells at their heads, and of their tops, where they are seen.
     Wells,
-    /// Lines of horizons dashed where they were filled, dotted and queried where they were only continued.
+    /// Lines of horizons dashed where they were filled, in short dashes and queried where they were only continued.
     Quality,
     /// A bar that says which values the colours of measured data stand for.
     Colours,

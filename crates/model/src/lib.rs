@@ -66,7 +66,7 @@ mod strays;
 mod structural;
 mod touching;
 
-pub use below::Below;
+pub use below::{Below, MOST_HORIZONS};
 pub use contacts::ContactRules;
 pub use levels::{
     CutLattice, Equations, LevelSurface, NodeBox, Terms, bodies_overlap, check_surface, hole_m, is_closed, resampled,

@@ -32,6 +32,26 @@ impl SparseHorizon {
     }
 }
 
+/// Most horizons that are named as hardly picked.
+const MOST_NAMED: usize = 8;
+
+/// What there is to know of horizons that were hardly picked: a sentence each, and one that counts the rest of very many.
+///
+/// ```
+/// use pictures::{SparseHorizon, sparse_sentences};
+/// let sparse: Vec<_> = (0..1000).map(|n| SparseHorizon { name: format!("H{n}"), share: 0.0 }).collect();
+/// assert_eq!(sparse_sentences(&sparse[..2]).len(), 2);
+/// assert_eq!(sparse_sentences(&sparse).len(), 9);
+/// assert!(sparse_sentences(&sparse)[8].starts_with("992 more horizons were picked on less than half"));
+/// ```
+pub fn sparse_sentences(sparse: &[SparseHorizon]) -> Vec<String> {
+    // A line that counts a single one would be no shorter.
+    let named = if sparse.len() > MOST_NAMED + 1 { MOST_NAMED } else { sparse.len() };
+    let rest = sparse.len() - named;
+    let counted = format!("{rest} more horizons were picked on less than half of their traces");
+    sparse[..named].iter().map(SparseHorizon::sentence).chain((rest > 0).then_some(counted)).collect()
+}
+
 impl Rock {
     /// The share of each horizon, youngest first, that was picked or tracked, 0 to 1, of the places where it bounds a
     /// layer; NaN where it bounds none.

@@ -288,7 +288,7 @@ pub fn load_within(
     let rock = rock(project, progress)?;
     let sparse = rock.as_ref().map_or_else(Vec::new, Rock::sparse_horizons);
     if scene.blend < 1.0 {
-        sparse.iter().for_each(|horizon| progress.warn(horizon.sentence()));
+        super::sparse_sentences(&sparse).into_iter().for_each(|sentence| progress.warn(sentence));
     }
     let mut functions = styles::transfer_functions(document);
     if let Some(raw) = &scene.raw {

@@ -150,8 +150,32 @@ pub struct ExportForm {
     pub title: String,
     /// A sentence or two below the picture; empty: none.
     pub caption: String,
+    /// What sections and fences on the page show.
+    pub section_fill: SectionFill,
     /// Whether a picture is wanted although a horizon was picked on less than half of its traces.
     pub accepts_sparse: bool,
+}
+
+/// What sections and fences show on a page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SectionFill {
+    /// Measured data, as on the screen.
+    Measured,
+    /// Measured data and the rock, half and half.
+    Half,
+    /// The rock with its patterns.
+    Rock,
+}
+
+impl SectionFill {
+    /// The share of measured data; `None`: measured data where there are some.
+    pub fn blend(self) -> Option<f32> {
+        match self {
+            Self::Measured => None,
+            Self::Half => Some(0.5),
+            Self::Rock => Some(0.0),
+        }
+    }
 }
 
 /// Whether the page has a part such as a legend.
@@ -177,6 +201,7 @@ impl ExportForm {
             credit: String::new(),
             title: String::new(),
             caption: String::new(),
+            section_fill: SectionFill::Measured,
             accepts_sparse: false,
         }
     }

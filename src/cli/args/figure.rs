@@ -68,8 +68,8 @@ pub(in crate::cli) struct FigureArgs {
     pub(in crate::cli) north_arrow: bool,
     /// Write on blocks and sections: axes (inlines, crosslines, depth or time along the edges), layers (names along the
     /// layers), faults (names, measured throw, half-arrows), wells (names of wells and tops), quality (horizons dashed
-    /// where they were filled, dotted with question marks where they were only continued), colours (a bar of the raw data's
-    /// values), provenance (program, project, --credit); all adds the legend, the scale bars and the north arrow
+    /// where they were filled, in short dashes with question marks where they were only continued), colours (a bar of the
+    /// raw data's values), provenance (program, project, --credit); all adds the legend, the scale bars and the north arrow
     #[arg(long, value_name = "all|axes,layers,faults,wells,quality,colours,provenance", value_delimiter = ',')]
     pub(in crate::cli) annotate: Vec<String>,
     /// Whose data the figure shows, for the line of provenance

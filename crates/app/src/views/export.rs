@@ -1,7 +1,9 @@
 //! The dialogue for export: file, size and resolution.
 
 use super::notices;
-use crate::state::{Action, Dialogue, ExportForm, Layout, Place, SectionVolumes, Session, Shown, State};
+use crate::state::{
+    Action, Dialogue, ExportForm, Layout, Panel, Place, SectionFill, SectionVolumes, Session, Shown, State,
+};
 use eframe::egui::{Button, Checkbox, Context, DragValue, Grid, Spinner, TextEdit, Ui, Vec2};
 use figure::Annotation;
 use pictures::SparseHorizon;
@@ -26,6 +28,10 @@ const WRITTEN: [(Annotation, &str); 7] = [
     (Annotation::Colours, "Colour bar of raw data"),
     (Annotation::Provenance, "Program, project and data credit"),
 ];
+
+/// What sections may show, and what it is called.
+const FILLS: [(SectionFill, &str); 3] =
+    [(SectionFill::Measured, "Measured data"), (SectionFill::Half, "Half"), (SectionFill::Rock, "Rock with patterns")];
 
 /// The room of the page beside the form, points of the screen.
 const PREVIEW: Vec2 = Vec2::new(470.0, 430.0);
@@ -120,6 +126,15 @@ fn fields(
             ui.add(TextEdit::singleline(words).desired_width(300.0)).labelled_by(label.id);
             ui.end_row();
         }
+        if shows_rock(session) {
+            ui.label("Sections show");
+            ui.horizontal(|ui| {
+                for (fill, name) in FILLS {
+                    ui.radio_value(&mut next.section_fill, fill, name);
+                }
+            });
+            ui.end_row();
+        }
         ui.label("With");
         ui.vertical(|ui| choices(ui, !session.document.horizons.is_empty(), &mut next));
         ui.end_row();
@@ -136,7 +151,8 @@ fn fields(
     if !has_format {
         ui.colored_label(ui.visuals().error_fg_color, "The file's name must end in .png, .tif, .svg or .pdf");
     }
-    if session.view.layout == Layout::Sections && session.view.volumes != SectionVolumes::default() {
+    let has_measured = next.section_fill != SectionFill::Rock;
+    if session.view.layout == Layout::Sections && has_measured && session.view.volumes != SectionVolumes::default() {
         ui.weak("Sections on the page show the raw data alone, without a second volume.");
     }
     let is_accepted = accept(ui, sparse, &mut next);
@@ -167,6 +183,13 @@ fn fields(
     asks
 }
 
+/// Whether sections on the page may show the rock: there are some, and layers.
+fn shows_rock(session: &Session) -> bool {
+    matches!(session.view.layout, Layout::Sections | Layout::Fence)
+        && session.view.panel != Panel::Interpret
+        && !session.document.horizons.is_empty()
+}
+
 /// What is written on the picture and beside it.
 fn choices(ui: &mut Ui, has_layers: bool, next: &mut ExportForm) {
     for (shown, name, can) in [
@@ -191,8 +214,8 @@ fn choices(ui: &mut Ui, has_layers: bool, next: &mut ExportForm) {
 
 /// Says which horizons were hardly picked; returns whether there are none, or a picture is wanted all the same.
 fn accept(ui: &mut Ui, sparse: &[SparseHorizon], next: &mut ExportForm) -> bool {
-    for horizon in sparse {
-        ui.colored_label(ui.visuals().warn_fg_color, capital(&horizon.sentence()));
+    for sentence in pictures::sparse_sentences(sparse) {
+        ui.colored_label(ui.visuals().warn_fg_color, capital(&sentence));
     }
     if !sparse.is_empty() {
         ui.checkbox(&mut next.accepts_sparse, "Draw it all the same");

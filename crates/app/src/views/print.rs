@@ -6,7 +6,7 @@ use super::block::{self, BEHIND_VOLUMES};
 use super::overlay::{Overlay, interpreter_view};
 use super::sections::Sections;
 use crate::state::picking::place_of;
-use crate::state::{Compare, ExportForm, Layout, Panel, SectionKind, Session, Shown, State, showing};
+use crate::state::{Compare, ExportForm, Layout, Panel, SectionFill, SectionKind, Session, Shown, State, showing};
 use crate::work::compute;
 use figure::DisplayList;
 use figure::cut::value_at;
@@ -45,7 +45,7 @@ impl Page {
     ) -> Option<Self> {
         let geometry = session.document.geometry.as_ref()?;
         let is_interpreting = session.view.panel == Panel::Interpret;
-        let parts = parts(session, geometry, overlay, sections, mapped);
+        let parts = parts(session, geometry, overlay, sections, mapped, form.section_fill);
         // A block brings those of its scene.
         let has_block = parts.iter().any(|part| matches!(part, Part::Block(_)));
         let figure = Figure {
@@ -133,13 +133,14 @@ fn parts(
     overlay: &Overlay,
     sections: &Sections,
     mapped: Mapped,
+    fill: SectionFill,
 ) -> Vec<Part> {
     let view = &session.view;
     let show = if view.panel == Panel::Interpret { view.picking.show } else { FaceData::Rock };
     let section = |kind: SectionKind| {
         let at = value_at(geometry, kind.axis(), view.slices[kind.axis()]);
         let (zoom, proportions) = (sections.zoom(kind), view.proportions);
-        Part::Section(SectionPart { kind, at, show, blend: None, zoom, proportions })
+        Part::Section(SectionPart { kind, at, show, blend: fill.blend(), zoom, proportions })
     };
     let block = || Part::from(block_part(session, overlay));
     match view.layout {
@@ -158,7 +159,7 @@ fn parts(
                 [inline, crossline]
             };
             let corners: Vec<[f64; 2]> = view.fence.iter().map(corner).collect();
-            let fence = (corners.len() > 1).then_some(Part::Fence(FencePart { corners, show, blend: None }));
+            let fence = (corners.len() > 1).then_some(Part::Fence(FencePart { corners, show, blend: fill.blend() }));
             std::iter::once(section(SectionKind::Slice)).chain(fence).collect()
         }
     }

@@ -295,6 +295,33 @@ fn a_picture_is_exported_as_paths_by_its_files_name() {
 }
 
 #[test]
+fn sections_are_exported_as_measured_data_or_as_rock() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    click(&mut harness, "Export…");
+    assert!(harness.query_by_label("Rock with patterns").is_none(), "a block alone has its blend");
+    click(&mut harness, "Cancel");
+    click(&mut harness, "Sections");
+    let export = |harness: &mut Driven, fill: &str| {
+        let path = folder.path().join(format!("{fill}.svg"));
+        click(harness, "Export…");
+        let Some(Dialogue::Export(form)) = &state(harness).dialogue else { panic!("no dialogue") };
+        let form = state::ExportForm { path: path.display().to_string(), size_cm: [9.0, 7.0], ..form.clone() };
+        harness.state_mut().as_mut().unwrap().act(state::Action::Ask(Box::new(Dialogue::Export(form))));
+        harness.run_steps(4);
+        click(harness, fill);
+        click(harness, "Export");
+        wait(harness, "it is written", |_| path.exists());
+        std::fs::read_to_string(&path).unwrap()
+    };
+    let (measured, half) = (export(&mut harness, "Measured data"), export(&mut harness, "Half"));
+    let rock = export(&mut harness, "Rock with patterns");
+    let pictures = [&measured, &half, &rock].map(|svg| svg.matches("<image").count());
+    assert!(pictures[0] >= 3 && pictures[1] == pictures[0] && pictures[2] + 3 == pictures[0], "{pictures:?}");
+    assert!(half != measured);
+}
+
+#[test]
 fn the_shortcuts_are_shown_on_a_question_mark() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());

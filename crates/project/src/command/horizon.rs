@@ -235,9 +235,24 @@ pub(super) fn insert_made(
     source: Source,
     progress: &Progress,
 ) -> Result<usize, ProjectError> {
-    let others = load_all(draft, progress)?;
+    let mut others = load_all(draft, progress)?;
+    insert_among(draft, &mut others, horizon, age, source, progress)
+}
+
+/// The same where the horizons of the project, youngest first, have been read; the new one is added to them.
+///
+/// # Errors
+/// As [`insert_made`].
+pub(super) fn insert_among(
+    draft: &mut Draft,
+    others: &mut Vec<Horizon>,
+    horizon: &Horizon,
+    age: &Age,
+    source: Source,
+    progress: &Progress,
+) -> Result<usize, ProjectError> {
     let contact = Contact::Conformable;
-    let position = position(age, draft, horizon, contact, &others)?;
+    let position = position(age, draft, horizon, contact, others)?;
     let contacts = draft.document.stratigraphy().horizons.iter().map(|h| h.contact).collect::<Vec<_>>();
     let rules = ContactRules::of([&contacts[..position], &[contact], &contacts[position..]].concat());
     let geometry = draft.document.frame()?.clone();
@@ -263,6 +278,7 @@ pub(super) fn insert_made(
         seeds: Vec::new(),
     };
     draft.document.split_layer(position, |document| document.horizons.insert(position, entry));
+    others.insert(position, horizon.clone());
     Ok(position)
 }
 
@@ -290,7 +306,7 @@ pub(super) fn reading(report: &ImportReport) -> String {
     line
 }
 
-fn load_all(draft: &Draft, progress: &Progress) -> Result<Vec<Horizon>, ProjectError> {
+pub(super) fn load_all(draft: &Draft, progress: &Progress) -> Result<Vec<Horizon>, ProjectError> {
     let load = |entry: &HorizonEntry| content::read_horizon(draft.root(), entry, progress);
     draft.document.horizons.iter().map(load).collect()
 }

@@ -1,6 +1,6 @@
 //! A stack of horizons between two: isochrons, or surfaces at equal shares of the thickness.
 
-use super::horizon::{Age, insert_made};
+use super::horizon::{Age, insert_among, load_all};
 use super::pick_by_time::level_sheets;
 use super::{Effect, Noun, ProjectError};
 use crate::content;
@@ -53,14 +53,12 @@ impl std::fmt::Display for Stacked {
     }
 }
 
-/// Most horizons of a stack, with which the column still has room.
-const MOST: usize = 60;
 /// Thickness between two horizons below which there is none between them, samples.
 const PINCHED: f32 = 0.2;
 
 impl StackHorizons {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
-        let room = MOST.saturating_sub(draft.document.horizons.len());
+        let room = model::MOST_HORIZONS.saturating_sub(draft.document.horizons.len());
         if self.count == 0 || self.count > room {
             return Err(ProjectError::StackCount { count: self.count, most: room });
         }
@@ -76,6 +74,7 @@ impl StackHorizons {
         };
         let traces: usize = draft.document.frame()?.size()[..2].iter().product();
         let mut horizons = Vec::new();
+        let mut others = load_all(draft, progress)?;
         for (horizon, source) in made {
             draft.document.check_new_name(Noun::Horizon, &horizon.name)?;
             let mut covered = vec![false; traces];
@@ -83,7 +82,7 @@ impl StackHorizons {
                 let known = sheet.depth.iter().map(|depth| depth.is_finite());
                 covered.iter_mut().zip(known).for_each(|(covered, known)| *covered |= known);
             }
-            insert_made(draft, &horizon, &Age::ByDepth, source, progress)?;
+            insert_among(draft, &mut others, &horizon, &Age::ByDepth, source, progress)?;
             let share = covered.iter().filter(|covered| **covered).count() as f64 / traces.max(1) as f64;
             horizons.push((horizon.name, share));
         }

@@ -2,8 +2,8 @@
 //! the ground disappears.
 //!
 //! All are zero contours on the map of the ground h(x, y) of one block: of the signed distance to the fault or the horizon
-//! at (x, y, h), and of (∂h/∂x, ∂h/∂y, −1)·d, where d is the viewing direction. They are found by linear
-//! interpolation in cells of one voxel (marching squares).
+//! at (x, y, h), and of (∂h/∂x, ∂h/∂y, −1)·d, where d is the viewing direction. They are found in cells of one voxel
+//! (marching squares), those of distances refined on the ground itself.
 
 use super::NOMINAL_SIDE_PX;
 use super::hidden::{IN_FRONT, covered_by, seen_parts};
@@ -26,8 +26,17 @@ const ACROSS: f64 = 0.12;
 const BESIDE_SURFACE: f64 = 0.25;
 /// Shortest crest that is drawn, in line widths.
 const SHORTEST_CREST: f64 = 24.0;
+/// Gaps in a fault's trace that are no wider than this are closed, in line widths: ground that hides so little of it looks
+/// like a broken line.
+const WIDEST_GAP: f64 = 2.0;
 /// Ends of lines closer than about this are joined, pixels; each cell computes them once.
 const MEETING_PX: f64 = 0.5;
+
+/// Steps by which the end of a segment is refined.
+const ROOT_STEPS: usize = 5;
+
+/// A corner of a cell, in nodes, and a function's value there.
+type Corner = (DVec2, f64);
 
 /// Visible parts of the lines on the ground, pixels.
 #[derive(Debug, Default)]
@@ -66,8 +75,30 @@ impl Map<'_> {
         self.xy(DVec2::new(x as f64, y as f64)).extend(f64::from(self.heights[x * (self.counts[1] + 2) + y]))
     }
 
-    /// Segments on which a function on the map is zero, as points on the ground.
-    fn zero_lines(&self, f: impl Fn([usize; 2]) -> f64 + Sync) -> Vec<[DVec3; 2]> {
+    /// Segments on which a function of places is zero on the ground. Their ends are refined on the ground itself, which may
+    /// bend within a cell.
+    fn zeros_on_ground(&self, f: impl Fn(DVec3) -> f64 + Sync) -> Vec<[DVec3; 2]> {
+        let root = |[(mut a, mut at_a), (mut b, mut at_b)]: [Corner; 2]| {
+            // Regula falsi; the value of an end that stays is halved (the Illinois rule).
+            for _ in 0..ROOT_STEPS {
+                let middle = a.lerp(b, at_a / (at_a - at_b));
+                let at = f(self.ground(middle));
+                if (at >= 0.0) == (at_a >= 0.0) {
+                    (a, at_a, at_b) = (middle, at, 0.5 * at_b);
+                } else {
+                    (b, at_b, at_a) = (middle, at, 0.5 * at_a);
+                }
+                if at == 0.0 {
+                    return middle;
+                }
+            }
+            a.lerp(b, at_a / (at_a - at_b))
+        };
+        self.zero_lines(|node| f(self.node(node)), root)
+    }
+
+    /// Segments on which a function on the map is zero, as points on the ground; `root` finds the zero between two corners.
+    fn zero_lines(&self, f: impl Fn([usize; 2]) -> f64 + Sync, root: impl Fn([Corner; 2]) -> DVec2) -> Vec<[DVec3; 2]> {
         let [nx, ny] = self.counts;
         let values: Vec<f64> =
             (0..(nx + 1) * (ny + 1)).into_par_iter().map(|n| f([n / (ny + 1), n % (ny + 1)])).collect();
@@ -78,9 +109,9 @@ impl Map<'_> {
                     .map(|[a, b]| (DVec2::new((x + a) as f64, (y + b) as f64), values[(x + a) * (ny + 1) + y + b]));
                 let mut cuts = Vec::new();
                 for n in 0..4 {
-                    let ((a, at_a), (b, at_b)) = (corners[n], corners[(n + 1) % 4]);
-                    if (at_a >= 0.0) != (at_b >= 0.0) {
-                        cuts.push(a.lerp(b, at_a / (at_a - at_b)));
+                    let ends = [corners[n], corners[(n + 1) % 4]];
+                    if (ends[0].1 >= 0.0) != (ends[1].1 >= 0.0) {
+                        cuts.push(root(ends));
                     }
                 }
                 for pair in cuts.chunks_exact(2) {
@@ -101,6 +132,7 @@ pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
     let step = (high - low).truncate() / DVec2::new(counts[0] as f64, counts[1] as f64);
     let scale = f64::from(resolved.scene.size_px[0].min(resolved.scene.size_px[1])) / f64::from(NOMINAL_SIDE_PX);
     let shortest = SHORTEST_CREST * f64::from(resolved.scene.outlines.horizons.width_px) * scale;
+    let widest = WIDEST_GAP * f64::from(resolved.scene.outlines.faults.width_px) * scale;
     for block in 0..interpretation.model.block_count() as u16 {
         let key = |fault: usize| ([low.x, low.y, low.z, high.x, high.y, high.z].map(f64::to_bits), block, fault);
         let heights = resolved.shapes.heights(key(0), || {
@@ -114,15 +146,15 @@ pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
         });
         let map = Map { interpretation, block, low, counts, step, heights };
         for fault in 0..interpretation.model.faults().surfaces().len() {
-            let side = |node| f64::from(interpretation.model.faults().side(fault, map.node(node).as_vec3()));
-            let segments = resolved.shapes.traces(key(fault), || map.zero_lines(side));
+            let side = |p: DVec3| f64::from(interpretation.model.faults().side(fault, p.as_vec3()));
+            let segments = resolved.shapes.traces(key(fault), || map.zeros_on_ground(side));
             let traces = seen(resolved, interpretation, &segments, |p| beside_fault(interpretation, fault, block, p));
-            lines.faults.extend(traces.into_iter().map(|trace| (fault, trace)));
+            lines.faults.extend(bridged(traces, widest).into_iter().map(|trace| (fault, trace)));
         }
         let faults = interpretation.model.faults().surfaces().len();
         for horizon in 1..usize::from(air_layer(interpretation.model)) {
-            let offset = |node| f64::from(interpretation.model.offset(horizon, block, map.node(node).as_vec3()));
-            let segments = resolved.shapes.traces(key(faults + horizon), || map.zero_lines(offset));
+            let offset = |p: DVec3| f64::from(interpretation.model.offset(horizon, block, p.as_vec3()));
+            let segments = resolved.shapes.traces(key(faults + horizon), || map.zeros_on_ground(offset));
             let lines_of = seen(resolved, interpretation, &segments, |p| {
                 interpretation.model.crops_out_at(horizon, p.as_vec3(), block).then_some(p)
             });
@@ -134,7 +166,8 @@ pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
             dx.cross(dy).dot(resolved.view.towards_camera(p))
         };
         let from_map = interpretation.model.level(0, block).is_none();
-        let segments = if from_map { map.zero_lines(facing) } else { Vec::new() };
+        let straight = |[(a, at_a), (b, at_b)]: [Corner; 2]| a.lerp(b, at_a / (at_a - at_b));
+        let segments = if from_map { map.zero_lines(facing, straight) } else { Vec::new() };
         lines.crests.extend(seen(resolved, interpretation, &segments, |p| {
             (interpretation.model.block_at(p.as_vec3()) == block).then_some(p)
         }));
@@ -170,6 +203,25 @@ fn silhouette(
     };
     let segments = level.silhouette(low, high, towards).into_par_iter().map(|ends| ends.map(|end| end.as_dvec3()));
     segments.flat_map_iter(|segment| seen_parts(&resolved.view, &segment, is_seen)).collect()
+}
+
+/// The lines, and straight ones across gaps of no more than `widest` pixels between ends that meet no other line.
+fn bridged(mut lines: Vec<Vec<DVec2>>, widest: f64) -> Vec<Vec<DVec2>> {
+    let mut ends: Vec<DVec2> = lines.iter().flat_map(|line| [line.first(), line.last()]).flatten().copied().collect();
+    ends.sort_by(|a, b| a.x.total_cmp(&b.x));
+    let is_near = |a: usize, b: usize| ends[a].x - ends[b].x < MEETING_PX && ends[a].distance(ends[b]) < MEETING_PX;
+    let meets = |n: &usize| {
+        let before = (0..*n).rev().take_while(|m| ends[*n].x - ends[*m].x < MEETING_PX).any(|m| is_near(*n, m));
+        before || (*n + 1..ends.len()).take_while(|m| ends[*m].x - ends[*n].x < MEETING_PX).any(|m| is_near(m, *n))
+    };
+    let mut loose: Vec<DVec2> = (0..ends.len()).filter(|n| !meets(n)).map(|n| ends[n]).collect();
+    while let Some(end) = loose.pop() {
+        let nearest = (0..loose.len()).min_by(|a, b| end.distance(loose[*a]).total_cmp(&end.distance(loose[*b])));
+        if let Some(nearest) = nearest.filter(|n| end.distance(loose[*n]) <= widest) {
+            lines.push(vec![end, loose.swap_remove(nearest)]);
+        }
+    }
+    lines
 }
 
 /// Removes lines that are, together with all lines that meet them, shorter than `shortest` pixels. If the
@@ -214,7 +266,11 @@ fn beside_fault(interpretation: ResolvedInterpretation, fault: usize, block: u16
     if !faults.is_real(fault, p.as_vec3()) || interpretation.model.is_pierced_at(p.as_vec3(), block) {
         return None;
     }
-    let normal = faults.surfaces()[fault].frame_from_voxel.row(2).normalize();
+    let surface = &faults.surfaces()[fault];
+    let normal = surface.frame_from_voxel.row(2).normalize();
+    // The straight piece of a trace lies a little beside a curved fault.
+    let gradient = surface.side_gradient(p);
+    let p = p - gradient * (surface.side(p) / gradient.length_squared());
     let holds_block = |aside: f64| interpretation.model.block_at((p + normal * aside).as_vec3()) == block;
     let inwards = match (holds_block(ACROSS), holds_block(-ACROSS)) {
         (true, false) => normal,
@@ -250,18 +306,5 @@ fn cut_away(resolved: &ResolvedScene, p: DVec3) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn specks_go_and_lines_in_pieces_stay() {
-        let at = |x: f64| DVec2::new(x, 7.25);
-        // Ten pieces of four pixels that meet, a single one, and two that meet beside it.
-        let chain = (0..10).map(|n| vec![at(4.0 * f64::from(n)), at(4.0 * f64::from(n) + 4.0)]);
-        let alone = vec![at(100.0), at(109.0)];
-        let pair = [vec![at(200.0), at(205.0)], vec![at(209.0), at(205.0)]];
-        let lines: Vec<_> = chain.clone().chain([alone]).chain(pair).collect();
-        assert_eq!(without_specks(lines.clone(), 10.0), chain.collect::<Vec<_>>());
-        assert_eq!(without_specks(lines.clone(), 0.0), lines);
-    }
-}
+#[path = "../../tests/unit/relief_lines.rs"]
+mod tests;

@@ -22,6 +22,10 @@ const GAP_PT: f64 = 2.0;
 const EVERY_PT: f64 = 24.0;
 /// Height of a number's letters as they stand on a line, as a share of their size.
 const HEIGHT: f64 = 1.15;
+/// Distance of the places at which a line is asked whether an edge of the block lies on it, points.
+const STEP_PT: f64 = 0.25;
+/// How far within the block an edge is asked for, as a share of the way to the block's middle.
+const WITHIN: f64 = 1e-3;
 /// Where along its edge a title may stand, the best place first.
 const PLACES: [f64; 5] = [0.5, 0.4, 0.6, 0.25, 0.75];
 
@@ -68,13 +72,15 @@ fn outer_edges(view: &View, block: &VoxelBox, page: &dyn Fn(DVec3) -> DVec2) -> 
     (0..3).filter_map(edge).collect()
 }
 
-/// The axes of a block in `room`; labels that find no place are left out.
+/// The axes of a block in `room`; labels that find no place are left out. Where the block has an edge of its own, which is
+/// where `is_rock` (voxels) holds just within, it carries the axis, and no second line lies over it.
 pub(super) fn drawn(
     geometry: &SurveyGeometry,
     view: &View,
     block: &VoxelBox,
     pane: Rect,
     page: &dyn Fn(DVec3) -> DVec2,
+    is_rock: &dyn Fn(DVec3) -> bool,
     room: &mut LabelRoom,
 ) -> Group {
     let mut group = Group::new(GroupKind::Annotation, "axes");
@@ -83,7 +89,9 @@ pub(super) fn drawn(
     let mut titles = Vec::new();
     for edge in &edges {
         let [from, to] = edge.ends.map(page);
-        marks.add_line(&[from, to]);
+        for part in edge.bare(block.centre(), page, is_rock) {
+            marks.add_line(&part);
+        }
         room.take_line(from, to);
         let mut reach = 0.0f64;
         for (value, voxel) in edge.ticks(geometry, page) {
@@ -125,6 +133,20 @@ fn support(text: &Text, towards: DVec2) -> f64 {
 }
 
 impl OuterEdge {
+    /// The parts of its line on which the block has no edge.
+    fn bare(&self, middle: DVec3, page: &dyn Fn(DVec3) -> DVec2, is_rock: &dyn Fn(DVec3) -> bool) -> Vec<[DVec2; 2]> {
+        let [from, to] = self.ends;
+        let count = (page(from).distance(page(to)) / STEP_PT).ceil().max(1.0) as usize;
+        let at = |n: usize| from.lerp(to, n as f64 / count as f64);
+        let is_bare = |n: &usize| {
+            let p = at(*n).midpoint(at(n + 1));
+            !is_rock(p.lerp(middle, WITHIN))
+        };
+        let steps: Vec<usize> = (0..count).filter(is_bare).collect();
+        let runs = steps.chunk_by(|one, next| one + 1 == *next);
+        runs.map(|run| [page(at(run[0])), page(at(run[run.len() - 1] + 1))]).collect()
+    }
+
     fn values(&self, geometry: &SurveyGeometry) -> [f64; 2] {
         self.ends.map(|end| value_at(geometry, self.axis, end[self.axis]))
     }

@@ -1,6 +1,7 @@
 //! What is written on faces of rock, of a block or of a section: names of layers along the layers, names and throws of
 //! faults, question marks on lines that are only continued, and leaders to names that found no place.
 
+use super::column::{self, LayerEnd};
 use super::room::LabelRoom;
 use super::{faults, names, queries, room};
 use crate::convex::meet;
@@ -10,6 +11,7 @@ use crate::style::{FRAME_PT, INK, QUIET_INK, TEXT_PT};
 use glam::{DVec2, DVec3};
 use model::StructuralModel;
 use render::vector::SeenSection;
+use std::collections::HashSet;
 use survey::SurveyGeometry;
 use ttf::Colour;
 
@@ -20,9 +22,15 @@ const LEADER_RINGS: u32 = 26;
 const LEADER_TURNS: u32 = 36;
 /// The length that a leader may be longer to cross no axis, points.
 const CROSSED_PT: f64 = 60.0;
+/// From so many names without a place on their layer they stand in a column beside the block.
+pub(super) const COLUMN_FROM: usize = 5;
+/// Most names of layers with leaders of their own: more are a tangle, and the legend lists them.
+const MOST_LEADERS: usize = 8;
 /// The rim of names on faces, points, and its opacity.
 const RIM_PT: f64 = 1.2;
 const RIM_OPACITY: f32 = 0.9;
+/// Radius of the dot at the end of a leader, points.
+const DOT_PT: f64 = 1.3;
 
 /// What is written on faces.
 #[derive(Debug, Clone, Copy)]
@@ -111,7 +119,9 @@ impl FaceWriter<'_> {
     }
 
     fn layers(&self, faces: &[SeenSection], room: &mut LabelRoom, written: &mut Vec<Item>, beside: &mut Vec<Beside>) {
+        let (mut ends, mut thin): (Vec<LayerEnd>, Vec<(f64, Beside)>) = (Vec::new(), Vec::new());
         let pieces = names::pieces(faces, self.page_from_voxel, self.page, self.air);
+        let edge = names::right_edge(&pieces);
         for layer in (0..self.model.layer_count() as u16).rev() {
             let name = self.names.layer(layer);
             let ground = self.names.style(layer).map_or(Colour::WHITE, |style| {
@@ -126,12 +136,24 @@ impl FaceWriter<'_> {
                 written.push(Group::new(GroupKind::Layer, name).with([text.into()]).into());
                 continue;
             }
+            let end = own().filter_map(|piece| piece.before(edge)).max_by(|a, b| a.1.total_cmp(&b.1));
+            ends.extend(end.map(|(at, thick)| LayerEnd { at, thick, name: name.clone() }));
             let mut anchors: Vec<(DVec2, f64)> = own().filter_map(names::LayerPiece::thickest).collect();
             anchors.sort_by(|a, b| b.1.total_cmp(&a.1));
-            if !anchors.is_empty() {
-                beside.push((anchors.into_iter().map(|(anchor, _)| anchor).collect(), name));
+            if let Some((_, thick)) = anchors.first().copied() {
+                thin.push((thick, (anchors.into_iter().map(|(anchor, _)| anchor).collect(), name)));
             }
         }
+        if thin.len() >= COLUMN_FROM && ends.len() >= COLUMN_FROM {
+            let names: HashSet<String> = ends.iter().map(|end| end.name.clone()).collect();
+            let column = column::placed(ends, edge, room);
+            if !column.is_empty() {
+                thin.retain(|(_, (_, name))| !names.contains(name));
+            }
+            written.extend(column.into_iter().map(Item::from));
+        }
+        thin.sort_by(|a, b| b.0.total_cmp(&a.0));
+        beside.extend(thin.into_iter().take(MOST_LEADERS).map(|(_, name)| name));
     }
 }
 
@@ -172,12 +194,20 @@ fn leader(anchors: &[DVec2], name: &str, faces: &[Vec<DVec2>], room: &mut LabelR
     let text = Text { at: text.at + end, ..text.clone() };
     room.take(&text);
     room.take_area(&[anchor, end]);
+    Some(led([anchor, end], DOT_PT, name, text))
+}
+
+/// A name with a line from a dot on what it names.
+pub(super) fn led([anchor, end]: [DVec2; 2], dot: f64, name: &str, text: Text) -> Group {
     let line = Path::line(&[anchor, end]);
-    let rim = Stroke::new(FRAME_PT + 1.4, Ink::glass(Colour::WHITE, RIM_OPACITY));
-    Some(Group::new(GroupKind::Annotation, format!("leader to {name}")).with([
+    // In proportion to the dot, so that leaders side by side do not cover the edge behind them.
+    let rim = Stroke::new(FRAME_PT + 1.4 * (dot / DOT_PT).powi(4), Ink::glass(Colour::WHITE, RIM_OPACITY));
+    Group::new(GroupKind::Annotation, format!("leader to {name}")).with([
         PathItem::stroked(line.clone(), rim).into(),
         PathItem::stroked(line, Stroke::new(FRAME_PT, QUIET_INK)).into(),
-        PathItem::filled(Path::circle(anchor, 1.3), INK).outlined(Stroke::new(0.6, Colour::WHITE)).into(),
+        PathItem::filled(Path::circle(anchor, dot), INK)
+            .outlined(Stroke::new(0.6 * dot / DOT_PT, Colour::WHITE))
+            .into(),
         text.into(),
-    ]))
+    ])
 }

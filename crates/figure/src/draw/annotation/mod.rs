@@ -3,8 +3,9 @@
 //!
 //! All labels share one `LabelRoom`: none lies over another or leaves the panel. Axes come first and the picture
 //! shrinks until they stand beside it; then wells, half-arrows, names on the faces, and at last leaders to names that found no
-//! place on their layer.
+//! place on their layer, of many layers in a column beside the block.
 
+mod column;
 mod edges;
 mod faces;
 mod faults;
@@ -89,7 +90,8 @@ impl BlockAnnotation<'_> {
             let scene = Scene { size_px: [size_px.x as u32, size_px.y as u32], ..scene.clone() };
             let placed = Placed { view: scene.view(self.geometry), scene: &scene, pane, points_per_px: 1.0 / PROBE_PX };
             let mut anywhere = LabelRoom::new(room.grown(room.size().max_element()));
-            let Some(taken) = texts(&self.axes(&placed, &mut anywhere)).map(Text::bounds).reduce(joined) else { break };
+            let axes = self.axes(&placed, &mut anywhere);
+            let Some(taken) = texts(&axes).map(Text::bounds).chain(self.beside(&placed)).reduce(joined) else { break };
             let over = [
                 room.min.x - taken.min.x,
                 room.min.y - taken.min.y,
@@ -106,6 +108,23 @@ impl BlockAnnotation<'_> {
             }
         }
         pane
+    }
+
+    /// The room to the right of a block of many layers in which their names stand.
+    fn beside(&self, placed: &Placed) -> Option<Rect> {
+        let names = self.names.layers.iter().map(|style| style.layer.as_str());
+        if !self.wants(Annotation::Layers) || self.model.is_none() || names.len() < faces::COLUMN_FROM {
+            return None;
+        }
+        let block = placed.scene.box_in(self.geometry);
+        let corners = [block.low(), block.high()];
+        let edge = |n: usize| {
+            let [x, y] = [corners[n & 1].x, corners[n >> 1].y];
+            [0, 1].map(|end: usize| placed.page_from_voxel(DVec3::new(x, y, corners[end].z)))
+        };
+        let [upper, lower] = (0..4).map(edge).max_by(|a, b| a[0].x.total_cmp(&b[0].x))?;
+        let margin = column::margin(names, upper.distance(lower));
+        (margin > 0.0).then(|| Rect::new(upper.min(lower), upper.max(lower) + DVec2::X * margin))
     }
 
     /// Everything that is written, for a picture of `scene` that fills `pane` of a room.
@@ -149,7 +168,15 @@ impl BlockAnnotation<'_> {
     fn axes(&self, placed: &Placed, room: &mut LabelRoom) -> Group {
         let block = placed.scene.box_in(self.geometry);
         let page = |voxel: DVec3| placed.page_from_voxel(voxel);
-        edges::drawn(self.geometry, &placed.view, &block, placed.pane, &page, room)
+        let scene = placed.scene;
+        let has_edges = scene.media.faces == Faces::All && scene.outlines.edges.width_px > 0.0;
+        let solid = scene.solid(self.geometry);
+        let ground = self.model.filter(|_| scene.ground.is_some());
+        let is_rock = |p: DVec3| {
+            let p = p.as_vec3();
+            has_edges && solid.contains(p) && !ground.is_some_and(|model| render::ground::is_air(model, p))
+        };
+        edges::drawn(self.geometry, &placed.view, &block, placed.pane, &page, &is_rock, room)
     }
 }
 

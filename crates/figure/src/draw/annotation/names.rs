@@ -7,7 +7,7 @@
 
 use super::room::LabelRoom;
 use crate::convex::{holds, meet};
-use crate::list::Text;
+use crate::list::{Halo, Text};
 use crate::style::LEAST_TEXT_PT;
 use glam::DVec2;
 use render::vector::SeenSection;
@@ -24,6 +24,11 @@ const SMOOTH_PT: f64 = 14.0;
 const MOST_TURN_DEG: [f64; 2] = [16.0, 75.0];
 /// The share of a line's height above capital letters.
 const OVER_CAPITALS: f64 = 0.1;
+/// Shares of a rim's width that are tried, so that it stays within the layer, too; letters cannot be read on a pattern
+/// with less than the last.
+const RIMS: [f64; 3] = [1.0, 0.85, 0.7];
+/// How far before an edge a leader ends in a layer that reaches it, points.
+const BEFORE_PT: [f64; 2] = [2.5, 8.0];
 /// Steeper words are hard to read, degrees.
 const STEEPEST_DEG: f64 = 70.0;
 
@@ -153,7 +158,7 @@ impl LayerPiece {
             let text = name.clone().sized(size);
             let fits = self.lines.iter().flat_map(|line| self.along(line, &text, room));
             if let Some((text, score)) = fits.max_by(|a, b| a.1.total_cmp(&b.1)) {
-                return Some((text, score - 1000.0 * n as f64));
+                return Some((self.rimmed(text), score - 1000.0 * n as f64));
             }
         }
         None
@@ -182,14 +187,26 @@ impl LayerPiece {
     /// Whether all letters lie within the piece, and are seen.
     fn holds(&self, text: &Text) -> bool {
         text.straight().iter().map(letter_box).all(|letter| {
-            let crossed = self.rings.iter().any(|ring| {
-                (0..ring.len()).any(|n| {
-                    let side = [ring[n], ring[(n + 1) % ring.len()]];
-                    is_near(&side, &letter) && meet(&side, &letter)
-                })
-            });
-            !crossed && self.is_inside(letter[0]) && letter.iter().all(|corner| self.is_seen(*corner))
+            !self.is_crossed(&letter) && self.is_inside(letter[0]) && letter.iter().all(|corner| self.is_seen(*corner))
         })
+    }
+
+    fn is_crossed(&self, letter: &[DVec2]) -> bool {
+        self.rings.iter().any(|ring| {
+            (0..ring.len()).any(|n| {
+                let side = [ring[n], ring[(n + 1) % ring.len()]];
+                is_near(&side, letter) && meet(&side, letter)
+            })
+        })
+    }
+
+    /// The text with the widest rim that covers no boundary, or the narrowest.
+    fn rimmed(&self, text: Text) -> Text {
+        let Some(halo) = text.halo else { return text };
+        let letters: Vec<[DVec2; 4]> = text.straight().iter().map(letter_box).collect();
+        let fits = |share: &f64| letters.iter().all(|letter| !self.is_crossed(&grown(letter, share * halo.width)));
+        let share = RIMS.into_iter().find(fits).unwrap_or(RIMS[2]);
+        Text { halo: Some(Halo { width: share * halo.width, ..halo }), ..text }
     }
 
     /// Whether a place lies in the piece, by the even-odd rule.
@@ -212,15 +229,35 @@ impl LayerPiece {
 
     /// The place of the piece where it is seen thickest, and that thickness, points.
     pub(super) fn thickest(&self) -> Option<(DVec2, f64)> {
-        let seen = self.lines.iter().flatten().filter(|place| place.is_seen && self.is_inside(place.at));
-        seen.max_by(|a, b| a.thick.total_cmp(&b.thick)).map(|place| (place.at, place.thick))
+        self.seen_places().max_by(|a, b| a.thick.total_cmp(&b.thick)).map(|place| (place.at, place.thick))
     }
+
+    /// The last place before an edge on the right that the piece reaches, and how thick it is there, points.
+    pub(super) fn before(&self, edge: f64) -> Option<(DVec2, f64)> {
+        let near = self.seen_places().filter(|place| (BEFORE_PT[0]..BEFORE_PT[1]).contains(&(edge - place.at.x)));
+        near.max_by(|a, b| a.at.x.total_cmp(&b.at.x)).map(|place| (place.at, place.thick))
+    }
+
+    fn seen_places(&self) -> impl Iterator<Item = &LinePlace> {
+        self.lines.iter().flatten().filter(|place| place.is_seen && self.is_inside(place.at))
+    }
+}
+
+/// Where the pieces end on the right, x on the page.
+pub(super) fn right_edge(pieces: &[LayerPiece]) -> f64 {
+    pieces.iter().flat_map(LayerPiece::seen_places).map(|place| place.at.x).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// The room of a letter from the height of capitals down to its descender.
 fn letter_box(letter: &Text) -> [DVec2; 4] {
     let [a, b, c, d] = letter.corners();
     [a.lerp(d, OVER_CAPITALS), b.lerp(c, OVER_CAPITALS), c, d]
+}
+
+/// A letter's box and its rim: larger by `rim` on all sides.
+fn grown([a, b, c, d]: &[DVec2; 4], rim: f64) -> [DVec2; 4] {
+    let (along, down) = ((b - a).normalize_or_zero() * rim, (d - a).normalize_or_zero() * rim);
+    [*a - along - down, *b + along - down, *c + along + down, *d - along + down]
 }
 
 fn is_near(side: &[DVec2; 2], letter: &[DVec2]) -> bool {
@@ -240,45 +277,5 @@ fn readable(text: &Text) -> Option<f64> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::Rect;
-
-    fn piece(upper: impl Fn(f64) -> f64, lower: impl Fn(f64) -> f64) -> LayerPiece {
-        let xs: Vec<f64> = (0..=60).map(|n| 5.0 * f64::from(n)).collect();
-        let ring: Vec<DVec2> = xs
-            .iter()
-            .map(|x| DVec2::new(*x, upper(*x)))
-            .chain(xs.iter().rev().map(|x| DVec2::new(*x, lower(*x))))
-            .collect();
-        let page = [[0.0, 0.0], [300.0, 0.0], [300.0, 200.0], [0.0, 200.0]].map(DVec2::from_array);
-        let runs = middle_lines(std::slice::from_ref(&ring), 300.0, &|st| st);
-        LayerPiece::new(0, vec![ring], vec![page.to_vec()], &runs)
-    }
-
-    fn room() -> LabelRoom {
-        LabelRoom::new(Rect::sized(DVec2::ZERO, DVec2::new(300.0, 200.0)))
-    }
-
-    #[test]
-    fn a_name_follows_the_middle_of_a_fold() {
-        let bend = |x: f64| 100.0 + 25.0 * (x / 300.0 * std::f64::consts::TAU).sin();
-        let fold = piece(|x| bend(x) - 12.0, |x| bend(x) + 12.0);
-        let (text, _) = fold.named(&Text::new(DVec2::ZERO, "Nodular limestone"), &room()).unwrap();
-        assert_eq!(text.size, SIZES_PT[0]);
-        for letter in text.straight() {
-            let middle = letter.corners().iter().sum::<DVec2>() / 4.0;
-            assert!((middle.y - bend(middle.x)).abs() < 3.5, "{} at {middle}", letter.text);
-        }
-    }
-
-    #[test]
-    fn a_layer_that_is_thinner_than_letters_takes_none_and_a_wedge_takes_them_where_it_is_thick() {
-        let name = Text::new(DVec2::ZERO, "Marl");
-        assert!(piece(|_| 100.0, |_| 106.0).named(&name, &room()).is_none());
-        let wedge = piece(|_| 100.0, |x| 100.0 + 0.1 * x);
-        let (text, _) = wedge.named(&name, &room()).unwrap();
-        assert!(text.letters.iter().all(|letter| letter.at.x > 120.0));
-        assert!(wedge.thickest().unwrap().0.x > 290.0);
-    }
-}
+#[path = "../../../tests/unit/names.rs"]
+mod tests;

@@ -36,6 +36,11 @@ impl LabelRoom {
         !self.taken.iter().any(|other| meet(&[from, to], other))
     }
 
+    /// The upper and the lower end of the room.
+    pub(crate) fn heights(&self) -> [f64; 2] {
+        [self.within.min.y, self.within.max.y]
+    }
+
     /// How many lines a straight line crosses.
     pub(crate) fn crossings(&self, from: DVec2, to: DVec2) -> usize {
         self.lines.iter().filter(|line| meet(&[from, to], *line)).count()
