@@ -12,7 +12,7 @@ use survey::Progress;
 use survey::candidates::ForestRows;
 
 /// Bytes that the work on a brick takes at most for each sample of it and of its halo (measured).
-const BYTES_A_SAMPLE: u64 = 20;
+const BYTES_A_SAMPLE: u64 = 10;
 
 /// Bytes that trees take for each triangle of the surfaces in work.
 pub(super) const BYTES_A_TRIANGLE: u64 = 130;

@@ -31,6 +31,7 @@ impl BrickedExtraction<'_> {
         let size = self.source.info().geometry.size();
         let stated = memory_bytes.saturating_sub(PROGRAM_BYTES);
         let cut = BrickSettings::within(stated, size, rayon::current_num_threads())?;
+        survey::memory::share_freed_memory(cut.workers);
         // Arrays of other bricks are no use, so the bricks are part of the name.
         let [x, y] = cut.edge;
         let name = format!("{RESUMABLE}{}-{x}x{y}-{}", self.key, cut.triangles_together);
