@@ -178,7 +178,9 @@ impl Drawing {
             "SEQEND" => {
                 if let Some(polyline) = self.polyline.take().filter(|polyline| polyline.flags & GRID != 0) {
                     let Some(faces) = polyline.faces() else {
-                        return wrong("as many VERTEXes as the mesh has rows times columns (codes 71 and 72) before it");
+                        return wrong(
+                            "as many VERTEXes as the mesh has rows times columns (codes 71 and 72) before it",
+                        );
                     };
                     let layer = self.layer(&polyline.layer);
                     faces.into_iter().for_each(|face| layer.face(face));
@@ -202,12 +204,7 @@ impl Drawing {
 
 impl Drawing {
     /// A place of a line or mesh, or a face of a mesh.
-    fn add_vertex(
-        &mut self,
-        source: &SourceFile,
-        entity: &Entity<'_>,
-        at: Option<DVec3>,
-    ) -> Result<(), FormatError> {
+    fn add_vertex(&mut self, source: &SourceFile, entity: &Entity<'_>, at: Option<DVec3>) -> Result<(), FormatError> {
         let wrong = |expected: &str| Err(source.syntax(entity.line, expected, entity.kind));
         let mesh = self.polyline.as_mut().filter(|polyline| polyline.flags & (GRID | FACES) != 0);
         let is_face = entity.flags & (PLACE | PART_OF_FACES) == PART_OF_FACES;

@@ -511,9 +511,7 @@ fn note_bins(
     };
     let bytes = (!is_stated(options)).then(other_bytes);
     findings.warning(Note::unless(
-        format!(
-            "X and Y at bytes {x} and {y} make bins of {inline} by {crossline} m, which no survey has: {likely}"
-        ),
+        format!("X and Y at bytes {x} and {y} make bins of {inline} by {crossline} m, which no survey has: {likely}"),
         Remedy::any(bytes.into_iter().chain([Setting::CoordinateUnit.stated(), Setting::Bin.stated()])),
     ));
 }
@@ -556,9 +554,8 @@ fn note_fit(
             "the coordinate scalar (byte {byte}) differs between traces, {low} to {high}; each trace's own is used"
         ));
     } else if !is_float && is_of_file && !matches!(low.abs(), 0 | 1 | 10 | 100 | 1000 | 10_000) {
-        findings.warning(format!(
-            "the coordinate scalar (byte {byte}) is {low}, which is no power of ten; it is applied"
-        ));
+        findings
+            .warning(format!("the coordinate scalar (byte {byte}) is {low}, which is no power of ten; it is applied"));
     }
     if fit.outliers > 0 {
         findings.warning(format!(

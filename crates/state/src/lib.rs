@@ -27,7 +27,7 @@ mod tests;
 use render::Scene;
 
 pub use action::{Action, Task};
-pub use dialogue::{Choice, Dialogue, ExportForm, FileContent, ShareForm, ShareKind, Shown, SurfaceForm, Target};
+pub use dialogue::{Choice, DataForm, Dialogue, ExportForm, FileContent, ShareForm, ShareKind, Shown, Target, Written};
 pub use notice::{Notice, Place};
 pub use picking::{How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, StickPoint, Tool};
 pub use remembered::{Appearance, Remembered};

@@ -48,6 +48,42 @@ fn horizons_and_faults_are_written_from_the_window() {
     }
 }
 
+/// A volume has another name where it is shown too, also after undo, and is written as SEG-Y.
+#[test]
+fn a_volume_is_renamed_and_written_from_the_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    click(&mut harness, "Volume display");
+    click_last(&mut harness, "Cut-outs");
+    click(&mut harness, "Data");
+    let shown = |harness: &Driven| state(harness).session.as_ref().unwrap().view.scene.media.cut_outs[0].volume.clone();
+    click_last(&mut harness, "seismic");
+    click_last(&mut harness, "Rename");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.get_by_label("New name").type_text("Full stack");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    wait(&mut harness, "it has its name", |harness| document(harness).volumes[0].name == "Full stack");
+    assert_eq!(shown(&harness), "Full stack");
+    wait(&mut harness, "it is drawn", |harness| harness.state().as_ref().unwrap().is_settled());
+    assert!(state(&harness).notices.iter().all(|notice| !notice.failed), "{:?}", state(&harness).notices);
+    click(&mut harness, "Undo");
+    wait(&mut harness, "it has its old name", |harness| document(harness).volumes[0].name == "seismic");
+    assert_eq!(shown(&harness), "seismic");
+    click_last(&mut harness, "seismic");
+    click_last(&mut harness, "Export…");
+    harness.get_by_label("Export volume seismic");
+    choose(&mut harness, "Format", "int16");
+    let out = folder.path().join("out.sgy");
+    type_path(&mut harness, &out);
+    click_last(&mut harness, "Export");
+    wait(&mut harness, "it is written", |harness| out.exists() && state(harness).dialogue.is_none());
+    let options = segy::SegyOptions::default();
+    let info = segy::scan(&out, &options, &survey::Progress::silent()).unwrap();
+    let size = document(&harness).geometry.unwrap().size();
+    assert_eq!((info.format_code, [info.inlines.count, info.crosslines.count, info.samples]), (3, size));
+}
+
 /// A name typed for a fault is followed by its sticks, and a horizon from a file has a colour to choose.
 #[test]
 fn faults_are_renamed_and_imported_horizons_coloured() {
