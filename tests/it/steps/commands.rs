@@ -132,7 +132,7 @@ pub const MAKING: [Scenario; 5] = [
 ];
 
 /// What changes horizons, faults and wells.
-pub const INTERPRETING: [Scenario; 21] = [
+pub const INTERPRETING: [Scenario; 22] = [
     of(Imported, "horizon add p.petro top.csv --name Another"),
     of(Imported, "volume rename p.petro seismic Stack"),
     of(Imported, "horizon rename p.petro Top Roof"),

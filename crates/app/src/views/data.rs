@@ -78,6 +78,7 @@ impl Data {
                     if let Renamed::To(to) = &renamed {
                         let command = RenameVolume { from: entry.name.clone(), to: to.clone() };
                         actions.push(Action::Apply(Box::new(Command::RenameVolume(command))));
+                        self.volume = Some(to.clone());
                     }
                     if renamed != Renamed::Typing {
                         self.renaming_volume = None;
