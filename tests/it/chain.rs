@@ -105,11 +105,7 @@ fn undo_and_redo_restore_the_project_and_its_data() {
 fn a_volume_is_renamed_wherever_it_is_shown() {
     let folder = project();
     let at = folder.path();
-    for line in [
-        "scalar set p.petro impedance --interval 1,inf,sand,0.5",
-        "raw p.petro --volume impedance",
-        "scene add p.petro front --cut nearest --technique occlusion",
-    ] {
+    for line in ["scalar set p.petro impedance --interval 1,inf,sand,0.5", "raw p.petro --volume impedance"] {
         run_in(at, line).done();
     }
     run_in(at, "volume rename p.petro impedance seismic").failed(&["seismic"]);
@@ -118,8 +114,8 @@ fn a_volume_is_renamed_wherever_it_is_shown() {
     let text = fs::read_to_string(at.join("p.petro/project.toml")).unwrap();
     let state: toml::Value = toml::from_str(&text).unwrap();
     let named = |value: &toml::Value| value.to_string().matches("\"Z\"").count();
-    assert_eq!((named(&state["volumes"]), named(&state["style"]), named(&state["scenes"])), (1, 2, 1), "{text}");
-    run_in(at, "render p.petro a.png --size 60x40 --samples 1 --scene front").done();
+    assert_eq!((named(&state["volumes"]), named(&state["style"])), (1, 2), "{text}");
+    run_in(at, "render p.petro a.png --size 60x40 --samples 1 --blend 0.5").done();
     run_in(at, "export p.petro z.sgy --volume Z").done();
 }
 

@@ -5,7 +5,7 @@ use super::driven::{Driven, click, document, open, state, wait};
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use formats::SurfaceKind;
-use project::command::{AddWell, Command, PickFault};
+use project::command::{AddScene, AddWell, Command, PickFault};
 
 fn type_path(harness: &mut Driven, path: &std::path::Path) {
     harness.get_by_label("File").focus();
@@ -57,6 +57,8 @@ fn a_volume_is_renamed_and_written_from_the_window() {
     click_last(&mut harness, "Cut-outs");
     click(&mut harness, "Data");
     let shown = |harness: &Driven| state(harness).session.as_ref().unwrap().view.scene.media.cut_outs[0].volume.clone();
+    let scene = state(&harness).session.as_ref().unwrap().view.scene.clone();
+    applied(&mut harness, &Command::AddScene(AddScene { name: "front".into(), scene }));
     click_last(&mut harness, "seismic");
     click_last(&mut harness, "Rename");
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
@@ -65,6 +67,7 @@ fn a_volume_is_renamed_and_written_from_the_window() {
     harness.key_press(Key::Enter);
     wait(&mut harness, "it has its name", |harness| document(harness).volumes[0].name == "Full stack");
     assert_eq!(shown(&harness), "Full stack");
+    assert_eq!(document(&harness).scenes[0].scene.media.cut_outs[0].volume, "Full stack");
     wait(&mut harness, "it is drawn", |harness| harness.state().as_ref().unwrap().is_settled());
     assert!(state(&harness).notices.iter().all(|notice| !notice.failed), "{:?}", state(&harness).notices);
     click(&mut harness, "Undo");
