@@ -1,11 +1,12 @@
 //! The list of everything in the project: shown and hidden, renamed, written for other programs, by labels.
 
-use super::command::{applied, choose, click_last};
+use super::command::{act, applied, choose, click_last};
 use super::driven::{Driven, click, document, open, state, wait};
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use formats::SurfaceKind;
 use project::command::{AddScene, AddWell, Command, PickFault};
+use state::Action;
 
 fn type_path(harness: &mut Driven, path: &std::path::Path) {
     harness.get_by_label("File").focus();
@@ -55,10 +56,12 @@ fn a_volume_is_renamed_and_written_from_the_window() {
     let mut harness = open(folder.path());
     click(&mut harness, "Volume display");
     click_last(&mut harness, "Cut-outs");
-    click(&mut harness, "Data");
     let shown = |harness: &Driven| state(harness).session.as_ref().unwrap().view.scene.media.cut_outs[0].volume.clone();
     let scene = state(&harness).session.as_ref().unwrap().view.scene.clone();
-    applied(&mut harness, &Command::AddScene(AddScene { name: "front".into(), scene }));
+    let add = Command::AddScene(AddScene { name: "front".into(), scene });
+    act(&mut harness, Action::Apply(Box::new(add)));
+    wait(&mut harness, "the scene is saved", |harness| document(harness).scenes.len() == 1);
+    click(&mut harness, "Data");
     click_last(&mut harness, "seismic");
     click_last(&mut harness, "Rename");
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
