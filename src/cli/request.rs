@@ -20,8 +20,8 @@ use pictures::Device;
 use pictures::figures::FigureFormat;
 use pictures::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use project::command::{
-    AddNote, AddTexture, Command, Extract, LinkVolume, RemoveNote, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer,
-    SetLayer, SetParameterization, SetScalar, SetVelocity,
+    AddNote, AddTexture, Command, Extract, LinkVolume, RemoveNote, RemoveScalar, RemoveScene, RemoveVolume,
+    RenameVolume, ResetLayer, SetLayer, SetParameterization, SetScalar, SetVelocity,
 };
 use project::document::{NoteEntry, Polarity};
 use project::memory_budget;
@@ -525,6 +525,9 @@ fn volume(action: VolumeAction) -> Request {
         VolumeAction::Link { project, url, name } => {
             let link = LinkVolume { url, name, polarity: Polarity::default() };
             Request::Import { project, command: Command::LinkVolume(link) }
+        }
+        VolumeAction::Rename { project, from, to } => {
+            Request::Change { project, command: Command::RenameVolume(RenameVolume { from, to }) }
         }
         VolumeAction::Remove { project, name } => {
             Request::Change { project, command: Command::RemoveVolume(RemoveVolume { name }) }

@@ -75,6 +75,7 @@ fn undo_and_redo_restore_the_project_and_its_data() {
         "raw p.petro --map grey",
         "scene add p.petro front --azimuth 10 --cut nearest",
         "velocity p.petro 2500",
+        "volume rename p.petro seismic Stack",
     ] {
         run_in(at, change).done();
         states.push(state(at));
@@ -97,6 +98,25 @@ fn undo_and_redo_restore_the_project_and_its_data() {
     run_in(at, "undo p.petro").failed(&["nothing to undo"]);
     assert_eq!(&state(at), states.last().unwrap());
     run_in(at, "horizon show p.petro B").done();
+}
+
+/// What shows a volume shows it under its new name.
+#[test]
+fn a_volume_is_renamed_wherever_it_is_shown() {
+    let folder = project();
+    let at = folder.path();
+    for line in ["scalar set p.petro impedance --interval 1,inf,sand,0.5", "raw p.petro --volume impedance"] {
+        run_in(at, line).done();
+    }
+    run_in(at, "volume rename p.petro impedance seismic").failed(&["seismic"]);
+    run_in(at, "volume rename p.petro nothing Z").failed(&["it has: seismic, impedance"]);
+    run_in(at, "volume rename p.petro impedance Z").done();
+    let text = fs::read_to_string(at.join("p.petro/project.toml")).unwrap();
+    let state: toml::Value = toml::from_str(&text).unwrap();
+    let named = |value: &toml::Value| value.to_string().matches("\"Z\"").count();
+    assert_eq!((named(&state["volumes"]), named(&state["style"])), (1, 2), "{text}");
+    run_in(at, "render p.petro a.png --size 60x40 --samples 1 --blend 0.5").done();
+    run_in(at, "export p.petro z.sgy --volume Z").done();
 }
 
 #[test]

@@ -1,8 +1,10 @@
-//! DXF drawings in ASCII: surfaces of 3DFACE, lines of POLYLINE, LWPOLYLINE and LINE, single POINTs.
+//! DXF drawings in ASCII: surfaces of 3DFACE and of meshes, lines of POLYLINE, LWPOLYLINE and LINE, single POINTs.
 //!
 //! The file is pairs of lines, a group code and its value. An entity begins with code 0; its layer is code 8, the
 //! coordinates of its n-th corner are codes 10 + n, 20 + n, 30 + n. A POLYLINE is followed by a VERTEX for each place
-//! and a SEQEND. Each layer is one surface: its faces a mesh, or its lines sticks. Drawings hold elevations as a rule,
+//! and a SEQEND. Its flags (code 70) may make it a mesh: of m by n places (16; codes 71 and 72), or of places and then
+//! faces, VERTEXes that hold numbers of places (64; codes 71 to 74, negative beside an edge that is not drawn). Each
+//! layer is one surface: its faces a mesh, or its lines sticks. Drawings hold elevations as a rule,
 //! but nothing in the file says so.
 
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
@@ -23,8 +25,17 @@ pub(super) const CODEC: Codec = Codec {
     write_fault: None,
 };
 
-/// The flags of a POLYLINE that is not a line but a mesh.
-const MESH_FLAGS: u32 = 16 | 64;
+/// The flag of a POLYLINE that is a mesh of rows and columns, and those of one that is closed along them.
+const GRID: u32 = 16;
+const CLOSED_ROWS: u32 = 1;
+const CLOSED_COLUMNS: u32 = 32;
+/// The flag of a POLYLINE that is a mesh of faces.
+const FACES: u32 = 64;
+/// The flag of a VERTEX that controls a smooth mesh and is no place of it.
+const CONTROL: u32 = 16;
+/// Flags of a VERTEX that is a place of a mesh; the second alone makes it a face.
+const PLACE: u32 = 64;
+const PART_OF_FACES: u32 = 128;
 
 fn detect(source: &SourceFile) -> Option<String> {
     let start = String::from_utf8_lossy(&source.bytes[..source.bytes.len().min(4000)]).into_owned();
@@ -39,8 +50,12 @@ fn detect(source: &SourceFile) -> Option<String> {
 #[derive(Default)]
 struct Entity<'a> {
     kind: &'a str,
+    /// Number of its line, from 1.
+    line: usize,
     layer: &'a str,
     flags: u32,
+    /// Codes 71 to 74: counts of a mesh, or numbers of places.
+    numbers: [i64; 4],
     elevation: f64,
     /// Coordinates of the corners by axis; NaN = not given.
     corners: [[f64; 3]; 4],
@@ -82,8 +97,46 @@ struct Drawing {
     layers: Vec<Layer>,
     /// Number of the line that places belong to.
     line: f64,
-    /// Whether a POLYLINE is open, and its layer.
-    polyline: Option<String>,
+    /// The POLYLINE that is open.
+    polyline: Option<Polyline>,
+}
+
+/// A POLYLINE whose places are being read.
+struct Polyline {
+    layer: String,
+    flags: u32,
+    /// Rows and columns of a mesh.
+    counts: [usize; 2],
+    /// Places of a mesh.
+    places: Vec<DVec3>,
+}
+
+impl Polyline {
+    /// Corners of the faces of a mesh of rows and columns; none if it has another count of places.
+    fn faces(&self) -> Option<Vec<[DVec3; 4]>> {
+        let [rows, columns] = self.counts;
+        if rows < 2 || columns < 2 || rows.checked_mul(columns) != Some(self.places.len()) {
+            return None;
+        }
+        let last = |count: usize, closed: u32| if self.flags & closed != 0 { count } else { count - 1 };
+        let place = |row: usize, column: usize| self.places[row % rows * columns + column % columns];
+        let face = |row: usize, column: usize| {
+            [place(row, column), place(row + 1, column), place(row + 1, column + 1), place(row, column + 1)]
+        };
+        let columns_of = |row: usize| (0..last(columns, CLOSED_COLUMNS)).map(move |column| (row, column));
+        Some((0..last(rows, CLOSED_ROWS)).flat_map(columns_of).map(|(row, column)| face(row, column)).collect())
+    }
+
+    /// Corners of a face whose places have these numbers, from 1; none if it has fewer than three or unknown ones.
+    fn face(&self, numbers: [i64; 4]) -> Option<[DVec3; 4]> {
+        let place = |number: i64| {
+            let index = usize::try_from(number.unsigned_abs()).ok()?.checked_sub(1)?;
+            self.places.get(index).copied()
+        };
+        let [a, b, c] = [numbers[0], numbers[1], numbers[2]].map(place);
+        let d = if numbers[3] == 0 { c } else { place(numbers[3]) };
+        Some([a?, b?, c?, d?])
+    }
 }
 
 impl Drawing {
@@ -105,7 +158,7 @@ impl Drawing {
     fn add(&mut self, source: &SourceFile, entity: &Entity<'_>) -> Result<(), FormatError> {
         let corners = entity.corners.map(DVec3::from_array);
         let given = corners.iter().take_while(|corner| corner.is_finite()).count();
-        let wrong = |expected: &str| Err(source.syntax(0, expected, entity.kind));
+        let wrong = |expected: &str| Err(source.syntax(entity.line, expected, entity.kind));
         match entity.kind {
             "3DFACE" => match given {
                 4 => self.layer(entity.layer).face(corners),
@@ -113,20 +166,26 @@ impl Drawing {
                 _ => return wrong("a 3DFACE with three or four corners"),
             },
             "POLYLINE" => {
-                if entity.flags & MESH_FLAGS != 0 {
-                    return wrong("lines or 3DFACE (explode the meshes of the drawing)");
-                }
                 self.line += 1.0;
-                self.polyline = Some(entity.layer.to_owned());
+                self.polyline = Some(Polyline {
+                    layer: entity.layer.to_owned(),
+                    flags: entity.flags,
+                    counts: [0, 1].map(|n| usize::try_from(entity.numbers[n]).unwrap_or(0)),
+                    places: Vec::new(),
+                });
             }
-            "VERTEX" => {
-                let layer = self.polyline.clone().unwrap_or_else(|| entity.layer.to_owned());
-                match given {
-                    0 => return wrong("a VERTEX with X, Y and Z"),
-                    _ => self.place(&layer, corners[0]),
+            "VERTEX" => return self.add_vertex(source, entity, (given > 0).then_some(corners[0])),
+            "SEQEND" => {
+                if let Some(polyline) = self.polyline.take().filter(|polyline| polyline.flags & GRID != 0) {
+                    let Some(faces) = polyline.faces() else {
+                        return wrong(
+                            "as many VERTEXes as the mesh has rows times columns (codes 71 and 72) before it",
+                        );
+                    };
+                    let layer = self.layer(&polyline.layer);
+                    faces.into_iter().for_each(|face| layer.face(face));
                 }
             }
-            "SEQEND" => self.polyline = None,
             "LWPOLYLINE" => {
                 self.line += 1.0;
                 for [x, y] in &entity.places {
@@ -138,6 +197,32 @@ impl Drawing {
                 corners[..given].iter().for_each(|corner| self.place(entity.layer, *corner));
             }
             _ => {}
+        }
+        Ok(())
+    }
+}
+
+impl Drawing {
+    /// A place of a line or mesh, or a face of a mesh.
+    fn add_vertex(&mut self, source: &SourceFile, entity: &Entity<'_>, at: Option<DVec3>) -> Result<(), FormatError> {
+        let wrong = |expected: &str| Err(source.syntax(entity.line, expected, entity.kind));
+        let mesh = self.polyline.as_mut().filter(|polyline| polyline.flags & (GRID | FACES) != 0);
+        let is_face = entity.flags & (PLACE | PART_OF_FACES) == PART_OF_FACES;
+        match (mesh, at) {
+            (Some(mesh), _) if mesh.flags & FACES != 0 && is_face => {
+                let Some(face) = mesh.face(entity.numbers) else {
+                    return wrong("a face with three or four places of its mesh (codes 71 to 74)");
+                };
+                let layer = mesh.layer.clone();
+                self.layer(&layer).face(face);
+            }
+            (_, None) => return wrong("a VERTEX with X, Y and Z"),
+            (Some(mesh), Some(at)) if entity.flags & CONTROL == 0 => mesh.places.push(at),
+            (Some(_), Some(_)) => {}
+            (None, Some(at)) => {
+                let layer = self.polyline.as_ref().map_or(entity.layer, |polyline| polyline.layer.as_str()).to_owned();
+                self.place(&layer, at);
+            }
         }
         Ok(())
     }
@@ -162,10 +247,11 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         match code {
             0 => {
                 drawing.add(source, &entity)?;
-                entity = Entity { kind: value, corners: [[f64::NAN; 3]; 4], ..Entity::default() };
+                entity = Entity { kind: value, line: number + 1, corners: [[f64::NAN; 3]; 4], ..Entity::default() };
             }
             8 => entity.layer = value,
             70 => entity.flags = value.parse().unwrap_or(0),
+            71..=74 => entity.numbers[code as usize - 71] = value.parse().unwrap_or(0),
             38 => entity.elevation = coordinate()?,
             10 if entity.kind == "LWPOLYLINE" => entity.places.push([coordinate()?, f64::NAN]),
             20 if entity.kind == "LWPOLYLINE" => {

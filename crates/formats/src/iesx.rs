@@ -48,12 +48,12 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
             surfaces.push((begin(rest), Vec::new()));
             continue;
         }
-        if is_echo(words) {
-            continue;
-        }
         let Some((_, points)) = surfaces.last_mut() else {
             return Err(source.syntax(line.number, "PROFILE before rows", line.text));
         };
+        if !points.is_empty() && is_echo(words) {
+            continue;
+        }
         points.push(point(source, Line { text: words, ..line }, line.text.len() - words.len())?);
     }
     Ok(surfaces.into_iter().map(|(s, points)| RawSurface { shape: RawShape::Points(points), ..s }).collect())

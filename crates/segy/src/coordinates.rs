@@ -4,11 +4,12 @@
 use glam::DVec2;
 
 use super::SegyOptions;
+use super::angles::{Angles, look_like_degrees, note_unknown_units};
 use super::anywhere::coordinate_pairs;
 use super::columns::{Columns, HeaderColumn, HeaderLayout};
 use super::error::SegyProblem;
 use super::header::{Field, at};
-use super::info::{Findings, GeometrySummary, LengthUnit};
+use super::info::{Findings, GeometrySummary, LengthUnit, in_figures};
 use super::lines::LineLattice;
 use super::number_type::NumberType;
 use super::place::{FittedPlace, MAX_RESIDUAL_BINS};
@@ -18,13 +19,16 @@ use survey::geometry::LineAxis;
 use survey::remedy::{Note, Remedy, Setting};
 
 /// Known positions of X and Y in the trace header: CDP (the standard's), source, receiver.
-const HOMES: [[u16; 2]; 3] = [[at::CDP_X, at::CDP_Y], [73, 77], [81, 85]];
+pub(super) const HOMES: [[u16; 2]; 3] = [[at::CDP_X, at::CDP_Y], [73, 77], [81, 85]];
 
 /// Bin size where a file has no coordinates, m.
 const ASSUMED_BIN_M: f64 = 25.0;
 
 /// Sides of bins that surveys have, m.
 const BIN_M: std::ops::RangeInclusive<f64> = 1.0..=1000.0;
+
+/// Sides of most bins, m.
+const USUAL_BIN_M: std::ops::RangeInclusive<f64> = 5.0..=60.0;
 
 /// Projected coordinates stay below this, in m or ft.
 const MAX_COORDINATE: f64 = 1e8;
@@ -182,6 +186,20 @@ impl<'a> Coordinates<'a> {
             .fold(0.0, |most, at| at.abs().max_element().max(most))
     }
 
+    /// The scalar that would make bins of these sides, in metres as they are read, those of a survey: a power of ten,
+    /// where the numbers are integers.
+    fn better_scalar(&self, sides: [f64; 2]) -> Option<String> {
+        let [now, same] = self.scalar.range();
+        let is_integer = matches!(self.number_type, NumberType::I32 | NumberType::I16 | NumberType::U16);
+        let unscaled = sides.map(|side| side / scaled(1, now));
+        let likely = [-10, -100, -1000, -10_000, 1, 10, 100].into_iter().find(|scalar| {
+            let is_usual = |side: f64| USUAL_BIN_M.contains(&(side * scaled(1, *scalar)));
+            is_integer && now == same && unscaled.into_iter().all(is_usual)
+        })?;
+        let [a, b] = unscaled.map(|side| in_figures(side * scaled(1, likely)));
+        Some(format!("with a coordinate scalar of {likely} in place of {now} they would be {a} by {b} m"))
+    }
+
     /// Whether X or Y varies.
     fn vary(&self) -> bool {
         self.x.constant().is_none() || self.y.constant().is_none() || self.number_type == NumberType::F64
@@ -203,6 +221,12 @@ impl<'a> Coordinates<'a> {
 /// Byte of the coordinate scalar.
 fn scalar_byte(options: &SegyOptions) -> u16 {
     options.scalar_byte.unwrap_or(at::COORDINATE_SCALAR)
+}
+
+/// The smallest and the largest scalar of X and Y: the file's, or the stated one.
+pub(super) fn scalar_range(columns: &Columns, options: &SegyOptions) -> [i32; 2] {
+    let stated = options.coordinate_scalar.map(|scalar| [i32::from(scalar); 2]);
+    stated.unwrap_or_else(|| columns.get(Field::I16(scalar_byte(options))).range)
 }
 
 /// Whether X or Y is known to be stored at a byte.
@@ -292,8 +316,13 @@ pub(super) fn needs_any_place(
     columns: &Columns,
     options: &SegyOptions,
 ) -> bool {
+    is_open(options) && lattice.places() > 1 && !confirm(lattice, lines, columns, options)
+}
+
+/// Whether X and Y, at other bytes than the lines, leave no doubt that this is their lattice.
+pub(super) fn confirm(lattice: &LineLattice, lines: [u16; 2], columns: &Columns, options: &SegyOptions) -> bool {
     let is_sure = |(coordinates, fit)| rank(&coordinates, &fit, lattice) == SURE;
-    is_open(options) && lattice.places() > 1 && !locate(lattice, lines, columns, options).is_some_and(is_sure)
+    locate(lattice, lines, columns, options).is_some_and(is_sure)
 }
 
 /// Whether the user says where X and Y are.
@@ -353,12 +382,8 @@ impl CoordinatePlace {
         };
         let units = columns.get(Field::I16(at::COORDINATE_UNIT));
         if options.coordinate_unit.is_none() {
-            let angles = match units.constant() {
-                Some(unit) => Angles::of(unit),
-                None => units.iter().find_map(Angles::of),
-            };
-            match angles {
-                Some(angles) => angles.must_be_lengths(coordinates.largest(), findings)?,
+            match Angles::of(units) {
+                Some(angles) => angles.must_be_lengths(coordinates.largest(), &fit, findings)?,
                 None => note_unknown_units(units, findings),
             }
         }
@@ -418,45 +443,7 @@ impl CoordinatePlace {
     }
 }
 
-/// X and Y that the file calls angles.
-struct Angles {
-    /// Byte 89.
-    code: i32,
-    unit: &'static str,
-    /// The largest number that is an angle.
-    largest: f64,
-}
-
-impl Angles {
-    /// What a code at byte 89 means; none if it is no unit of angles.
-    fn of(code: i32) -> Option<Self> {
-        let (unit, largest) = match code {
-            2 => ("seconds of arc", 1_296_000.0),
-            3 => ("decimal degrees", 360.0),
-            // Written as DDDMMSS.
-            4 => ("degrees, minutes and seconds", 3_600_000.0),
-            _ => return None,
-        };
-        Some(Self { code, unit, largest })
-    }
-
-    /// Refuses X and Y unless `reach`, the largest of them, is none of an angle.
-    fn must_be_lengths(&self, reach: f64, findings: &mut Findings) -> Result<(), SegyProblem> {
-        let Self { code, unit, largest } = *self;
-        if reach <= largest {
-            return Err(SegyProblem::AngularCoordinates { code: code as i16, unit });
-        }
-        findings.warning(Note::unless(
-            format!(
-                "byte 89 is {code}, {unit}, but X and Y reach {reach:.0}, which no angle does; they are taken as lengths"
-            ),
-            Setting::Bin.stated(),
-        ));
-        Ok(())
-    }
-}
-
-/// Reasons to doubt that these are the coordinates; what the user states is not doubted.
+/// Reasons to doubt that these are the coordinates. Of bytes that the user states, the size of the bins alone is doubted.
 fn note_doubts(
     (coordinates, fit): (&Coordinates<'_>, &FittedPlace),
     lattice: &LineLattice,
@@ -465,10 +452,10 @@ fn note_doubts(
     options: &SegyOptions,
     findings: &mut Findings,
 ) {
+    note_bins(coordinates, fit, unit, options, findings);
     if is_stated(options) {
         return;
     }
-    let others = || Remedy::all([Setting::XByte.stated(), Setting::YByte.stated()]);
     let [x, y] = coordinates.bytes;
     let named = columns.layout().named.coordinates;
     if named != Some(coordinates.bytes) && !HOMES.contains(&coordinates.bytes) && coordinates.bytes != at::EXTENDED_CDP
@@ -477,23 +464,13 @@ fn note_doubts(
             format!(
                 "X and Y are at bytes {x} and {y}, where no convention has them: they alone fit the lattice of lines"
             ),
-            others(),
+            other_bytes(),
         ));
     }
     if let Some(doubt) = coordinates.doubt(lattice, fit) {
         findings.warning(Note::unless(
             format!("at bytes {x} and {y} {doubt}: the place and the size of the survey are doubtful"),
-            Remedy::any([others(), Setting::Bin.stated()]),
-        ));
-    }
-    if !has_plausible_bins(fit, unit.metres()) {
-        let [inline, crossline] = [fit.inline_vector, fit.crossline_vector].map(|side| side.length() * unit.metres());
-        findings.warning(Note::unless(
-            format!(
-                "X and Y at bytes {x} and {y} make bins of {inline:.2} by {crossline:.2} m, which no survey has: other \
-                 bytes may hold them, or another scalar or unit may be meant"
-            ),
-            Remedy::any([others(), Setting::CoordinateUnit.stated(), Setting::Bin.stated()]),
+            Remedy::any([other_bytes(), Setting::Bin.stated()]),
         ));
     }
     if let Some([named_x, named_y]) = named.filter(|named| *named != coordinates.bytes) {
@@ -502,18 +479,41 @@ fn note_doubts(
                 "the text header names bytes {named_x} and {named_y} for X and Y, which make no lattice there; bytes {x} \
                  and {y} do and are taken"
             ),
-            others(),
+            other_bytes(),
         ));
     }
 }
 
-/// Codes that the standard does not have.
-fn note_unknown_units(codes: &HeaderColumn, findings: &mut Findings) {
-    if let Some(code) = codes.iter().find(|code| !(0..=1).contains(code)) {
-        findings.warning(format!(
-            "byte 89 holds {code}, which is no unit of coordinates (1 is length); X and Y are taken as lengths"
-        ));
+fn other_bytes() -> Remedy {
+    Remedy::all([Setting::XByte.stated(), Setting::YByte.stated()])
+}
+
+/// Bins that no survey has, and what would make them plausible.
+fn note_bins(
+    coordinates: &Coordinates<'_>,
+    fit: &FittedPlace,
+    unit: LengthUnit,
+    options: &SegyOptions,
+    findings: &mut Findings,
+) {
+    if has_plausible_bins(fit, unit.metres()) {
+        return;
     }
+    let [x, y] = coordinates.bytes;
+    let sides = [fit.inline_vector, fit.crossline_vector].map(|side| side.length() * unit.metres());
+    let [inline, crossline] = sides.map(in_figures);
+    let likely = if look_like_degrees(coordinates.largest(), fit) {
+        "X and Y may be degrees, which have to be projected first".to_owned()
+    } else {
+        coordinates.better_scalar(sides).unwrap_or_else(|| {
+            "other bytes may hold them, or another coordinate scalar or unit may be meant".to_owned()
+        })
+    };
+    let bytes = (!is_stated(options)).then(other_bytes);
+    findings.warning(Note::unless(
+        format!("X and Y at bytes {x} and {y} make bins of {inline} by {crossline} m, which no survey has: {likely}"),
+        Remedy::any(bytes.into_iter().chain([Setting::CoordinateUnit.stated(), Setting::Bin.stated()])),
+    ));
 }
 
 fn note_fit(
@@ -525,14 +525,16 @@ fn note_fit(
 ) {
     let is_found = options.coordinate_type.is_none();
     let [low, high] = coordinates.scalar.range();
+    let is_of_file = matches!(coordinates.scalar, Scalar::OfTrace(_));
+    let byte = scalar_byte(options);
     let scalar = coordinates.storage();
     findings.evidence(format!(
-        "place: X at byte {} and Y at byte {}, {scalar}; bins of {:.2} by {:.2} {}; X and Y of {} traces lie \
+        "place: X at byte {} and Y at byte {}, {scalar}; bins of {} by {} {}; X and Y of {} traces lie \
          within {:.3} bin of the lattice (root mean square)",
         coordinates.bytes[0],
         coordinates.bytes[1],
-        fit.inline_vector.length(),
-        fit.crossline_vector.length(),
+        in_figures(fit.inline_vector.length()),
+        in_figures(fit.crossline_vector.length()),
         unit.symbol(),
         fit.traces,
         fit.rms_bins
@@ -549,10 +551,11 @@ fn note_fit(
         ));
     } else if !is_float && low != high {
         findings.warning(format!(
-            "the coordinate scalar (byte 71) differs between traces, {low} to {high}; each trace's own is used"
+            "the coordinate scalar (byte {byte}) differs between traces, {low} to {high}; each trace's own is used"
         ));
-    } else if !is_float && !matches!(low.abs(), 0 | 1 | 10 | 100 | 1000 | 10_000) {
-        findings.warning(format!("the coordinate scalar (byte 71) is {low}, which is no power of ten; it is applied"));
+    } else if !is_float && is_of_file && !matches!(low.abs(), 0 | 1 | 10 | 100 | 1000 | 10_000) {
+        findings
+            .warning(format!("the coordinate scalar (byte {byte}) is {low}, which is no power of ten; it is applied"));
     }
     if fit.outliers > 0 {
         findings.warning(format!(

@@ -16,7 +16,7 @@ use super::anywhere::{MAX_LINE_NUMBER, Sweep};
 use super::bins::{self, Bins};
 use super::candidate::{Candidate, Verdict};
 use super::columns::{Columns, HeaderColumn, HeaderLayout};
-use super::coordinates::{coordinate_fields, locate, varying as varying_coordinates};
+use super::coordinates::{HOMES, confirm, coordinate_fields, locate, varying as varying_coordinates};
 use super::error::SegyProblem;
 use super::header::{Field, NO_INTEGER, at};
 use super::info::Findings;
@@ -388,7 +388,9 @@ impl Search<'_> {
 
     /// No convention fits: other fields, or the reason why the file is no volume.
     fn elsewhere(&self, candidates: Vec<Candidate>, findings: &mut Findings) -> Result<Detected, SegyProblem> {
-        refuse::shot_gathers(self.columns)?;
+        if let Err(gathers) = refuse::shot_gathers(self.columns) {
+            return self.records_as_lines(candidates, findings).unwrap_or(Err(gathers));
+        }
         let varying: Vec<u16> =
             OTHER_LINE_FIELDS.into_iter().filter(|&byte| self.column(byte).constant().is_none()).collect();
         let inline = self.options.inline_byte;
@@ -413,6 +415,7 @@ impl Search<'_> {
             Some(sweep) if fitting.is_empty() => self.anywhere(sweep),
             _ => fitting,
         };
+        let fitting = if fitting.is_empty() { self.in_place_of_coordinates() } else { fitting };
         let is_contradicted = |candidate: &Candidate| candidate.verdict == Verdict::ContradictsCoordinates;
         if self.swept.is_some() && candidates.iter().any(is_contradicted) {
             // X and Y that no convention has may agree with them.
@@ -469,6 +472,39 @@ impl Search<'_> {
             }
             _ => Err(SegyProblem::AmbiguousLines { readings }),
         }
+    }
+
+    /// Line numbers where X and Y are by convention, whose lattice other fields confirm without a doubt: some writers
+    /// exchange the two.
+    fn in_place_of_coordinates(&self) -> Vec<Candidate> {
+        let options = self.options;
+        let is_open = options.inline_byte.or(options.crossline_byte).is_none() && options.line_type.is_none();
+        let pairs = HOMES.into_iter().filter(|_| is_open && self.swept == Some(Sweep::FourBytes));
+        pairs.filter_map(|pair| self.confirmed(pair, MIN_FILL_UNKNOWN)).collect()
+    }
+
+    /// Field records and their traces as lines, where X and Y leave no doubt that they are: those of shots are no lattice.
+    fn records_as_lines(
+        &self,
+        candidates: Vec<Candidate>,
+        findings: &mut Findings,
+    ) -> Option<Result<Detected, SegyProblem>> {
+        let columns = (self.every_field)(Sweep::FourBytes).ok()?;
+        let search = Search { columns: &columns, swept: Some(Sweep::FourBytes), ..*self };
+        let chosen = search.confirmed([at::FIELD_RECORD, at::TRACE_IN_RECORD], MIN_FILL_UNCONFIRMED)?;
+        let mut detected = search.choose(&chosen, candidates, findings);
+        if let Ok(detected) = &mut detected {
+            detected.columns = Some(Box::new(columns));
+        }
+        Some(detected)
+    }
+
+    /// A pair of bytes as line numbers, where X and Y leave no doubt that they are.
+    fn confirmed(&self, pair: [u16; 2], min_fill: f64) -> Option<Candidate> {
+        let candidate = Some(self.evaluate(pair, NumberType::I32, "", min_fill)).filter(Candidate::fits)?;
+        let [inline, crossline] = self.numbers(&candidate);
+        let lattice = LineLattice::build(&inline, &crossline, self.options.duplicates.unwrap_or_default()).ok()?;
+        confirm(&lattice, pair, self.columns, self.options).then_some(candidate)
     }
 
     /// Any two fields whose lattice X and Y confirm; those that count traces only where nothing else is found. Without X

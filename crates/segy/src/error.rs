@@ -186,8 +186,8 @@ pub enum SegyProblem {
     },
     /// Coordinates are angles.
     #[error(
-        "X and Y are in {unit} (byte 89 is {code}), not in a length; project them to metres or feet first, or \
-         state a bin size to place the survey without them"
+        "X and Y are in {unit} (byte 89 is {code}), not in a length; project them to metres or feet first, \
+         or state a bin size to place the survey without them, or their unit if they are lengths after all"
     )]
     AngularCoordinates {
         /// Byte 89.
@@ -308,7 +308,9 @@ impl SegyProblem {
             Self::NotSegy { .. } => Setting::SampleFormat.stated(),
             Self::NoInterval => Setting::Interval.stated(),
             Self::BadSetting { setting, .. } => setting.stated(),
-            Self::AngularCoordinates { .. } => Setting::Bin.stated(),
+            Self::AngularCoordinates { .. } => {
+                Remedy::any([Setting::Bin.stated(), Setting::CoordinateUnit.stated_as("m or ft")])
+            }
             Self::TwoDimensional { .. } | Self::NoLineNumbers { .. } | Self::StatedBytes { .. } => bytes(),
             Self::PreStack { may_repeat: true, .. } => Setting::Duplicates.stated_as("first or last"),
             Self::NoLattice { .. } => Remedy::any([bytes(), Setting::LineType.stated()]),

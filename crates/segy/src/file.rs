@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::anywhere::Sweep;
 use super::bytes::{Bytes, Stamp};
 use super::columns::{Columns, HeaderColumn, HeaderLayout};
-use super::coordinates::{CoordinatePlace, needs_any_place};
+use super::coordinates::{CoordinatePlace, needs_any_place, scalar_range};
 use super::detect::{Detected, detect, fields};
 use super::error::{SegyError, SegyProblem};
 use super::frame::FileLayout;
@@ -275,7 +275,7 @@ fn understand(path: &Path, bytes: Bytes, options: &SegyOptions, progress: &Progr
             y: place.bytes.map(|bytes| bytes[1]),
         },
         coordinate_unit: unit,
-        coordinate_scalar: columns.get(Field::I16(at::COORDINATE_SCALAR)).range,
+        coordinate_scalar: scalar_range(&columns, options),
         geometry: place.summary,
         corners: corners(&lattice.inlines, &lattice.crosslines, &place.summary),
         revision: format!("{major}.{minor}"),

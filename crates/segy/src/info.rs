@@ -13,6 +13,15 @@ use survey::remedy::Note;
 /// Metres in an international foot.
 pub(super) const METRES_PER_FOOT: f64 = 0.3048;
 
+/// A length or an area in words: two decimals, or three figures where it is less than a tenth.
+pub(super) fn in_figures(value: f64) -> String {
+    if value >= 0.1 || value <= 0.0 || !value.is_finite() {
+        return format!("{value:.2}");
+    }
+    let decimals = (2.0 - value.log10().floor()).min(12.0) as usize;
+    format!("{value:.decimals$}").trim_end_matches('0').to_owned()
+}
+
 /// Unit of the vertical axis in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FileUnit {

@@ -34,6 +34,7 @@
 //! # Ok::<(), segy::SegyError>(())
 //! ```
 
+mod angles;
 mod anywhere;
 mod bins;
 mod block;

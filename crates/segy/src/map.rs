@@ -6,7 +6,7 @@
 use glam::{DMat2, DVec2};
 
 use super::file::SegyFile;
-use super::info::SegyInfo;
+use super::info::{SegyInfo, in_figures};
 
 /// Characters across and down, at most.
 const SIZE: [f64; 2] = [64.0, 24.0];
@@ -111,10 +111,11 @@ pub(super) fn place_in_words(info: &SegyInfo) -> Vec<String> {
     let bins = (info.inlines.count * info.crosslines.count - info.missing_traces) as f64;
     let area_km2 = a.perp_dot(b).abs() * unit.metres() * unit.metres() * bins / 1e6;
     let mut words = vec![format!(
-        "bins of {:.2} by {:.2} {} (between inlines, between crosslines), {area_km2:.2} km² with traces",
-        a.length(),
-        b.length(),
-        unit.symbol()
+        "bins of {} by {} {} (between inlines, between crosslines), {} km² with traces",
+        in_figures(a.length()),
+        in_figures(b.length()),
+        unit.symbol(),
+        in_figures(area_km2)
     )];
     words.push(format!(
         "crosslines count up towards {:.1}°, inlines towards {:.1}° (from north, clockwise): {} on the map",

@@ -272,7 +272,7 @@ fn unit(frame: &FileLayout, micro: f64, options: &SegyOptions, findings: &mut Fi
     let words = Words::find(frame.text.iter().chain(&frame.extended_text), micro / 1000.0);
     let plausibility = Plausibility::of(micro, frame.samples);
     let likely = plausibility.only(in_depth);
-    let unit = match &words.interval {
+    let unit = match &words.unit {
         Some((unit, quote)) => {
             findings.evidence(format!("vertical axis: {}, text header: \"{quote}\"", unit.description()));
             *unit
@@ -283,7 +283,7 @@ fn unit(frame: &FileLayout, micro: f64, options: &SegyOptions, findings: &mut Fi
     if unit != FileUnit::Milliseconds && unit != in_depth && frame.binary.measurement != 0 {
         findings.warning(Note::unless(
             format!(
-                "the text header gives the interval in {} and byte 3255 says {}; the text is followed",
+                "the text header gives the vertical axis in {} and byte 3255 says {}; the text is followed",
                 unit.symbol(),
                 in_depth.symbol()
             ),

@@ -27,8 +27,9 @@ pub(super) struct Said {
 /// The weightiest sentences of a textual header.
 #[derive(Debug, Default)]
 pub(super) struct Words {
-    /// A unit beside the number that is the sample interval.
-    pub interval: Option<(FileUnit, String)>,
+    /// The unit that is said to be that of the axis (`Z UNITS: FEET`), or stands beside the number that is the sample
+    /// interval.
+    pub unit: Option<(FileUnit, String)>,
     pub time: Option<Said>,
     pub depth: Option<Said>,
 }
@@ -36,6 +37,8 @@ pub(super) struct Words {
 /// Words beside TIME or DEPTH that make it the vertical axis.
 const AXIS: [&str; 12] =
     ["DOMAIN", "AXIS", "RANGE", "MIN", "MAX", "MINIMUM", "MAXIMUM", "SECTION", "STEP", "UNIT", "UNITS", "STRETCHED"];
+/// Words before UNIT that make it the unit of the axis.
+const OF_AXIS: [&str; 6] = ["VERTICAL", "Z", "DEPTH", "TIME", "SAMPLING", "INTERVAL"];
 /// Words before TIME or DEPTH that make it the domain of the result.
 const INTO: [&str; 3] = ["IN", "TO", "INTO"];
 /// What is measured in depth by those who acquire data.
@@ -77,24 +80,35 @@ impl Words {
         for line in lines {
             let upper = line.to_ascii_uppercase();
             let said: Vec<&str> = upper.split_whitespace().filter(|piece| !is_file_name(piece)).collect();
-            let words = words(&said.join(" "));
-            let words: Vec<&str> = words.iter().map(String::as_str).collect();
+            let said = said.join(" ");
+            // A template that offers both and was filled in says what is behind it.
+            let filled = said.split_once([':', '=']).filter(|(template, _)| offers_both(&as_strs(&words(template))));
+            let (said, is_answer) = filled.map_or((said.as_str(), false), |(_, answer)| (answer, true));
+            let words = words(said);
+            let words = as_strs(&words);
             let is_of_gear = words.iter().any(|word| GEAR.contains(word) || SPREAD.contains(word));
             for index in 0..words.len() {
                 let next = words.get(index + 1).copied().unwrap_or("");
-                if let (Ok(number), Some((unit, factor))) = (words[index].parse::<f64>(), unit_word(next))
-                    && (unit == FileUnit::Milliseconds || !is_of_gear)
-                    && (number * factor - interval).abs() < 1e-6 * interval
-                {
-                    contradicted |= found.interval.as_ref().is_some_and(|(other, _)| *other != unit);
-                    found.interval.get_or_insert((unit, line.clone()));
+                let Some((unit, factor)) = unit_word(next) else { continue };
+                let is_interval = words[index].parse::<f64>().is_ok_and(|number| {
+                    (unit == FileUnit::Milliseconds || !is_of_gear)
+                        && (number * factor - interval).abs() < 1e-6 * interval
+                });
+                let is_of_axis = matches!(words[index], "UNIT" | "UNITS")
+                    && !is_of_gear
+                    && OF_AXIS.contains(&beside(&words, index, -1));
+                if is_interval || is_of_axis {
+                    contradicted |= found.unit.as_ref().is_some_and(|(other, _)| *other != unit);
+                    found.unit.get_or_insert((unit, line.clone()));
                 }
             }
-            note(&mut found.time, time(&words), line);
-            note(&mut found.depth, depth(&words), line);
+            let is_only = |word: &str| is_answer && words.first() == Some(&word);
+            let answer = |word: &str| is_only(word).then_some(Weight::Axis);
+            note(&mut found.time, answer("TIME").or_else(|| time(&words)), line);
+            note(&mut found.depth, answer("DEPTH").or_else(|| depth(&words)), line);
         }
         if contradicted {
-            found.interval = None;
+            found.unit = None;
         }
         found
     }
@@ -106,6 +120,10 @@ fn note(best: &mut Option<Said>, weight: Option<Weight>, line: &str) {
     {
         *best = Some(Said { weight, quote: line.to_owned() });
     }
+}
+
+fn as_strs(words: &[String]) -> Vec<&str> {
+    words.iter().map(String::as_str).collect()
 }
 
 /// The words of a line; a number and its unit are two, also where nothing is between them (`4MS`).
@@ -239,6 +257,10 @@ mod tests {
             ("TARGET DEPTH 2500 M", [None, None]),
             ("TRACE START TIME/DEPTH", [None, None]),
             ("SAMPLE INTERVAL (TIME OR DEPTH)", [None, None]),
+            ("TRACE START TIME/DEPTH: 0", [None, None]),
+            // A template that was filled in.
+            ("TIME/DEPTH : DEPTH", [None, Some(Axis)]),
+            ("DOMAIN (TIME OR DEPTH) = TIME", [Some(Axis), None]),
             ("DATE 2011-01-01 TIME 12:00:00", [None, None]),
             ("/DATA/R2900_PSDM_FULL-T.SGY", [None, None]),
         ] {
@@ -255,13 +277,16 @@ mod tests {
             ("SAMPLE RATE: 0.004 S", FileUnit::Milliseconds),
             ("DEPTH STEP: 4.0m", FileUnit::Metres),
             ("STEP 4 FEET", FileUnit::Feet),
+            ("Z UNITS: FEET", FileUnit::Feet),
+            ("VERTICAL UNIT = METER", FileUnit::Metres),
+            ("SAMPLING UNITS (MS)", FileUnit::Milliseconds),
         ] {
             let words = Words::find([line.to_owned()].iter(), 4.0);
-            assert_eq!(words.interval.map(|(unit, _)| unit), Some(unit), "{line}");
+            assert_eq!(words.unit.map(|(unit, _)| unit), Some(unit), "{line}");
         }
-        for line in ["SOURCE DEPTH 4 M", "BIN SIZE 4 M"] {
-            assert!(Words::find([line.to_owned()].iter(), 4.0).interval.is_none(), "{line}");
+        for line in ["SOURCE DEPTH 4 M", "BIN SIZE 4 M", "XY UNITS: M", "UNITS M", "WATER DEPTH UNIT: M"] {
+            assert!(Words::find([line.to_owned()].iter(), 4.0).unit.is_none(), "{line}");
         }
-        assert!(Words::find(["4 MS".to_owned(), "4 M".to_owned()].iter(), 4.0).interval.is_none());
+        assert!(Words::find(["4 MS".to_owned(), "4 M".to_owned()].iter(), 4.0).unit.is_none());
     }
 }

@@ -1,7 +1,7 @@
 //! Actions, and the tasks for the workers that follow from them.
 
 use super::Appearance;
-use super::dialogue::{Dialogue, ExportForm, ShareForm, SurfaceForm};
+use super::dialogue::{DataForm, Dialogue, ExportForm, ShareForm};
 use super::notice::{Notice, Place};
 use super::picking::{PickingStep, PickingTask};
 use super::session::Snapshot;
@@ -57,8 +57,8 @@ pub enum Action {
     },
     /// Draw the page to a file.
     Export(Box<ExportForm>),
-    /// Write a horizon or fault for other programs.
-    ExportSurface(Box<SurfaceForm>),
+    /// Write a volume, a horizon or a fault for other programs.
+    ExportData(Box<DataForm>),
     /// Write the page or the model of the block.
     Share(Box<ShareForm>),
     /// Copy the picture to the clipboard.
@@ -142,8 +142,8 @@ pub enum Task {
     Picking(PickingTask),
     /// Draw the page to a file.
     Export(Box<ExportForm>),
-    /// Write a horizon or fault for other programs.
-    ExportSurface(Box<SurfaceForm>),
+    /// Write a volume, a horizon or a fault for other programs.
+    ExportData(Box<DataForm>),
     /// Write the page or the model of the block.
     Share(Box<ShareForm>),
     /// Copy the picture to the clipboard.

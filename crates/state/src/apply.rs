@@ -72,7 +72,7 @@ impl State {
                 self.quieten(Place::Foot);
                 return self.task(Task::Export(form));
             }
-            Action::ExportSurface(form) => return self.writing(Task::ExportSurface(form)),
+            Action::ExportData(form) => return self.writing(Task::ExportData(form)),
             Action::Share(form) => return self.writing(Task::Share(form)),
             Action::Copy => return self.task(Task::Copy),
             Action::Picking(step) => return self.pick(step),

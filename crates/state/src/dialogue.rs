@@ -4,6 +4,7 @@ use figure::Annotation;
 use formats::{Format, SurfaceKind};
 use review::glb::OFFICE_TRIANGLES;
 use review::html::SIZE_MB;
+use segy::WriteFormat;
 use std::path::{Path, PathBuf};
 
 /// What a file or folder is chosen for.
@@ -85,42 +86,72 @@ pub enum Dialogue {
     Export(ExportForm),
     /// Share the block with people without the program.
     Share(ShareForm),
-    /// Write a horizon or fault for other programs.
-    Surface(SurfaceForm),
+    /// Write a volume, a horizon or a fault for other programs.
+    Data(DataForm),
     /// The list of shortcuts.
     Shortcuts,
 }
 
-/// What is written of a horizon or fault, and where.
+/// What is written for other programs, and how.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Written {
+    /// A horizon or a fault in a format.
+    Surface(SurfaceKind, Format),
+    /// A volume as SEG-Y with samples of this format; `None`: as they are stored.
+    Volume(Option<WriteFormat>),
+}
+
+impl Written {
+    /// The defaults: a table of a horizon, triangles of a fault.
+    pub fn surface(kind: SurfaceKind) -> Self {
+        Self::Surface(kind, if kind == SurfaceKind::Horizon { Format::Csv } else { Format::Tsurf })
+    }
+
+    /// What it is called.
+    pub fn noun(self) -> &'static str {
+        match self {
+            Self::Surface(SurfaceKind::Horizon, _) => "horizon",
+            Self::Surface(SurfaceKind::Fault, _) => "fault",
+            Self::Volume(_) => "volume",
+        }
+    }
+
+    /// The usual ending of its files.
+    fn extension(self) -> &'static str {
+        match self {
+            Self::Surface(_, format) => format.extension(),
+            Self::Volume(_) => "sgy",
+        }
+    }
+}
+
+/// What is written of the project's data, and where.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SurfaceForm {
-    /// Whether it is a horizon or a fault.
-    pub kind: SurfaceKind,
+pub struct DataForm {
+    /// What it is, and the file's format.
+    pub what: Written,
     /// Its name.
     pub name: String,
     /// File to write.
     pub path: String,
-    /// The file's format.
-    pub format: Format,
 }
 
-impl SurfaceForm {
-    /// The defaults: a table of a horizon, triangles of a fault, beside the project in `folder`.
-    pub fn new(kind: SurfaceKind, name: &str, folder: Option<&Path>) -> Self {
-        let format = if kind == SurfaceKind::Horizon { Format::Csv } else { Format::Tsurf };
+impl DataForm {
+    /// A file beside the project in `folder`.
+    pub fn new(what: Written, name: &str, folder: Option<&Path>) -> Self {
         let plain: String =
             name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
-        let file = format!("{plain}.{}", format.extension());
+        let file = format!("{plain}.{}", what.extension());
         let path = folder.map_or_else(|| PathBuf::from(&file), |folder| folder.join(&file)).display().to_string();
-        Self { kind, name: name.to_owned(), path, format }
+        Self { what, name: name.to_owned(), path }
     }
 
     /// Takes another format, and the file's ending with it where that was the usual one.
-    pub fn choose(&mut self, format: Format) {
-        if let Some(stem) = self.path.strip_suffix(&format!(".{}", self.format.extension())) {
-            self.path = format!("{stem}.{}", format.extension());
+    pub fn choose(&mut self, what: Written) {
+        if let Some(stem) = self.path.strip_suffix(&format!(".{}", self.what.extension())) {
+            self.path = format!("{stem}.{}", what.extension());
         }
-        self.format = format;
+        self.what = what;
     }
 }
 
@@ -325,12 +356,14 @@ mod tests {
 
     #[test]
     fn the_ending_of_a_surfaces_file_follows_its_format() {
-        let mut form = SurfaceForm::new(SurfaceKind::Horizon, "Top / Chalk", Some(Path::new("work")));
+        let horizon = Written::surface(SurfaceKind::Horizon);
+        let mut form = DataForm::new(horizon, "Top / Chalk", Some(Path::new("work")));
         assert_eq!(Path::new(&form.path), Path::new("work").join("Top___Chalk.csv"));
-        form.choose(Format::Tsurf);
+        form.choose(Written::Surface(SurfaceKind::Horizon, Format::Tsurf));
         assert!(form.path.ends_with("Top___Chalk.ts"), "{}", form.path);
         form.path = "mine.txt".to_owned();
-        form.choose(Format::Csv);
+        form.choose(horizon);
         assert_eq!(form.path, "mine.txt");
+        assert!(DataForm::new(Written::Volume(None), "seismic", None).path.ends_with("seismic.sgy"));
     }
 }

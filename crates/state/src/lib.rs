@@ -28,7 +28,7 @@ use render::Scene;
 
 pub use action::{Action, Task};
 pub use dialogue::{
-    Choice, Dialogue, ExportForm, FileContent, SectionFill, ShareForm, ShareKind, Shown, SurfaceForm, Target,
+    Choice, DataForm, Dialogue, ExportForm, FileContent, SectionFill, ShareForm, ShareKind, Shown, Target, Written,
 };
 pub use notice::{Notice, Place};
 pub use picking::{How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, StickPoint, Tool};

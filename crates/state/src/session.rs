@@ -3,7 +3,7 @@
 use super::picking::Tool;
 use super::view::{Panel, ViewState};
 use project::HistoryLine;
-use project::document::Document;
+use project::document::{Document, rename_volume_in};
 use project::interpretation::times::has_time;
 use std::path::PathBuf;
 
@@ -61,6 +61,7 @@ impl Session {
         picking.fit(&self.document, &snapshot.document);
         self.view.picking.accepted = None;
         self.view.picking.added.clear();
+        self.follow_names(&snapshot.document);
         self.document = snapshot.document;
         self.revision += 1;
         self.history = snapshot.history;
@@ -77,6 +78,17 @@ impl Session {
             }
         }
         self.view.fit(&self.document);
+    }
+
+    /// Lets the view follow volumes that have another name in the next state; their folders tell which they are.
+    fn follow_names(&mut self, next: &Document) {
+        for entry in &self.document.volumes {
+            let renamed = next.volumes.iter().find(|other| other.file == entry.file && other.name != entry.name);
+            let Some(renamed) = renamed else { continue };
+            rename_volume_in(&mut self.view.scene, &entry.name, &renamed.name);
+            let over = self.view.volumes.over.iter_mut().filter(|over| over.volume == entry.name);
+            over.for_each(|over| over.volume.clone_from(&renamed.name));
+        }
     }
 
     /// The project's name: its folder's name without the extension.

@@ -1,11 +1,12 @@
 //! What the hand does counts in the order and at the place in which it was done, however slow a frame is.
 //!
-//! egui looks at the pointer once a frame: a click belongs to the widget, the place and the modifier keys of the frame's
+//! egui looks at the pointer and at the Tab key once a frame: a click belongs to the widget, the place and the modifier keys of the frame's
 //! end. Where a frame takes long, the pointer has gone elsewhere by then. So a frame is given the events up to a button
 //! or the wheel, and no event that would change where or how that counts; the others wait for the next frame, which
-//! follows at once. Two clicks in one frame become two frames, so both count.
+//! follows at once. Two clicks in one frame become two frames, so both count. What is typed before and after a Tab or a
+//! click belongs to the fields before and after it.
 
-use eframe::egui::{Context, Event, MouseWheelUnit, Plugin, Pos2, RawInput, Ui};
+use eframe::egui::{Context, Event, Key, MouseWheelUnit, Plugin, Pos2, RawInput, Ui};
 
 /// Wheel travel of a touch pad that counts as one line, points.
 const LINE: f32 = 24.0;
@@ -42,6 +43,8 @@ impl EventOrder {
                     (last, self.at) = (Some(if *pressed { Deed::Press } else { Deed::Release }), Some(*pos));
                 }
                 Event::MouseWheel { .. } => last = Some(Deed::Wheel),
+                Event::Key { key: Key::Tab, pressed: true, .. } => last = Some(Deed::Tab),
+                Event::Text(_) | Event::Paste(_) => last = Some(Deed::Text),
                 Event::PointerMoved(pos) => self.at = Some(*pos),
                 _ => {}
             }
@@ -57,11 +60,20 @@ enum Deed {
     Press,
     Release,
     Wheel,
+    Text,
+    /// To the next field.
+    Tab,
 }
 
 /// Whether `event` in the same frame would change where or how the last deed counts; the pointer is at `at`.
 fn disturbs(last: Deed, event: &Event, at: Option<Pos2>) -> bool {
     match event {
+        // Words stay in the field in which they are typed.
+        Event::Key { key: Key::Tab, pressed: true, .. } if last == Deed::Text => true,
+        Event::PointerButton { pressed: true, .. } if last == Deed::Text => true,
+        Event::Text(_) | Event::Paste(_) | Event::Key { pressed: true, .. } if last == Deed::Tab => true,
+        Event::PointerButton { .. } if last == Deed::Tab => true,
+        _ if matches!(last, Deed::Text | Deed::Tab) => false,
         Event::PointerMoved(pos) => at != Some(*pos),
         Event::PointerButton { pos, pressed, .. } => *pressed || last != Deed::Press || at != Some(*pos),
         Event::MouseWheel { .. } => last != Deed::Wheel,
@@ -144,6 +156,21 @@ mod tests {
         assert_eq!(frames([&click[..], &click[..]].concat()), [4, 2]);
         let key = Event::ModifiersChanged(Modifiers::SHIFT);
         assert_eq!(frames([std::slice::from_ref(&key), &click[..], std::slice::from_ref(&key)].concat()), [4, 1]);
+    }
+
+    #[test]
+    fn words_stay_on_their_side_of_a_tab_and_of_a_click() {
+        let text = |words: &str| Event::Text(words.to_owned());
+        let tab = |pressed| Event::Key {
+            key: Key::Tab,
+            physical_key: None,
+            pressed,
+            repeat: false,
+            modifiers: Modifiers::default(),
+        };
+        assert_eq!(frames(vec![text("1"), text("2"), tab(true), tab(false), text("3")]), [2, 2, 1]);
+        assert_eq!(frames(vec![tab(true), tab(false), tab(true), moved(1.0)]), [2, 2]);
+        assert_eq!(frames(vec![text("1"), moved(1.0), button(1.0, true), button(1.0, false), text("2")]), [2, 2, 1]);
     }
 
     #[test]

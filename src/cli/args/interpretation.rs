@@ -49,6 +49,16 @@ pub(in crate::cli) enum VolumeAction {
         #[arg(long)]
         name: Option<String>,
     },
+    /// Rename a volume
+    #[command(after_help = "Example:\n  petroglyph volume rename north.petro seismic \"Full stack 2019\"")]
+    Rename {
+        /// Project folder
+        project: PathBuf,
+        /// Volume
+        from: String,
+        /// New name
+        to: String,
+    },
     /// Remove a volume
     #[command(after_help = "Example:\n  petroglyph volume remove north.petro impedance")]
     Remove {

@@ -132,8 +132,9 @@ pub const MAKING: [Scenario; 5] = [
 ];
 
 /// What changes horizons, faults and wells.
-pub const INTERPRETING: [Scenario; 21] = [
+pub const INTERPRETING: [Scenario; 22] = [
     of(Imported, "horizon add p.petro top.csv --name Another"),
+    of(Imported, "volume rename p.petro seismic Stack"),
     of(Imported, "horizon rename p.petro Top Roof"),
     of(Imported, "horizon draw p.petro Drawn --line 4,2,40 4,9,40 --snap"),
     of(Imported, "horizon track p.petro Tracked --at 3,5,40 --traces 4"),

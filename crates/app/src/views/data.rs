@@ -2,14 +2,14 @@
 
 use super::notices;
 use super::picking::{palette, swatch};
-use crate::state::{Action, Blended, Choice, Dialogue, Place, SectionVolumes, Session, State, SurfaceForm};
+use crate::state::{Action, Blended, Choice, DataForm, Dialogue, Place, SectionVolumes, Session, State, Written};
 use eframe::egui::{
     Align, Button, ComboBox, DragValue, Id, Label, Layout, Response, ScrollArea, Ui, UiBuilder, WidgetInfo,
 };
 use formats::SurfaceKind;
 use project::command::{
-    Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameFault, RenameHorizon, RenameWell,
-    SetFaultColour, SetFaultExtent, SetRaw, SetVelocity,
+    Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameFault, RenameHorizon, RenameVolume,
+    RenameWell, SetFaultColour, SetFaultExtent, SetRaw, SetVelocity,
 };
 use project::document::{FaultEntry, VolumeEntry};
 use project::styles;
@@ -27,6 +27,10 @@ const BESIDE_BAR: f32 = 8.0;
 #[derive(Default)]
 pub struct Data {
     renaming: Option<Renaming>,
+    /// The volume whose name is being changed.
+    renaming_volume: Option<Renaming>,
+    /// The volume whose buttons are shown.
+    volume: Option<String>,
     /// The fault whose name is being changed.
     renaming_fault: Option<Renaming>,
     /// The well whose name is being changed.
@@ -48,7 +52,7 @@ impl Data {
             // Buttons at the right end of rows keep clear of the scroll bar.
             ui.set_max_width(ui.available_width() - BESIDE_BAR);
             ui.heading("Volumes");
-            volumes(ui, session, actions);
+            self.volumes(ui, session, actions);
             ui.add_space(10.0);
             ui.heading("Horizons");
             self.horizons(ui, session, actions);
@@ -59,6 +63,60 @@ impl Data {
             self.wells(ui, session, actions);
             self.survey(ui, session, actions);
         });
+    }
+
+    fn volumes(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+        let document = &session.document;
+        let raw = styles::transfer_functions(document).raw;
+        for entry in &document.volumes {
+            let is_raw = raw.as_ref().is_some_and(|raw| raw.volume == entry.name);
+            let is_chosen = self.volume.as_ref() == Some(&entry.name);
+            ui.horizontal(|ui| {
+                on_sections(ui, session, entry, is_raw, actions);
+                if let Some(renaming) = self.renaming_volume.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
+                    let renamed = renaming.show(ui, 150.0);
+                    if let Renamed::To(to) = &renamed {
+                        let command = RenameVolume { from: entry.name.clone(), to: to.clone() };
+                        actions.push(Action::Apply(Box::new(Command::RenameVolume(command))));
+                        self.volume = Some(to.clone());
+                    }
+                    if renamed != Renamed::Typing {
+                        self.renaming_volume = None;
+                    }
+                    return;
+                }
+                let row = named(ui, &entry.name, Some(is_raw), &format!("Remove volume {}", entry.name));
+                let hint =
+                    format!("{}: show as raw data; {} polarity; {}", entry.name, entry.polarity, entry.source.reading);
+                if row.name.on_hover_text(hint).clicked() {
+                    self.volume = (!is_chosen).then(|| entry.name.clone());
+                    if !is_raw
+                        && let Ok(raw) = styles::raw_colour(document, Some(&entry.name), ColourMap::Seismics, None)
+                    {
+                        actions.push(Action::Apply(Box::new(Command::SetRaw(SetRaw { raw }))));
+                    }
+                }
+                if row.is_removed {
+                    let command = RemoveVolume { name: entry.name.clone() };
+                    actions.push(Action::Apply(Box::new(Command::RemoveVolume(command))));
+                }
+            });
+            if is_chosen {
+                ui.indent("chosen", |ui| {
+                    ui.horizontal(|ui| {
+                        let rename = ui.button("Rename").on_hover_text(format!("Rename volume {}", entry.name));
+                        if rename.clicked() {
+                            self.renaming_volume = Some(Renaming::of(&entry.name));
+                        }
+                        export(ui, session, Written::Volume(None), &entry.name, actions);
+                    });
+                });
+            }
+            if let Some(over) = session.view.volumes.over.as_ref().filter(|over| over.volume == entry.name) {
+                ui.indent("over", |ui| blended(ui, session, over, actions));
+            }
+        }
+        add(ui, "Add a volume…", Choice::MoreSurvey, true, actions);
     }
 
     fn horizons(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -94,7 +152,7 @@ impl Data {
                         if rename.clicked() {
                             self.renaming = Some(Renaming::of(&entry.name));
                         }
-                        export(ui, session, SurfaceKind::Horizon, &entry.name, actions);
+                        export(ui, session, Written::surface(SurfaceKind::Horizon), &entry.name, actions);
                     });
                 });
             }
@@ -143,7 +201,7 @@ impl Data {
                         if ui.button("Rename").on_hover_text(format!("Rename fault {}", entry.name)).clicked() {
                             self.renaming_fault = Some(Renaming::of(&entry.name));
                         }
-                        export(ui, session, SurfaceKind::Fault, &entry.name, actions);
+                        export(ui, session, Written::surface(SurfaceKind::Fault), &entry.name, actions);
                     });
                 });
             }
@@ -309,11 +367,11 @@ fn eye(ui: &mut Ui, session: &Session, kind: SurfaceKind, name: &str, actions: &
     }
 }
 
-/// A button that asks how to write a horizon or fault.
-fn export(ui: &mut Ui, session: &Session, kind: SurfaceKind, name: &str, actions: &mut Vec<Action>) {
-    if ui.button("Export…").on_hover_text(format!("Write {kind} {name} for other programs")).clicked() {
-        let form = SurfaceForm::new(kind, name, session.root.parent());
-        actions.push(Action::Ask(Box::new(Dialogue::Surface(form))));
+/// A button that asks how to write a volume, a horizon or a fault.
+fn export(ui: &mut Ui, session: &Session, what: Written, name: &str, actions: &mut Vec<Action>) {
+    if ui.button("Export…").on_hover_text(format!("Write {} {name} for other programs", what.noun())).clicked() {
+        let form = DataForm::new(what, name, session.root.parent());
+        actions.push(Action::Ask(Box::new(Dialogue::Data(form))));
     }
 }
 
@@ -324,33 +382,6 @@ fn add(ui: &mut Ui, name: &str, choice: Choice, can: bool, actions: &mut Vec<Act
     if unless(ui, needs(can, NO_SURVEY), Button::new(name)).clicked() {
         actions.push(Action::Ask(Box::new(Dialogue::Choose(choice))));
     }
-}
-
-fn volumes(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let document = &session.document;
-    let raw = styles::transfer_functions(document).raw;
-    for entry in &document.volumes {
-        let is_raw = raw.as_ref().is_some_and(|raw| raw.volume == entry.name);
-        ui.horizontal(|ui| {
-            on_sections(ui, session, entry, is_raw, actions);
-            let row = named(ui, &entry.name, Some(is_raw), &format!("Remove volume {}", entry.name));
-            let hint =
-                format!("{}: show as raw data; {} polarity; {}", entry.name, entry.polarity, entry.source.reading);
-            if row.name.on_hover_text(hint).clicked()
-                && let Ok(raw) = styles::raw_colour(document, Some(&entry.name), ColourMap::Seismics, None)
-            {
-                actions.push(Action::Apply(Box::new(Command::SetRaw(SetRaw { raw }))));
-            }
-            if row.is_removed {
-                let command = RemoveVolume { name: entry.name.clone() };
-                actions.push(Action::Apply(Box::new(Command::RemoveVolume(command))));
-            }
-        });
-        if let Some(over) = session.view.volumes.over.as_ref().filter(|over| over.volume == entry.name) {
-            ui.indent("over", |ui| blended(ui, session, over, actions));
-        }
-    }
-    add(ui, "Add a volume…", Choice::MoreSurvey, true, actions);
 }
 
 /// A box that shows a volume on the sections: the raw data, or another one over them.

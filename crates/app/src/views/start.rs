@@ -5,7 +5,7 @@ use crate::state::{Action, Choice, Dialogue, Place, State};
 use crate::work::folder::Presence;
 use eframe::egui::{
     Align, Button, Color32, Context, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Stroke, TextureHandle,
-    TextureOptions, Ui, Vec2, WidgetInfo, pos2,
+    TextureOptions, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
 };
 use std::path::Path;
 use widgets::obstacle::{needs, unless};
@@ -15,6 +15,8 @@ use widgets::theme;
 const WIDTH: f32 = 660.0;
 /// Height of the buttons that create or open a project.
 const TALL: f32 = 42.0;
+/// Height of the row of a recent project.
+const ROW: f32 = 26.0;
 /// Position of the dividing line until the pointer moves it, share of the width.
 const PARTED: f32 = 0.42;
 
@@ -79,25 +81,37 @@ impl StartPage {
             ui.weak("Projects you open will be listed here.");
         }
         for (root, there) in projects.iter().zip(present) {
-            ui.horizontal(|ui| {
-                let title = RichText::new(name(root)).size(16.0);
-                let open = ui.add_enabled(there && !is_busy, Button::new(title).frame(false));
-                let open =
-                    open.on_hover_text("Open this project").on_disabled_hover_text("This folder no longer exists");
-                if open.clicked() {
-                    actions.push(Action::Open(root.clone()));
-                }
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    let forget = ui.button("Forget").on_hover_text(format!("Take {} off this list", name(root)));
-                    if forget.clicked() {
-                        actions.push(Action::Forget(root.clone()));
+            let can = there && !is_busy;
+            // The row is below what is in it: a click beside its name opens the project too.
+            let row = UiBuilder::new().sense(if can { Sense::click() } else { Sense::hover() });
+            let row = ui.scope_builder(row, |ui| {
+                ui.horizontal(|ui| {
+                    if can && ui.response().contains_pointer() {
+                        let back = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), ROW));
+                        ui.painter().rect_filled(back, 4.0, ui.visuals().widgets.hovered.weak_bg_fill);
                     }
-                    let folder = root.parent().map_or_else(String::new, |parent| parent.display().to_string());
-                    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                        ui.add(Label::new(RichText::new(folder).weak()).truncate());
+                    ui.set_min_height(ROW);
+                    let title = RichText::new(name(root)).size(16.0);
+                    let open = ui.add_enabled(can, Button::new(title).frame(false));
+                    let open =
+                        open.on_hover_text("Open this project").on_disabled_hover_text("This folder no longer exists");
+                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                        let forget = ui.button("Forget").on_hover_text(format!("Take {} off this list", name(root)));
+                        if forget.clicked() {
+                            actions.push(Action::Forget(root.clone()));
+                        }
+                        let folder = root.parent().map_or_else(String::new, |parent| parent.display().to_string());
+                        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                            ui.add(Label::new(RichText::new(folder).weak()).selectable(false).truncate());
+                        });
                     });
-                });
+                    open.clicked()
+                })
+                .inner
             });
+            if row.inner || row.response.clicked() {
+                actions.push(Action::Open(root.clone()));
+            }
         }
     }
 }

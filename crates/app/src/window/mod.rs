@@ -11,10 +11,10 @@ use super::error::WindowError;
 use super::hold::Hold;
 use super::views::dropped::{self, Dropped};
 use super::views::{
-    block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, fence::FenceView, functions::Functions,
-    import::Import, interpretation::Interpretation, layers::Layers, map::MapView, overlay::Overlay, patterns::Patterns,
-    picking::PickingPanel, pointed::Pointed, present::Presentation, print::Page, sections::Sections, share::ShareView,
-    shortcuts, start::StartPage, status, surface, tiles::Tiles, well::WellDialogue,
+    block::BlockView, chooser::Chooser, controls::Controls, data::Data, data_file, export, fence::FenceView,
+    functions::Functions, import::Import, interpretation::Interpretation, layers::Layers, map::MapView,
+    overlay::Overlay, patterns::Patterns, picking::PickingPanel, pointed::Pointed, present::Presentation, print::Page,
+    sections::Sections, share::ShareView, shortcuts, start::StartPage, status, tiles::Tiles, well::WellDialogue,
 };
 use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
 use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};
@@ -23,7 +23,7 @@ use frames::FrameTimes;
 use project::Project;
 use project::command::Command;
 use state::picking::Pick;
-use state::{Action, Appearance, Dialogue, ExportForm, Notice, Place, Remembered, State, SurfaceForm, Task};
+use state::{Action, Appearance, DataForm, Dialogue, ExportForm, Notice, Place, Remembered, State, Task, Written};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -216,27 +216,35 @@ impl Window {
             if let Task::Share(form) = &task {
                 self.share(form.as_ref().clone());
             }
-            if let Task::ExportSurface(form) = &task {
-                self.export_surface(form.as_ref().clone());
+            if let Task::ExportData(form) = &task {
+                self.export_data(form.as_ref().clone());
             }
             self.work.run(task, place);
         }
     }
 
-    /// Writes a horizon or fault for other programs.
-    fn export_surface(&self, form: SurfaceForm) {
+    /// Writes a volume, a horizon or a fault for other programs.
+    fn export_data(&self, form: DataForm) {
         let Some(root) = self.state.session.as_ref().map(|session| session.root.clone()) else { return };
         self.work.background("Writing the file", Place::Dialogue, move |progress, outbox| {
-            let SurfaceForm { kind, name, path, format } = form;
+            let DataForm { what, name, path } = form;
             let path = PathBuf::from(path.trim());
-            let write = |project: Project| {
-                let options = formats::ExportOptions::default();
-                exports::surface::write(&project, &path, (kind, &name), (format, &options), progress)
+            let write = |project: Project| match what {
+                Written::Surface(kind, format) => {
+                    let options = formats::ExportOptions::default();
+                    let surface = (kind, name.as_str());
+                    Ok(exports::surface::write(&project, &path, surface, (format, &options), progress)?.notes)
+                }
+                Written::Volume(format) => {
+                    let written = exports::volume::write(&project, &path, &name, format, progress)?;
+                    let clipped = format!("{} samples do not fit the format and were clipped", written.clipped);
+                    Ok((written.clipped > 0).then_some(clipped).into_iter().collect())
+                }
             };
             let written = Project::open(&root).and_then(write);
-            let written = written.map_err(|error| Notice::failure(Place::Dialogue, &error))?;
+            let notes: Vec<String> = written.map_err(|error| Notice::failure(Place::Dialogue, &error))?;
             outbox.send(Event::Exported(path));
-            let notes = written.notes.into_iter().map(|note| Event::Told(Notice::note(Place::Data, note)));
+            let notes = notes.into_iter().map(|note| Event::Told(Notice::note(Place::Data, note)));
             notes.for_each(|note| outbox.send(note));
             Ok(())
         });
@@ -438,7 +446,7 @@ impl Window {
                 }
             }
             Some(Dialogue::Share(_)) => self.share_dialogue(ctx, actions),
-            Some(Dialogue::Surface(form)) => surface::dialogue(ctx, &self.state, form, actions),
+            Some(Dialogue::Data(form)) => data_file::dialogue(ctx, &self.state, form, actions),
             None => {
                 self.preview = PagePreview::default();
                 self.share = ShareView::default();

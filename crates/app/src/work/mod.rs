@@ -222,7 +222,7 @@ impl Work {
                 return;
             }
             // The window handles these itself.
-            Task::Remember | Task::Copy | Task::Export(_) | Task::ExportSurface(_) | Task::Share(_) => return,
+            Task::Remember | Task::Copy | Task::Export(_) | Task::ExportData(_) | Task::Share(_) => return,
         };
         // The thread lives as long as this value.
         let _ = self.orders.send(order);

@@ -6,7 +6,7 @@ use eframe::egui::{
     Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, Role, TouchPhase, vec2,
 };
 use egui_kittest::kittest::Queryable;
-use state::{PickingStep, Tool};
+use state::{Dialogue, PickingStep, Tool};
 
 fn button(pos: Pos2, pressed: bool) -> Event {
     Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::default() }
@@ -46,6 +46,27 @@ fn a_click_counts_where_it_was_made_although_the_pointer_has_gone_on() {
     at_once(&mut harness, [clicked(next), clicked(next)].concat());
     let moved: f64 = slices(&harness).iter().zip(before).map(|(now, before)| now - before).sum();
     assert_eq!(moved, 2.0);
+}
+
+#[test]
+fn words_around_a_tab_stay_in_their_fields() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    click(&mut harness, "Export…");
+    harness.run_steps(3);
+    harness.get_by_label("Title").focus();
+    harness.run_steps(2);
+    let text = |words: &str| Event::Text(words.to_owned());
+    let tab = |pressed| Event::Key {
+        key: Key::Tab,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers: Modifiers::default(),
+    };
+    at_once(&mut harness, [text("Top"), text(" Chalk"), tab(true), tab(false), text("in depth")]);
+    let Some(Dialogue::Export(form)) = &state(&harness).dialogue else { panic!("the dialogue is open") };
+    assert_eq!((form.title.as_str(), form.caption.as_str()), ("Top Chalk", "in depth"));
 }
 
 #[test]

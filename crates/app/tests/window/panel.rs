@@ -2,8 +2,8 @@
 
 use super::command::{act, applied, choose, click_last};
 use super::driven::{Driven, click, document, driven, open, project, state, survey, wait};
-use eframe::egui::Key;
 use eframe::egui::accesskit::Role;
+use eframe::egui::{Event, Key, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use project::command::{Command, SetLayer, SetScalar};
 use render::Projection;
@@ -236,6 +236,21 @@ fn the_project_menu_changes_the_look_and_closes_the_project() {
     click_last(&mut harness, "Close");
     assert!(state(&harness).session.is_none());
     wait(&mut harness, "it is a recent project", |harness| harness.query_by_label("Forget").is_some());
+    // A click anywhere in its row opens it.
+    wait(&mut harness, "it is found there", |harness| !harness.get_by_label("north").accesskit_node().is_disabled());
+    let beside = harness.get_by_label("Forget").rect().left_center() - vec2(40.0, 0.0);
+    assert!(harness.get_by_label("north").rect().right() < beside.x);
+    for pressed in [true, false] {
+        let modifiers = Modifiers::default();
+        harness.input_mut().events.push(Event::PointerMoved(beside));
+        let button = PointerButton::Primary;
+        harness.input_mut().events.push(Event::PointerButton { pos: beside, button, pressed, modifiers });
+        harness.run_steps(2);
+    }
+    wait(&mut harness, "it is open", |harness| state(harness).session.is_some());
+    click(&mut harness, "Project");
+    click_last(&mut harness, "Close");
+    wait(&mut harness, "it is listed again", |harness| harness.query_by_label("Forget").is_some());
     click(&mut harness, "Forget");
     assert!(state(&harness).remembered.recent.is_empty());
 }

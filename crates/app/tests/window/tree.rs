@@ -1,11 +1,12 @@
 //! The list of everything in the project: shown and hidden, renamed, written for other programs, by labels.
 
-use super::command::{applied, choose, click_last};
+use super::command::{act, applied, choose, click_last};
 use super::driven::{Driven, click, document, open, state, wait};
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use formats::SurfaceKind;
-use project::command::{AddWell, Command, PickFault};
+use project::command::{AddScene, AddWell, Command, PickFault};
+use state::Action;
 
 fn type_path(harness: &mut Driven, path: &std::path::Path) {
     harness.get_by_label("File").focus();
@@ -46,6 +47,47 @@ fn horizons_and_faults_are_written_from_the_window() {
         // Chosen no more, so that the next row's button is the last.
         click_last(&mut harness, name);
     }
+}
+
+/// A volume has another name where it is shown too, also after undo, and is written as SEG-Y.
+#[test]
+fn a_volume_is_renamed_and_written_from_the_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    click(&mut harness, "Volume display");
+    click_last(&mut harness, "Cut-outs");
+    let shown = |harness: &Driven| state(harness).session.as_ref().unwrap().view.scene.media.cut_outs[0].volume.clone();
+    let scene = state(&harness).session.as_ref().unwrap().view.scene.clone();
+    let add = Command::AddScene(AddScene { name: "front".into(), scene });
+    act(&mut harness, Action::Apply(Box::new(add)));
+    wait(&mut harness, "the scene is saved", |harness| document(harness).scenes.len() == 1);
+    click(&mut harness, "Data");
+    click_last(&mut harness, "seismic");
+    click_last(&mut harness, "Rename");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.get_by_label("New name").type_text("Full stack");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    wait(&mut harness, "it has its name", |harness| document(harness).volumes[0].name == "Full stack");
+    assert_eq!(shown(&harness), "Full stack");
+    assert_eq!(document(&harness).scenes[0].scene.media.cut_outs[0].volume, "Full stack");
+    wait(&mut harness, "it is drawn", |harness| harness.state().as_ref().unwrap().is_settled());
+    assert!(state(&harness).notices.iter().all(|notice| !notice.failed), "{:?}", state(&harness).notices);
+    click(&mut harness, "Undo");
+    wait(&mut harness, "it has its old name", |harness| document(harness).volumes[0].name == "seismic");
+    assert_eq!(shown(&harness), "seismic");
+    click_last(&mut harness, "seismic");
+    click_last(&mut harness, "Export…");
+    harness.get_by_label("Export volume seismic");
+    choose(&mut harness, "Format", "int16");
+    let out = folder.path().join("out.sgy");
+    type_path(&mut harness, &out);
+    click_last(&mut harness, "Export");
+    wait(&mut harness, "it is written", |harness| out.exists() && state(harness).dialogue.is_none());
+    let options = segy::SegyOptions::default();
+    let info = segy::scan(&out, &options, &survey::Progress::silent()).unwrap();
+    let size = document(&harness).geometry.unwrap().size();
+    assert_eq!((info.format_code, [info.inlines.count, info.crosslines.count, info.samples]), (3, size));
 }
 
 /// A name typed for a fault is followed by its sticks, and a horizon from a file has a colour to choose.

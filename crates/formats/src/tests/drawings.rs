@@ -62,6 +62,45 @@ fn dxf(entities: &str) -> String {
 }
 
 #[test]
+fn meshes_of_a_drawing_are_a_horizon() {
+    let places: Vec<[f64; 2]> = (0..5).flat_map(|x| (0..4).map(move |y| [f64::from(x), f64::from(y)])).collect();
+    let vertices = |flags: u32| -> String {
+        let vertex = |[x, y]: &[f64; 2]| {
+            let (x, y) = (125.0 * x, 125.0 * y);
+            let at = [(10, x), (20, y), (30, depth(x, y))].map(|(code, value)| (code, value.to_string()));
+            pairs(&[(0, "VERTEX".into())]) + &pairs(&at) + &pairs(&[(70, flags.to_string())])
+        };
+        places.iter().map(vertex).collect()
+    };
+    let head = |flags: u32, counts: [u32; 2]| {
+        pairs(&[(0, "POLYLINE".into()), (8, "Top Chalk".into()), (66, "1".into()), (70, flags.to_string())])
+            + &pairs(&[(71, counts[0].to_string()), (72, counts[1].to_string())])
+    };
+    let end = pairs(&[(0, "SEQEND".into())]);
+    let grid = horizon("grid.dxf", &dxf(&(head(16, [5, 4]) + &vertices(64) + &end)));
+    assert_on_the_plane(&grid, "a mesh of rows and columns");
+    // Triangles and quadrilaterals; an edge that is not drawn has a negative number.
+    let faces: String = (0..4_i32)
+        .flat_map(|x| (0..3).map(move |y| 4 * x + y + 1))
+        .map(|a| {
+            let face = |corners: [i32; 4]| {
+                let numbers = (71..).zip(corners).filter(|(_, number)| *number != 0);
+                let numbers: Vec<(u32, String)> = numbers.map(|(code, number)| (code, number.to_string())).collect();
+                pairs(&[(0, "VERTEX".into()), (10, "0".into()), (20, "0".into()), (30, "0".into()), (70, "128".into())])
+                    + &pairs(&numbers)
+            };
+            if a % 2 == 0 {
+                face([a, a + 4, a + 5, a + 1])
+            } else {
+                face([a, a + 4, -(a + 5), 0]) + &face([-a, a + 5, a + 1, 0])
+            }
+        })
+        .collect();
+    let faces = horizon("faces.dxf", &dxf(&(head(64, [20, 12]) + &vertices(192) + &faces + &end)));
+    assert_on_the_plane(&faces, "a mesh of faces");
+}
+
+#[test]
 fn faces_and_lines_of_a_drawing_are_a_horizon() {
     let corner = |n: u32, x: f64, y: f64| {
         pairs(&[(10 + n, x.to_string()), (20 + n, y.to_string()), (30 + n, depth(x, y).to_string())])
@@ -200,6 +239,9 @@ fn what_is_known_but_not_read_is_named() {
     assert!(refused("b.dxf", "AutoCAD Binary DXF\r\n\u{1a}").contains("binary DXF"));
     assert!(refused("c.vo", "GOCAD Voxet 1\n").contains("TSurf, VSet and PLine"));
     assert!(refused("d.dxf", &dxf("  0\nCIRCLE\n  8\n0\n")).contains("no 3DFACE"));
-    let mesh = "  0\nPOLYLINE\n  8\n0\n 70\n16\n";
-    assert!(refused("e.dxf", &dxf(mesh)).contains("explode the meshes"));
+    let mesh = "  0\nPOLYLINE\n  8\n0\n 70\n16\n 71\n2\n 72\n3\n  0\nSEQEND\n";
+    let error = refused("e.dxf", &dxf(mesh));
+    assert!(error.contains("line 17: expected as many VERTEXes as the mesh has rows times columns"), "{error}");
+    let face = "  0\nPOLYLINE\n  8\n0\n 70\n64\n  0\nVERTEX\n 70\n128\n 71\n1\n 72\n2\n 73\n3\n";
+    assert!(refused("f.dxf", &dxf(face)).contains("three or four places of its mesh"));
 }

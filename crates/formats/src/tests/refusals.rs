@@ -132,3 +132,10 @@ fn a_path_that_cannot_be_written_leaves_nothing_behind() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     assert!(write_horizon(&folder.path().join("no/such/A.csv"), &horizon, &survey(), Format::Csv).is_err());
 }
+
+#[test]
+fn rows_that_are_no_rows_of_iesx_are_named() {
+    let text = "PROFILE Top TYPE 1  4 3d_ci7m.ifdf     m ms\nSNAPPING PARAMETERS 5 0 1\n448863.0 6781234.0 1000 2000 612.5\nEOD\n";
+    let error = refused(text).to_string();
+    assert!(error.contains("line 3: expected X, Y, two counts, Z"), "{error}");
+}

@@ -36,7 +36,7 @@ pub use extract::{Extract, ProposeFaults};
 pub use fault::{AddFault, FaultAdded, RemoveFault, RenameFault, SetFaultColour, SetFaultExtent, SetTruncation};
 pub use fault_pick::{AcceptFault, MoveStickPoint, PickFault};
 pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
-pub use import::{ImportVolume, RemoveVolume, VolumeImported};
+pub use import::{ImportVolume, RemoveVolume, RenameVolume, VolumeImported};
 pub use layer::{ResetLayer, SetLayer};
 pub use link::LinkVolume;
 pub use note::{AddNote, RemoveNote};
@@ -88,6 +88,8 @@ pub enum Command {
     ProposeFaults(ProposeFaults),
     /// Take in a volume that stays in object storage.
     LinkVolume(LinkVolume),
+    /// Rename a volume.
+    RenameVolume(RenameVolume),
     /// Remove a volume.
     RemoveVolume(RemoveVolume),
     /// Add a horizon from a file.
@@ -239,6 +241,7 @@ impl Command {
             Self::StackHorizons(change) => change.execute(draft, progress),
             Self::ProposeFaults(change) => change.execute(draft, progress),
             Self::LinkVolume(change) => change.execute(draft, progress),
+            Self::RenameVolume(change) => change.execute(draft),
             Self::RemoveVolume(change) => change.execute(draft),
             Self::AddHorizon(change) => change.execute(draft, progress),
             Self::RenameHorizon(change) => change.execute(draft),

@@ -3,7 +3,7 @@
 
 use super::picks::Assembly;
 use figure::Figure;
-use render::Scene;
+use render::{IsosurfaceSource, Scene};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use survey::{Contact, SurveyGeometry};
@@ -277,4 +277,17 @@ pub fn volumes_within(scene: &Scene) -> impl Iterator<Item = &str> {
         .map(|medium| medium.volume.as_str())
         .chain(media.isosurface_volumes().map(String::as_str))
         .chain(painted)
+}
+
+/// Gives a volume its new name wherever a scene shows it.
+pub fn rename_volume_in(scene: &mut Scene, from: &str, to: &str) {
+    let Scene { media, raw, .. } = scene;
+    let of_media = media.surroundings.iter_mut().chain(&mut media.cut_outs).map(|medium| &mut medium.volume);
+    let of_isosurfaces = media.isosurfaces.iter_mut().filter_map(|surface| match &mut surface.of {
+        IsosurfaceSource::Volume(name) => Some(name),
+        IsosurfaceSource::Depth => None,
+    });
+    let painted = media.horizons.iter_mut().filter_map(|horizon| Some(&mut horizon.paint.as_mut()?.volume));
+    let names = of_media.chain(of_isosurfaces).chain(painted).chain(raw.iter_mut().map(|raw| &mut raw.volume));
+    names.filter(|name| *name == from).for_each(|name| to.clone_into(name));
 }

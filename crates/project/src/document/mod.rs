@@ -14,7 +14,7 @@ use crate::error::{Noun, ProjectError};
 pub(crate) use entries::is_zero;
 pub use entries::{
     ExtractionEntry, FaultEntry, FigureEntry, HorizonEntry, NoteEntry, ParameterizationEntry, Polarity, ProposalsEntry,
-    SceneEntry, Source, Style, TextureEntry, VolumeEntry, WellEntry, volumes_within,
+    SceneEntry, Source, Style, TextureEntry, VolumeEntry, WellEntry, rename_volume_in, volumes_within,
 };
 use param::KDefinition;
 pub use picks::{Assembly, Drawn, DrawnEntry, FaultSticks, PickEntry};

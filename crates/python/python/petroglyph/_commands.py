@@ -138,6 +138,10 @@ class Commands:
         fields = _given(url=url, name=name, polarity=polarity)
         return self.apply({"link-volume": fields}, progress=progress)
 
+    def rename_volume(self, from_: str, to: str) -> Effect:
+        """Gives a volume another name, also where it is shown."""
+        return self.apply({"rename-volume": {"from": from_, "to": to}})
+
     def remove_volume(self, name: str) -> Effect:
         """Removes a volume."""
         return self.apply({"remove-volume": {"name": name}})

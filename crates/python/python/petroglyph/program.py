@@ -630,6 +630,36 @@ def volume_link(
     )
 
 
+def volume_rename(
+    project: Value,
+    from_: Value,
+    to: Value,
+    *,
+    progress: Progress | None = None,
+) -> Answer:
+    """Rename a volume.
+
+    Parameters
+    ----------
+    project : value
+        Project folder.
+    from_ : value
+        Volume.
+    to : value
+        New name.
+    progress : callable, optional
+        Called as ``progress(stage, done, total)``.
+    """
+    return run(
+        "volume",
+        "rename",
+        project,
+        from_,
+        to,
+        progress=progress,
+    )
+
+
 def volume_remove(
     project: Value,
     name: Value,

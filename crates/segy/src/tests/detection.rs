@@ -6,7 +6,7 @@ use super::super::{Candidate, KeptDuplicate, LengthUnit, SegyInfo, SegyOptions, 
 use super::built::{Built, Trace};
 use survey::remedy::{Note, Setting};
 
-fn has(notes: &[Note], words: &str) -> bool {
+pub(super) fn has(notes: &[Note], words: &str) -> bool {
     notes.iter().any(|note| note.to_string().contains(words))
 }
 
@@ -15,12 +15,12 @@ fn lines(inline: u16, crossline: u16) -> SegyOptions {
 }
 
 /// 4 inlines by 6 crosslines.
-fn grid() -> Built {
+pub(super) fn grid() -> Built {
     Built::grid(&[101, 102, 103, 104], &[7, 8, 9, 10, 11, 12])
 }
 
 /// The same with line numbers at other bytes.
-fn moved(inline: usize, crossline: usize) -> Built {
+pub(super) fn moved(inline: usize, crossline: usize) -> Built {
     grid().each(|_, t| {
         t.i32(189, 0);
         t.i32(193, 0);
@@ -33,7 +33,7 @@ fn bytes(info: &SegyInfo) -> [u16; 2] {
     [info.byte_positions.inline, info.byte_positions.crossline].map(Option::unwrap)
 }
 
-fn counts(info: &SegyInfo) -> [usize; 2] {
+pub(super) fn counts(info: &SegyInfo) -> [usize; 2] {
     [info.inlines.count, info.crosslines.count]
 }
 
@@ -432,7 +432,7 @@ fn angles_are_refused_unless_a_bin_is_stated() {
 }
 
 /// X and Y in degrees at the standard's bytes, a thousandth of a degree a bin.
-fn in_degrees() -> Built {
+pub(super) fn in_degrees() -> Built {
     grid().each(|_, t| {
         t.i16(71, -1000);
         t.i32(181, 5000 + t.inline);
@@ -450,6 +450,15 @@ fn lengths_that_are_called_angles_are_lengths() {
     // What is stated wins.
     let metres = SegyOptions { coordinate_unit: Some(LengthUnit::Metres), ..SegyOptions::default() };
     assert!(in_degrees().scan(&metres).is_ok());
+    assert!(in_degrees().refusal().1.contains("unit of X and Y m or ft"), "{}", in_degrees().refusal().1);
+    // Bins of five degrees are no survey: metres from a corner of the survey.
+    let local = grid().each(|_, t| {
+        t.i16(71, 1);
+        t.i32(181, 5 * (t.inline - 90));
+        t.i32(185, 5 * t.crossline);
+        t.i16(89, 3);
+    });
+    assert!(has(&local.info().warnings, "as angles they would make bins"), "{:?}", local.info().warnings);
     assert!(grid().each(|_, t| t.i16(89, 3)).scan(&metres).unwrap().warnings.is_empty());
 }
 

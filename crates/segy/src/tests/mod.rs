@@ -3,6 +3,7 @@
 mod broken;
 mod built;
 mod detection;
+mod doubts;
 mod expected;
 mod headers;
 mod numberless;
