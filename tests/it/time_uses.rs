@@ -108,7 +108,7 @@ fn stacks_lie_between_their_horizons_and_textures_follow_time() {
     run_in(at, "horizon stack p.petro Part --count 4 --between Bravo Alpha --spacing proportional")
         .failed(&["nothing lies below \"Bravo\"", "upper horizon first"]);
     run_in(at, "horizon stack p.petro Part --count 4 --spacing proportional").failed(&["--between"]);
-    run_in(at, "horizon stack p.petro Part --count 99").failed(&["from 1 to"]);
+    run_in(at, "horizon stack p.petro Part --count 1025").failed(&["from 1 to"]);
     // k by geologic time is drawn by every renderer that draws an imported one.
     let render = |name: &str| {
         run_in(at, &format!("render p.petro {name}.png --size 200x150 --samples 1 --device cpu")).done();

@@ -5,7 +5,7 @@ use super::any_shape::{self, Shape};
 use super::columns::is_inside;
 use super::lattice::{self, FittedLattice};
 use super::options::{HorizonShape, ImportOptions};
-use super::placement::{self, voxel_xy};
+use super::placement::{self, Placed, voxel_xy};
 use super::raster;
 use super::raw::{RawPoint, RawShape, RawSurface};
 use super::report::{Gridding, ImportReport, Settled};
@@ -164,19 +164,8 @@ fn from_points(
 ) -> Result<Nodes, FormatError> {
     let placed = placement::place(file, name, points, geometry, options.place_by)?;
     let mut notes: Vec<String> = placed.note.into_iter().collect();
-    let normals: Vec<DVec3> = points.iter().filter_map(|p| p.normal).collect();
-    if normals.len() == points.len() && options.shape != Some(HorizonShape::Map) {
-        let worlds = placed.voxels.iter().zip(points).map(|(v, p)| placement::world_xy(geometry, *v).extend(p.z));
-        let worlds: Vec<DVec3> = worlds.collect();
-        let mesh = model::surface_through(name, &worlds, &normals, geometry, &Progress::silent())
-            .map_err(|source| FormatError::Normals { file: file.to_path_buf(), why: source.to_string() })?;
-        let shape = any_shape::of_mesh(&mesh);
-        if shape.is_some() || options.shape == Some(HorizonShape::Any) {
-            let note = match shape {
-                Some(Shape::Body) => "a closed body through its points and normals",
-                _ => "a surface through its points and normals",
-            };
-            let found = Nodes::any_shape(mesh, placed.outside, Some(note));
+    if points.iter().all(|p| p.normal.is_some()) && options.shape != Some(HorizonShape::Map) {
+        if let Some(found) = through_normals(file, name, points, &placed, geometry, options)? {
             return Ok(Nodes { notes: notes.into_iter().chain(found.notes).collect(), ..found });
         }
         notes.push("its normals are not used: it is a map".to_owned());
@@ -259,6 +248,31 @@ fn from_points(
         surface: None,
         off_map: None,
     })
+}
+
+/// The surface through points and their normals; `None` where it is a map and no other shape is stated.
+fn through_normals(
+    file: &Path,
+    name: &str,
+    points: &[RawPoint],
+    placed: &Placed,
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Option<Nodes>, FormatError> {
+    let normals: Vec<DVec3> = points.iter().filter_map(|p| p.normal).collect();
+    let worlds = placed.voxels.iter().zip(points).map(|(v, p)| placement::world_xy(geometry, *v).extend(p.z));
+    let worlds: Vec<DVec3> = worlds.collect();
+    let mesh = model::surface_through(name, &worlds, &normals, geometry, &Progress::silent())
+        .map_err(|source| FormatError::Normals { file: file.to_path_buf(), why: source.to_string() })?;
+    let shape = any_shape::of_mesh(&mesh);
+    if shape.is_none() && options.shape != Some(HorizonShape::Any) {
+        return Ok(None);
+    }
+    let note = match shape {
+        Some(Shape::Body) => "a closed body through its points and normals",
+        _ => "a surface through its points and normals",
+    };
+    Ok(Some(Nodes::any_shape(mesh, placed.outside, Some(note))))
 }
 
 /// Puts points on their nodes; several depths at a node make several sheets. Also counts such nodes, and repeated

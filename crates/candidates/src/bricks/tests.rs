@@ -234,7 +234,7 @@ fn what_was_stopped_anywhere_goes_on_and_tasks_may_be_repeated_in_any_order() {
 fn bricks_fit_the_stated_memory_or_say_how_much_it_takes() {
     let cut = BrickSettings::within(4 << 30, [2048, 2048, 1024], 2).unwrap();
     assert!(cut.workers == 2 && cut.edge[0] > 150 && cut.edge[0] < 400, "{cut:?}");
-    let few = BrickSettings::within(600 << 20, [512, 512, 512], 8).unwrap();
+    let few = BrickSettings::within(300 << 20, [512, 512, 512], 8).unwrap();
     assert!(few.workers < 8 && few.edge[0] >= 24, "{few:?}");
     let error = BrickSettings::within(1 << 20, [512, 512, 512], 2).unwrap_err();
     let InterpError::TooLittleMemory { least, .. } = error else { panic!("{error}") };
