@@ -162,8 +162,8 @@ fn from_points(
     options: &ImportOptions,
     tolerance: f32,
 ) -> Result<Nodes, FormatError> {
-    let placed = placement::place(file, name, points, geometry, options.place_by)?;
-    let mut notes: Vec<String> = placed.note.into_iter().collect();
+    let mut placed = placement::place(file, name, points, geometry, options.place_by)?;
+    let mut notes: Vec<String> = placed.note.take().into_iter().collect();
     if points.iter().all(|p| p.normal.is_some()) && options.shape != Some(HorizonShape::Map) {
         if let Some(found) = through_normals(file, name, points, &placed, geometry, options)? {
             return Ok(Nodes { notes: notes.into_iter().chain(found.notes).collect(), ..found });
