@@ -2738,9 +2738,9 @@ def render(
     annotate : value or values, optional
         Write on blocks and sections: axes (inlines, crosslines, depth or time along the edges), layers (names along
         the layers), faults (names, measured throw, half-arrows), wells (names of wells and tops), quality (horizons
-        dashed where they were filled, dotted with question marks where they were only continued), colours (a bar of
-        the raw data's values), provenance (program, project, --credit); all adds the legend, the scale bars and the
-        north arrow.
+        dashed where they were filled, in short dashes with question marks where they were only continued), colours (a
+        bar of the raw data's values), provenance (program, project, --credit); all adds the legend, the scale bars
+        and the north arrow.
     credit : value, optional
         Whose data the figure shows, for the line of provenance.
     font : value or values, optional
