@@ -1,10 +1,10 @@
 //! What the hand does counts in the order and at the place in which it was done, however slow a frame is.
 //!
-//! egui looks at the pointer and at the Tab key once a frame: a click belongs to the widget, the place and the modifier keys of the frame's
-//! end. Where a frame takes long, the pointer has gone elsewhere by then. So a frame is given the events up to a button
-//! or the wheel, and no event that would change where or how that counts; the others wait for the next frame, which
-//! follows at once. Two clicks in one frame become two frames, so both count. What is typed before and after a Tab or a
-//! click belongs to the fields before and after it.
+//! egui looks at the pointer and at the Tab key once a frame: a click belongs to the widget, the place and the modifier
+//! keys of the frame's end. Where a frame takes long, the pointer has gone elsewhere by then. So a frame is given the
+//! events up to a button or the wheel, and no event that would change where or how that counts; the others wait for the
+//! next frame, which follows at once. Two clicks in one frame become two frames, so both count. What is typed before and
+//! after a Tab or a click belongs to the fields before and after it.
 
 use eframe::egui::{Context, Event, Key, MouseWheelUnit, Plugin, Pos2, RawInput, Ui};
 
