@@ -1,11 +1,11 @@
 //! Which seed's time an event has where.
 //!
-//! A seed holds the part of its patch that lies along its level: that is one reflection, whatever τ says elsewhere. The first
-//! seed also holds the other patches along its level in its fault block. From there claims spread over the traces. Their
-//! distance is counted in traces; a step through a fault at the depth of the level counts [`THROUGH_FAULT`] of them, so
-//! that a claim fills its fault block and goes round a tip. A later seed corrects the ones before it: within [`TAKEN`]
-//! traces of what it holds they hold nothing, and a patch of the first seed's level is dropped as a whole where a later seed
-//! says that the event is another. The level at a trace is the mean of the seeds' times with weights 1/d⁸.
+//! A seed holds the part of its patch that lies along its level: that is one reflection, whatever τ says elsewhere. The
+//! first seed also holds the other patches along its level in its fault block. From there claims spread over the traces.
+//! Their distance is counted in traces; a step through a fault at the depth of the level counts [`THROUGH_FAULT`] of
+//! them, so that a claim fills its fault block and goes round a tip. A later seed corrects the ones before it: within
+//! [`TAKEN`] traces of what it holds they hold nothing, and a patch of the first seed's level is dropped as a whole where
+//! a later seed says that the event is another. The level at a trace is the mean of the seeds' times with weights 1/d⁸.
 //!
 //! Memory: 12 bytes a trace for each seed while it spreads, and 4 bytes afterwards.
 
@@ -20,7 +20,6 @@ const TAKEN: u32 = 8;
 /// Cost of a step along an axis; a diagonal one costs [`DIAGONAL`], nearly √2 as much.
 const STEP: u32 = 5;
 const DIAGONAL: u32 = 7;
-
 /// Share of the traces of a patch on which a later seed must hold another so that it is dropped.
 const DROPPED: f64 = 0.1;
 
