@@ -30,6 +30,10 @@ SPEED_SIDE ?= 128
 SPEED_SIZE ?= 800x800
 # The Vulkan loader complains where no desktop session has set this.
 export XDG_RUNTIME_DIR ?= /tmp
+# Cargo unites the features of what it is asked to build: over the whole workspace they are always the same, so that nothing
+# is compiled twice for another command.
+BUILD = cargo build --workspace --locked
+EXAMPLES = target/debug/examples
 PETROGLYPH = target/debug/petroglyph
 
 SIZES ?= 1280x800 2560x1440
@@ -39,7 +43,7 @@ PYTHON ?= python3
 .PHONY: demo gallery screenshots test check bench accuracy extraction picks time speed check-peers check-review viewer scenario attack fuzz fuzz-long setup build wheel test-python scale
 
 build: setup
-	cargo build --locked
+	$(BUILD) --bin petroglyph
 
 demo: build
 	$(PETROGLYPH) demo --out $(OUT)
@@ -50,10 +54,10 @@ gallery: demo
 
 # The demonstration's project is copied: its panels change it on the way.
 screenshots: demo
-	cargo build --locked -p petroglyph-app --example screenshots
+	$(BUILD) --example screenshots
 	for size in $(SIZES); do for appearance in $(APPEARANCES); do \
 		rm -rf out/screenshots/demo && mkdir -p out/screenshots && cp -r $(OUT) out/screenshots/demo && \
-		target/debug/examples/screenshots out/screenshots/demo out/screenshots $$size $$appearance || exit 1; \
+		$(EXAMPLES)/screenshots out/screenshots/demo out/screenshots $$size $$appearance || exit 1; \
 	done; done
 
 # Tests note which projects they made; not in the user's own notes.
@@ -66,7 +70,8 @@ check: setup
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
 
 accuracy: setup
-	cargo run --locked --example accuracy > $(OUT_ACCURACY).part && mv $(OUT_ACCURACY).part $(OUT_ACCURACY)
+	$(BUILD) --example accuracy
+	$(EXAMPLES)/accuracy > $(OUT_ACCURACY).part && mv $(OUT_ACCURACY).part $(OUT_ACCURACY)
 
 check-peers: build
 	$(PYTHON) bench/check_formats.py $(PETROGLYPH)
@@ -79,18 +84,22 @@ check-review: demo
 	node crates/review/viewer/test/drive.mjs $(PETROGLYPH) $(OUT)/demo.petro out/review
 
 extraction: setup
-	cargo run --locked -p petroglyph-interp --example extraction > $(OUT_EXTRACTION).part && mv $(OUT_EXTRACTION).part $(OUT_EXTRACTION)
+	$(BUILD) --example extraction
+	$(EXAMPLES)/extraction > $(OUT_EXTRACTION).part && mv $(OUT_EXTRACTION).part $(OUT_EXTRACTION)
 
 time: setup
-	cargo run --locked -p petroglyph-time --example isochrons > $(OUT_TIME).part && mv $(OUT_TIME).part $(OUT_TIME)
+	$(BUILD) --example isochrons
+	$(EXAMPLES)/isochrons > $(OUT_TIME).part && mv $(OUT_TIME).part $(OUT_TIME)
 
 picks: setup
-	cargo run --locked -p petroglyph-interp --example picks > $(OUT_PICKS).part && mv $(OUT_PICKS).part $(OUT_PICKS)
+	$(BUILD) --example picks
+	$(EXAMPLES)/picks > $(OUT_PICKS).part && mv $(OUT_PICKS).part $(OUT_PICKS)
 
 speed: setup
-	cargo run --locked -q -p petroglyph-render --example illustration_speed -- --side $(SPEED_SIDE) --size $(SPEED_SIZE) --repeats 3
-	cargo run --locked -q -p petroglyph-param --example time_param -- --definitions $(SPEED_SIDE)
-	cargo run --locked -q -p petroglyph-render --example volume_speed -- --side $(SPEED_SIDE) --size $(SPEED_SIZE)
+	$(BUILD) --example illustration_speed --example time_param --example volume_speed
+	$(EXAMPLES)/illustration_speed --side $(SPEED_SIDE) --size $(SPEED_SIZE) --repeats 3
+	$(EXAMPLES)/time_param --definitions $(SPEED_SIDE)
+	$(EXAMPLES)/volume_speed --side $(SPEED_SIDE) --size $(SPEED_SIZE)
 
 # These also need Python, which `setup` then installs.
 wheel test-python: export NEEDS_PYTHON = 1

@@ -13,34 +13,39 @@ findings=fuzz/findings
 # Inputs are small: threads would only wait for one another.
 export RAYON_NUM_THREADS=1
 
-# Compiles the programs named after the features, with coverage counters.
+# Compiles the programs named after the features, with coverage counters. Features of the whole workspace are united, so
+# that crates of others are those of every other build.
 compile() {
-    features=$1
+    features=petroglyph-fuzz/libfuzzer$1
     shift
     for program in "$@"; do set -- "$@" --bin "fuzz-$program"; shift; done
     RUSTC_WORKSPACE_WRAPPER=$PWD/fuzz/instrument.sh CARGO_INCREMENTAL=0 \
-        cargo build --locked -q -p petroglyph-fuzz --features "$features" "$@"
+        cargo build --locked -q --workspace --features "$features" "$@"
 }
 # Has a program write the inputs that fuzzing starts from.
 seed() {
     FUZZ_SEEDS=$corpus "$build/fuzz-$1" -runs=0 >"$findings/seeds.log" 2>&1 || { cat "$findings/seeds.log" >&2; exit 1; }
 }
 mkdir -p "$findings"
-case " ${*:-documents tile} " in
+features=
+programs="segy segy-headers surface well"
+case " ${*:-documents} " in
     *" documents"* | *" derived"* | *" model"*)
-        compile libfuzzer,documents documents derived model
-        seed documents
-        seed derived
-        seed model ;;
+        features=$features,petroglyph-fuzz/documents
+        programs="$programs documents derived model" ;;
 esac
 case " ${*:-tile} " in
     *" tile"* | *" store"*)
-        compile libfuzzer,data tile store
-        seed tile
-        seed store ;;
+        features=$features,petroglyph-fuzz/data
+        programs="$programs tile store" ;;
 esac
-compile libfuzzer segy segy-headers surface well
-seed segy
+compile "$features" $programs
+for program in $programs; do
+    case $program in
+        segy-headers | surface | well) ;; # `segy` writes theirs
+        *) seed "$program" ;;
+    esac
+done
 
 [ $# -gt 0 ] || set -- $(ls "$corpus")
 total=0
