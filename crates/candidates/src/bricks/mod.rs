@@ -58,7 +58,6 @@ use crate::grow::{GrowError, Method};
 use crate::surfaces::Extremum;
 use bytemuck::Pod;
 use std::convert::Infallible;
-use std::sync::OnceLock;
 use survey::arrays::NamedArrays;
 use survey::source::BoxSource;
 use tiles::Tiling;
@@ -73,8 +72,6 @@ pub struct Bricks<'a> {
     tiles: Tiling,
     /// Triangles of the surfaces whose trees one task builds, unless one surface has more.
     together: u64,
-    /// Index of the first extremum of each trace, by kind, once the stage `offsets` has run.
-    offsets: Vec<OnceLock<Vec<u32>>>,
 }
 
 impl<'a> Bricks<'a> {
@@ -102,23 +99,13 @@ impl<'a> Bricks<'a> {
         crate::forest::check_settings(&settings.forest)?;
         settings.distance.check()?;
         let tiles = Tiling { size: [size[0], size[1]], edge: bricks.edge.map(|edge| edge.max(1)) };
-        let offsets = kinds.iter().map(|_| OnceLock::new()).collect();
         let (settings, together) = (settings.clone(), bricks.triangles_together.max(1));
-        Ok(Self { source, arrays, settings, kinds, size, tiles, together, offsets })
+        Ok(Self { source, arrays, settings, kinds, size, tiles, together })
     }
 
     /// Name of an array that each kind of extremum has.
     fn name(&self, array: &str, kind: usize) -> String {
         format!("{array}-{kind}")
-    }
-
-    /// Index of the first extremum of each trace, and the count of all.
-    fn offsets(&self, kind: usize) -> Result<&Vec<u32>, InterpError> {
-        if let Some(offsets) = self.offsets[kind].get() {
-            return Ok(offsets);
-        }
-        let read = self.read(&self.name("offsets", kind), 0)?;
-        Ok(self.offsets[kind].get_or_init(|| read))
     }
 
     fn write<T: Pod>(&self, array: &str, part: usize, values: &[T]) -> Result<(), InterpError> {

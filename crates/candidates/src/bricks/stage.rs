@@ -90,7 +90,7 @@ impl Stage {
     }
 
     /// Whether the stage has one task, which handles summaries of all bricks.
-    pub(crate) fn is_merging(self) -> bool {
+    pub fn is_merging(self) -> bool {
         use Kind::{Components, Divides, Field, Joined, Layers, Lobes, Noise, Offsets, Order, Surroundings, Variances};
         matches!(
             self.0,
@@ -106,6 +106,11 @@ impl Stage {
                 | Joined
                 | Order
         )
+    }
+
+    /// Whether the count of its tasks depends on the survey and the bricks alone.
+    pub fn is_counted(self) -> bool {
+        self.0 != Kind::Trees
     }
 
     pub(crate) fn is_growing(self) -> bool {
