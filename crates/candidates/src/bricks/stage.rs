@@ -125,10 +125,10 @@ impl Stage {
     pub(crate) fn last_to_read(self) -> &'static [&'static str] {
         match self.0 {
             Kind::Offsets => &["counts"],
-            Kind::Field => &["jumps", "heights", "strong"],
-            Kind::Lobes => &["beside"],
-            Kind::Noise => &["places", "changes"],
-            Kind::Variances => &["spread"],
+            Kind::Field => &["jumps", "heights", "marks-heights", "strong", "marks-strong"],
+            Kind::Lobes => &["beside", "marks-beside"],
+            Kind::Noise => &["places", "marks-places", "changes", "marks-changes"],
+            Kind::Variances => &["spread", "marks-spread"],
             Kind::Surroundings => &["sums"],
             Kind::Evidence => &["breaks-x", "breaks-y"],
             Kind::Parted => &["raw-evidence"],

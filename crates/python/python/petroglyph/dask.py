@@ -4,6 +4,8 @@ A task is a pure function of named arrays in the store: it reads a brick with it
 whole files, each of which has its name only when it is complete. Nothing is kept from one task to the next. So a task may
 run anywhere, twice, or again after its worker was lost: the bytes are the same, and they are those of the program itself.
 
+Stages whose result depends on the whole survey hand short summaries of each brick to a task that merges them.
+
 Every function takes ``scheduler``, as of :func:`dask.compute` (``"threads"``, ``"processes"``, ``"synchronous"``), or a
 :class:`distributed.Client`; the names of tasks in the dashboard are those of the stages.
 """
