@@ -7,6 +7,7 @@ It prints Markdown. What is measured says so; everything else follows from it by
 
 import heapq
 import os
+import shutil
 import sys
 import tempfile
 import time
@@ -23,12 +24,24 @@ BANDWIDTH = 250e6
 #: Samples down a trace of the modelled surveys.
 SAMPLES = 1024
 TIMES = []
+#: Bytes that they read and wrote, in the same order.
+MOVED = []
+
+
+def moved():
+    """Bytes that this process has read and written so far."""
+    try:
+        told = dict(line.split(": ") for line in Path("/proc/self/io").read_text().splitlines())
+    except OSError:
+        return 0
+    return int(told["rchar"]) + int(told["wchar"])
 
 
 def timed(name, call, *args):
-    wall, cpu = time.perf_counter(), time.thread_time()
+    wall, cpu, before = time.perf_counter(), time.process_time(), moved()
     result = call(*args)
-    TIMES.append((name, time.perf_counter() - wall, time.thread_time() - cpu))
+    TIMES.append((name, time.perf_counter() - wall, time.process_time() - cpu))
+    MOVED.append(moved() - before)
     return result
 
 
@@ -93,6 +106,60 @@ def modelled(lines, rates, kind, overhead):
     return tasks
 
 
+def candidates(folder, side):
+    """Measures every task of an extraction from a synthetic survey.
+
+    Returns the project, and for each stage its count of tasks and, per sample, seconds of the processor, bytes, and bytes
+    of the whole survey that each of its tasks reads.
+    """
+    petroglyph.program.synth(folder / "synth", size=f"{side}x{side}x{side}", seed=3, snr="3")
+    project = petroglyph.import_segy(folder / "synth" / "survey.sgy", folder / "synth.petro")
+    for n in ("own", "two"):
+        shutil.copytree(project.path, folder / f"{n}.petro")
+    TIMES.clear()
+    MOVED.clear()
+    original = stages._run
+    stages._run = lambda graph, wanted, *_: with_times(graph, wanted)
+    try:
+        done = stages.extract(project)
+    finally:
+        stages._run = original
+    found = {}
+    for (name, _, cpu), own in zip(TIMES, MOVED, strict=True):
+        tasks, seconds, size = found.get(name, (0, 0.0, 0))
+        found[name] = (tasks + 1, seconds + cpu, size + own)
+    # Coarse dips of two kinds of extrema, in cells of 8 x 8 x 16 samples, and a row for each leaf.
+    whole = {"dips": 2 * 8 / 1024, "distances": 16 * done["leaves"] / side**3}
+    return {
+        name: (tasks, cpu / side**3, size / side**3, whole.get(name, 0.0))
+        for name, (tasks, cpu, size) in found.items()
+        if name != "plan"
+    }
+
+
+def modelled_candidates(lines, measured, overhead):
+    """Tasks of an extraction of lines x lines traces: seconds, and what each needs.
+
+    What one task does for the whole survey grows with the survey; all other stages have a task for each column.
+    """
+    columns = -(-lines // stages.FILE_LINES)
+    samples = lines * lines * SAMPLES
+    tasks, before = {}, []
+    for name, (count, seconds, size, whole) in measured.items():
+        if name.endswith("-end") and name.removesuffix("-end") in measured:
+            tasks[name] = (overhead + seconds * samples, before)
+            before = [name]
+            continue
+        level = int(name.removeprefix("store-level-")) if name.startswith("store-level-") else 0
+        is_single = count == 1 and not level and name != "trees"
+        many = 1 if is_single else max(columns**2 // 4**level, 1)
+        each = (seconds + size / BANDWIDTH) * samples / many + whole * samples / BANDWIDTH + overhead
+        own = [(name, n) for n in range(many)]
+        tasks.update({key: (each, before) for key in own})
+        before = own
+    return tasks
+
+
 def main():
     side = int(sys.argv[1]) if len(sys.argv) > 1 else 256
     geometry = petroglyph.Geometry.regular((side, side, side))
@@ -132,6 +199,13 @@ def main():
         rates["halve"] = max(halves and sum(halves) / len(halves) / ((side // 2) ** 3 * 4) or 0.0, 1e-12)
         assert cpu <= wall * 1.5
 
+    measured = candidates(folder, side)
+    cpu, size = (sum(row[n] for row in measured.values()) * side**3 for n in (1, 2))
+    print(
+        f"| candidates | {sum(row[0] for row in measured.values())} | {cpu:.1f} | {size / 1e6:.0f} MB in all | | "
+        f"{cpu / (side**3 * 4 / 1e9):.0f} |"
+    )
+
     with distributed.LocalCluster(2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
         with distributed.Client(cluster) as client:
             count = 2000
@@ -145,17 +219,31 @@ def main():
             began = time.perf_counter()
             stages.attribute(project, "semblance", "two", scheduler=client)
             two = time.perf_counter() - began
+            began = time.perf_counter()
+            petroglyph.open(folder / "own.petro").extract(memory=1 << 40)
+            own_extract = time.perf_counter() - began
+            began = time.perf_counter()
+            stages.extract(petroglyph.open(folder / "two.petro"), scheduler=client)
+            two_extract = time.perf_counter() - began
     print(f"\nOverhead of a task: {overhead * 1e3:.2f} ms (measured on {count} empty ones, two workers).")
-    print(f"Semblance: {own:.1f} s by the program's own threads, {two:.1f} s by two workers ({two / own:.2f}).\n")
+    print(f"Semblance: {own:.1f} s by the program's own threads, {two:.1f} s by two workers ({two / own:.2f}).")
+    print(
+        f"Candidates: {own_extract:.1f} s by the program's own threads in one piece, {two_extract:.1f} s by two workers "
+        f"({two_extract / own_extract:.2f}).\n"
+    )
 
     print("| modelled survey | workers | tasks | hours | efficiency | worker hours |")
     print("|---|---|---|---|---|---|")
     terabyte = int((1e12 / 4 / SAMPLES) ** 0.5)
-    for kind in ("envelope", "semblance"):
+    for kind in ("envelope", "semblance", "candidates"):
         for lines, workers in ((2048, 16), (terabyte, 64)):
-            tasks = modelled(lines, rates, kind, overhead)
+            if kind == "candidates":
+                tasks = modelled_candidates(lines, measured, overhead)
+            else:
+                tasks = modelled(lines, rates, kind, overhead)
             total = sum(seconds for seconds, _ in tasks.values())
-            end = schedule(tasks, workers)
+            # The scheduler hands out one task after the other.
+            end = max(schedule(tasks, workers), len(tasks) * overhead)
             print(
                 f"| {kind}, {lines} x {lines} x {SAMPLES} | {workers} | {len(tasks)} | {end / 3600:.2f} | "
                 f"{total / workers / end:.0%} | {total / 3600:.1f} |"

@@ -26,6 +26,6 @@ pub(super) fn extract(typed: ExtractArgs) -> Result<Request, Usage> {
         distance: DistanceSettings { max_distance: typed.max_distance },
     };
     let memory_bytes = bytes("--memory", typed.memory.as_deref())?;
-    let extract = Extract { volume: typed.volume, settings, memory_bytes };
+    let extract = Extract { volume: typed.volume, settings, memory_bytes, just_stored: false };
     Ok(Request::Extract { project: typed.project, extract })
 }

@@ -15,7 +15,6 @@ use project::Project;
 use project::ProjectError;
 use project::command::{AddScene, Command, Effect, ProposeFaults, SetParameterization, SetRaw};
 use project::folder::refuse_inside_project;
-use project::interpretation::extraction;
 use project::{derived, styles};
 use render::Scene;
 use std::path::{Path, PathBuf};
@@ -98,8 +97,7 @@ pub(super) fn carry_out(request: Request, wait: Duration, progress: &Progress) -
             }
         }
         Request::ExportCandidates { project, out } => {
-            let project = open(&project)?;
-            let count = extraction::export_points(project.root(), project.document(), &out, progress)?;
+            let count = exports::candidates::write(&open(&project)?, &out, progress)?;
             let mut report = Report::line(format!("{}: {count} points of horizon candidates", out.display()));
             report.field("file", &out).field("points", count);
             report

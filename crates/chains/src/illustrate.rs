@@ -167,7 +167,12 @@ pub const LAYERS: usize = 6;
 pub fn layers_by_time(project: &mut Project, layers: usize, progress: &Progress) -> Result<Vec<String>, ProjectError> {
     if project.document().extraction.is_none() {
         project.apply(
-            &Command::Extract(Extract { volume: None, settings: ExtractSettings::default(), memory_bytes: None }),
+            &Command::Extract(Extract {
+                volume: None,
+                settings: ExtractSettings::default(),
+                memory_bytes: None,
+                just_stored: false,
+            }),
             progress,
         )?;
     }

@@ -6,6 +6,7 @@
 //! | `project` | a project: commands in and effects out as JSON, its data as arrays |
 //! | `program` | the commands of the command line, carried out in this process |
 //! | `bricks` | pure functions on a brick with its halo, on one thread each |
+//! | `extraction` | an extraction of horizon candidates whose tasks other processes do |
 //! | `stored` | stored volumes, read by box, written from Python, or written file by file by many processes |
 //! | `schema` | names of commands and of their fields, so that tests compare them with their Python twins |
 //! | `arrays` | vectors become arrays without a copy |
@@ -18,6 +19,7 @@
 
 mod arrays;
 mod bricks;
+mod extraction;
 mod program;
 mod project;
 mod refusal;
@@ -34,10 +36,13 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("STORE_VERSION", store::VERSION)?;
     module.add_class::<project::Project>()?;
     module.add_class::<stored::VolumeParts>()?;
+    module.add_class::<extraction::Extraction>()?;
+    module.add_class::<extraction::ExtractionTasks>()?;
     module.add_function(wrap_pyfunction!(program::run, module)?)?;
     module.add_function(wrap_pyfunction!(program::commands, module)?)?;
     module.add_function(wrap_pyfunction!(program::decode_png, module)?)?;
     module.add_function(wrap_pyfunction!(schema::command_fields, module)?)?;
+    module.add_function(wrap_pyfunction!(extraction::extraction_stages, module)?)?;
     module.add_function(wrap_pyfunction!(stored::volume_info, module)?)?;
     module.add_function(wrap_pyfunction!(stored::read_box, module)?)?;
     module.add_function(wrap_pyfunction!(stored::read_live, module)?)?;

@@ -43,7 +43,7 @@ fn mesh<'py>(py: Python<'py>, mesh: &TriangleMesh) -> PyResult<Mesh<'py>> {
 }
 
 impl Project {
-    fn lock(&self) -> MutexGuard<'_, project::Project> {
+    pub fn lock(&self) -> MutexGuard<'_, project::Project> {
         self.project.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -267,7 +267,7 @@ fn command(json: &str, memory: Option<u64>, moved: bool) -> PyResult<Command> {
     match &mut command {
         Command::Import(change) => (change.memory_bytes, change.moved) = (memory, moved),
         Command::Attribute(change) => change.memory_bytes = memory,
-        Command::Extract(change) => change.memory_bytes = memory,
+        Command::Extract(change) => (change.memory_bytes, change.just_stored) = (memory, moved),
         _ => {}
     }
     Ok(command)

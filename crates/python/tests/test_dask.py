@@ -3,6 +3,7 @@
 import json
 import os
 import pickle
+import shutil
 import time
 from pathlib import Path
 
@@ -100,7 +101,7 @@ def test_one_and_four_workers_write_the_same_bytes(large):
         assert same(large, "whole", f"on-{workers}")
 
 
-def kill_once(marker):
+def kill_once(marker, *_):
     """Kills the process that runs this, the first time."""
     try:
         os.close(os.open(marker, os.O_CREAT | os.O_EXCL))
@@ -175,6 +176,124 @@ def test_pictures_are_drawn_side_by_side(project):
     drawn = petroglyph.dask.render(project, options, scheduler="threads")
     assert [one._repr_png_() for one in drawn] == [project.render(**option)._repr_png_() for option in options]
     assert drawn[0]._repr_png_() != drawn[1]._repr_png_()
+
+
+# Horizon candidates.
+
+
+@pytest.fixture(scope="module")
+def whole(larger, tmp_path_factory):
+    """The files of the candidates that the program extracts in one piece."""
+    path = tmp_path_factory.mktemp("whole") / "large.petro"
+    shutil.copytree(larger.path, path)
+    done = petroglyph.open(path).extract(memory=1 << 40)
+    assert done["surfaces"] > 5 and done["triangles"] > 100_000 and done["computed"]
+    return candidates(path)
+
+
+def candidates(path):
+    return contents(Path(path) / "derived" / "candidates.zarr")
+
+
+def is_tidy(project):
+    return [path.name for path in (project.path / "derived").iterdir()] == ["candidates.zarr"]
+
+
+@pytest.mark.parametrize("edge", [128, 61, 34])
+def test_candidates_in_bricks_of_any_size_are_those_of_one_piece(large, whole, edge):
+    done = petroglyph.dask.extract(large, edge=edge, scheduler="threads")
+    assert candidates(large.path) == whole
+    assert done["surfaces"] > 5 and is_tidy(large)
+    assert large.history[-1]["in_effect"] and "extraction" in large.document
+    # Asked for again they are there, as they are for the program's own command.
+    assert petroglyph.dask.extract(large, edge=edge)["triangles"] == done["triangles"]
+    assert not large.extract()["computed"]
+
+
+@pytest.mark.parametrize("workers", [1, 4])
+def test_one_and_four_workers_extract_the_same_candidates(large, whole, workers):
+    with distributed.LocalCluster(
+        n_workers=workers, threads_per_worker=1, processes=workers == 1, dashboard_address=None
+    ) as made, distributed.Client(made) as client:
+        petroglyph.dask.extract(large, edge=75, scheduler=client)
+    assert candidates(large.path) == whole and is_tidy(large)
+
+
+@pytest.mark.parametrize("stage", ["evidence", "trees"])
+def test_candidates_are_the_same_when_a_worker_is_killed_in_the_middle(large, whole, cluster, tmp_path, monkeypatch, stage):
+    marker = str(tmp_path / "killed")
+    original = petroglyph.dask._candidates_graph
+
+    def with_a_killer(plan):
+        graph, wanted = original(plan)
+        killer = ("killer", 0)
+        # Once the stage before is done, whose answers are lost with the worker.
+        victims = [key for key in graph.tasks if key[0].startswith(f"{stage}-") and len(key) == 2]
+        graph.tasks[killer] = (kill_once, marker, graph.tasks[victims[0]][-1])
+        for victim in victims[1:]:
+            graph.tasks[victim] = (*graph.tasks[victim], killer)
+        assert len(victims) > 1
+        return graph, wanted
+
+    monkeypatch.setattr(petroglyph.dask, "_candidates_graph", with_a_killer)
+    cluster.register_plugin(_Importable(str(Path(__file__).parent)))
+    petroglyph.dask.extract(large, edge=70, scheduler=cluster)
+    assert os.path.exists(marker), "a worker was killed"
+    assert candidates(large.path) == whole and is_tidy(large)
+
+
+def test_an_interrupted_extraction_goes_on_where_it_was(large, whole, monkeypatch):
+    original = petroglyph.dask._candidates_task
+
+    def interrupted(plan, stage, slot, *rest):
+        if stage == "labels" and slot == 2:
+            raise KeyboardInterrupt
+        original(plan, stage, slot, *rest)
+
+    monkeypatch.setattr(petroglyph.dask, "_candidates_task", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        petroglyph.dask.extract(large, edge=80, scheduler="synchronous")
+    assert "extraction" not in large.document
+    left = [path.name for path in (large.path / "derived" / "unfinished").glob("*/arrays/done-windows/*")]
+    assert set(left) == {"0", "1", "2", "3", "all"}
+    monkeypatch.undo()
+    petroglyph.dask.extract(large, edge=80, scheduler="synchronous")
+    assert candidates(large.path) == whole and is_tidy(large)
+
+
+def test_a_plan_of_an_extraction_names_its_tasks_and_too_little_memory_is_said(large):
+    before = contents(large.path)
+    plan = petroglyph.dask.plan_extraction(large.volume().path, edge=50)
+    assert plan.tasks["extrema"] == plan.tasks["labels"] == 9 and plan.tasks["noise"] == 1
+    assert plan.tasks["distances"] == plan.tasks["store-columns"] == 4
+    assert plan.task_bytes == petroglyph.dask.MEMORY
+    for call in (
+        lambda: petroglyph.dask.plan_extraction(large.volume().path, memory=1 << 20),
+        lambda: petroglyph.dask.extract(large, memory=1 << 20),
+    ):
+        with pytest.raises(petroglyph.PetroglyphError, match="too few for bricks"):
+            call()
+    assert contents(large.path) == before
+
+
+def test_an_extraction_that_cannot_be_done_leaves_nothing(large, monkeypatch):
+    before = contents(large.path)
+    monkeypatch.setattr(petroglyph.dask.os.path, "isdir", lambda path: not path.endswith("arrays"))
+    with pytest.raises(petroglyph.PetroglyphError, match="is not there on the worker"):
+        petroglyph.dask.extract(large, scheduler="synchronous")
+    monkeypatch.undo()
+    graph_of = petroglyph.dask._candidates_graph
+    monkeypatch.setattr(petroglyph.dask, "__version__", "9.9.9")
+
+    def on_a_worker_of_another_version(plan):
+        graph = graph_of(plan)
+        monkeypatch.setattr(petroglyph.dask, "__version__", petroglyph.__version__)
+        return graph
+
+    monkeypatch.setattr(petroglyph.dask, "_candidates_graph", on_a_worker_of_another_version)
+    with pytest.raises(petroglyph.PetroglyphError, match="the client 9.9.9"):
+        petroglyph.dask.extract(large, scheduler="synchronous")
+    assert contents(large.path) == before
 
 
 # What goes wrong.
@@ -264,5 +383,15 @@ def test_no_task_uses_more_memory_than_is_stated(large, tmp_path, kind):
         f"stage = _Stage({kind!r}, {str(source)!r}, ({str(target)!r},), (150, 140, 70), lines, None, None, '', "
         "(petroglyph.__version__, petroglyph.STORE_VERSION))\n"
         f"_column(stage, ({str(source)!r},), (0, 0), (128, 128))"
+    )
+    assert used <= stated, f"{used} bytes, {stated} stated"
+
+
+def test_no_task_of_an_extraction_uses_more_memory_than_is_stated(large):
+    memory = 24 << 20
+    stated = petroglyph.dask.plan_extraction(large.volume().path, memory=memory).task_bytes
+    used = peak_bytes(
+        f"project = petroglyph.open({str(large.path)!r})\n"
+        f"petroglyph.dask.extract(project, memory={memory}, scheduler='synchronous')"
     )
     assert used <= stated, f"{used} bytes, {stated} stated"

@@ -109,8 +109,8 @@ pub fn read_group(group: &Path) -> Result<Map<String, Value>, StoreError> {
     }
 }
 
-/// Writes the metadata of an array whose chunks are coded by `codec`.
-fn create<T: StoredSample>(
+/// An array in the folder `group` whose chunks are coded by `codec`; nothing is written.
+fn build<T: StoredSample>(
     group: &Path,
     name: &str,
     layout: &ArrayLayout,
@@ -127,12 +127,23 @@ fn create<T: StoredSample>(
     builder.dimension_names(Some(layout.axes.iter().map(String::as_str)));
     attributes.insert(COMPLETE.to_owned(), Value::Bool(true));
     builder.attributes(attributes);
-    let array = builder.build(file_store(group, "written")?, &format!("/{name}"));
-    let array = array.map_err(|error| StoreError::Array {
+    builder.build(file_store(group, "written")?, &format!("/{name}")).map_err(|error| StoreError::Array {
         path: group.to_owned(),
         action: "written",
         reason: error.to_string(),
-    })?;
+    })
+}
+
+/// Writes the metadata of an array whose chunks are coded by `codec`.
+fn create<T: StoredSample>(
+    group: &Path,
+    name: &str,
+    layout: &ArrayLayout,
+    fill: T,
+    codec: Arc<dyn BytesToBytesCodecTraits>,
+    attributes: Map<String, Value>,
+) -> Result<Array<FilesystemStore>, StoreError> {
+    let array = build(group, name, layout, fill, codec, attributes)?;
     array.store_metadata().map_err(|error| explain_storage(&error, "written", group, name))?;
     Ok(array)
 }
@@ -200,10 +211,28 @@ pub struct ArrayWriter<T> {
     name: String,
     layout: ArrayLayout,
     array: Array<FilesystemStore>,
+    /// Where a file is written before it is moved to its place, if others write files of the array too.
+    apart: Option<PathBuf>,
     of: std::marker::PhantomData<T>,
 }
 
 impl<T: StoredSample> ArrayWriter<T> {
+    /// An array whose metadata are written already. Where other processes write files of it too, `apart` is a folder of
+    /// this process: each file is written there, and moved to its place once it is complete.
+    pub fn of_created(
+        group: &Path,
+        name: &str,
+        layout: ArrayLayout,
+        fill: T,
+        apart: Option<&Path>,
+    ) -> Result<Self, StoreError> {
+        let folder = apart.unwrap_or(group);
+        std::fs::create_dir_all(folder).map_err(|source| StoreError::io("written", folder, source))?;
+        let array = build(folder, name, &layout, fill, codec(), Map::new())?;
+        let (apart, of) = (apart.map(Path::to_owned), std::marker::PhantomData);
+        Ok(Self { group: group.to_owned(), name: name.to_owned(), layout, array, apart, of })
+    }
+
     /// Creates the array `name` (it may contain `/`) in the folder `group`; `fill` is the value of elements that were
     /// not written.
     pub fn create(group: &Path, name: &str, layout: ArrayLayout, fill: T) -> Result<Self, StoreError> {
@@ -218,8 +247,9 @@ impl<T: StoredSample> ArrayWriter<T> {
         fill: T,
         attributes: Map<String, Value>,
     ) -> Result<Self, StoreError> {
-        let array = create(group, name, &layout, fill, Arc::new(ZstdCodec::new(ZSTD_LEVEL, true)), attributes)?;
-        Ok(Self { group: group.to_owned(), name: name.to_owned(), layout, array, of: std::marker::PhantomData })
+        let array = create(group, name, &layout, fill, codec(), attributes)?;
+        let (apart, of) = (None, std::marker::PhantomData);
+        Ok(Self { group: group.to_owned(), name: name.to_owned(), layout, array, apart, of })
     }
 
     /// The division into chunks and shards.
@@ -229,14 +259,30 @@ impl<T: StoredSample> ArrayWriter<T> {
 
     /// Writes the shard at `index`: `[…]` of the file's shape, padded where it reaches beyond the array.
     pub fn write_shard(&self, index: &[usize], values: Vec<T>) -> Result<(), StoreError> {
-        let index: Vec<u64> = index.iter().map(|&n| n as u64).collect();
+        let place: Vec<u64> = index.iter().map(|&n| n as u64).collect();
         // On one thread: the library writes the chunks of a shard in the order in which its threads finish them, and
         // the same input must give the same bytes. Shards are written in parallel instead.
         let options = CodecOptions::default().with_store_empty_chunks(true).with_concurrent_target(1);
         self.array
-            .store_chunk_opt(&index, values, &options)
-            .map_err(|error| explain(&error, "written", &self.group, &self.name))
+            .store_chunk_opt(&place, values, &options)
+            .map_err(|error| explain(&error, "written", &self.group, &self.name))?;
+        self.apart.as_ref().map_or(Ok(()), |apart| self.move_into_place(apart, index))
     }
+
+    fn move_into_place(&self, apart: &Path, index: &[usize]) -> Result<(), StoreError> {
+        let key = index.iter().map(usize::to_string).collect::<Vec<_>>().join("/");
+        let file = format!("{}/c/{key}", self.name);
+        let target = self.group.join(&file);
+        let parent = target.parent().unwrap_or(&self.group);
+        std::fs::create_dir_all(parent)
+            .and_then(|()| std::fs::rename(apart.join(&file), &target))
+            .map_err(|source| StoreError::io("written", &target, source))
+    }
+}
+
+/// How the chunks of everything but volumes are coded.
+fn codec() -> Arc<dyn BytesToBytesCodecTraits> {
+    Arc::new(ZstdCodec::new(ZSTD_LEVEL, true))
 }
 
 /// Writes a whole array, one file at a time on each thread. Memory: one file's elements per thread beside

@@ -19,6 +19,9 @@
 //! thread. Columns (`bricks`) need no more than themselves.
 
 mod bricks;
+mod parts;
+
+pub use parts::CandidateParts;
 
 use super::array::{ArrayWriter, StoredArray, write_array, write_group};
 use super::error::StoreError;
@@ -190,6 +193,21 @@ impl LeafWriter {
             Self::Narrow(ArrayWriter::create(group, name, layout, 0)?)
         } else {
             Self::Wide(ArrayWriter::create(group, name, layout, 0)?)
+        })
+    }
+
+    /// The same once its metadata are written; for `apart` see [`ArrayWriter::of_created`].
+    fn open(
+        group: &Path,
+        name: &str,
+        layout: ArrayLayout,
+        leaves: usize,
+        apart: Option<&Path>,
+    ) -> Result<Self, StoreError> {
+        Ok(if leaves <= usize::from(u16::MAX) {
+            Self::Narrow(ArrayWriter::of_created(group, name, layout, 0, apart)?)
+        } else {
+            Self::Wide(ArrayWriter::of_created(group, name, layout, 0, apart)?)
         })
     }
 
@@ -434,7 +452,7 @@ fn widened(ids: &[u16]) -> Vec<u32> {
 mod tests {
     use super::*;
 
-    fn info(size: [usize; 3], leaves: usize) -> CandidateInfo<Value> {
+    pub(super) fn info(size: [usize; 3], leaves: usize) -> CandidateInfo<Value> {
         CandidateInfo {
             key: "k".into(),
             size,
@@ -444,7 +462,7 @@ mod tests {
         }
     }
 
-    fn tables() -> ForestTables {
+    pub(super) fn tables() -> ForestTables {
         ForestTables {
             trace: vec![[0, 1], [65535, 2], [3, 4]],
             z: vec![0.5, 1.25, 7.0],
@@ -455,7 +473,7 @@ mod tests {
     }
 
     /// A volume in which every value tells its place.
-    fn volume(size: [usize; 3], leaves: usize) -> (Vec<u8>, Vec<u32>) {
+    pub(super) fn volume(size: [usize; 3], leaves: usize) -> (Vec<u8>, Vec<u32>) {
         let count = size.iter().product::<usize>();
         let codes: Vec<u8> = (0..count).map(|n| ((n * 7919) % 311).min(255) as u8).collect();
         let ids = codes.iter().enumerate();

@@ -7,13 +7,13 @@
 //! faults/NAME.json                write_fault, read_fault
 //! wells/NAME.json                 write_well, read_well
 //! derived/parameterization.zarr   write_parameterization, StoredParameterization
-//! derived/candidates.zarr         CandidateWriter, StoredCandidates
+//! derived/candidates.zarr         CandidateWriter, CandidateParts, StoredCandidates
 //! ```
 //!
 //! Everything is written under a temporary name in the same folder, synced, and renamed at the very end
 //! ([`Replacement`]). After a crash, a cancelled write or a full disk, the previous state is still there.
-//! [`resume_blocks`] is the exception: it writes in place, so that an interrupted write can be continued; so does
-//! [`VolumeParts`], with which several processes write one volume.
+//! [`resume_blocks`] is the exception: it writes in place, so that an interrupted write can be continued; so do
+//! [`VolumeParts`] and [`CandidateParts`], with which several processes write one volume, or one set of candidates.
 //!
 //! Volumes that do not fit into memory come from a [`survey::source::BlockSource`], and candidates arrive
 //! through [`survey::candidates::CandidateSink`]. Only the modules `array` and `sample` use the array library
@@ -68,7 +68,7 @@ mod volume_info;
 mod well;
 
 pub use array::{ArrayWriter, StoredArray, read_group, write_array, write_group};
-pub use candidates::{CandidateWriter, StoredCandidates};
+pub use candidates::{CandidateParts, CandidateWriter, StoredCandidates};
 pub use error::StoreError;
 pub use fault::{read_fault, write_fault};
 pub use header::VERSION;

@@ -16,6 +16,7 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{SystemTime, UNIX_EPOCH};
 use survey::arrays::NamedArrays;
 use survey::positional::PlacedFile;
 use survey::source::SourceError;
@@ -36,6 +37,8 @@ const PRESENT_START: &str = "/proc/sys/kernel/random/boot_id";
 #[derive(Debug)]
 pub struct FolderArrays {
     folder: PathBuf,
+    /// When it was opened, nanoseconds: with the number of the process, no other one's on any machine.
+    since: u128,
     opened: Mutex<VecDeque<OpenPart>>,
 }
 
@@ -62,7 +65,21 @@ impl FolderArrays {
         }
         fs::create_dir_all(folder).map_err(fail)?;
         fs::write(folder.join(SYSTEM), present).map_err(fail)?;
-        Ok(Self { folder: folder.to_owned(), opened: Mutex::default() })
+        Ok(Self::at(folder))
+    }
+
+    /// The folder that another process has opened, perhaps on another machine.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn shared(folder: &Path) -> Result<Self, StoreError> {
+        fs::read_dir(folder).map_err(|source| StoreError::io("read", folder, source))?;
+        Ok(Self::at(folder))
+    }
+
+    fn at(folder: &Path) -> Self {
+        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
+        Self { folder: folder.to_owned(), since, opened: Mutex::default() }
     }
 
     fn path(&self, array: &str, part: usize) -> PathBuf {
@@ -101,8 +118,8 @@ impl NamedArrays for FolderArrays {
     fn write(&self, array: &str, part: usize, bytes: &[u8]) -> Result<(), SourceError> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         let path = self.path(array, part);
-        let partial =
-            self.folder.join(array).join(format!(".{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
+        let own = format!(".{}-{:x}-{}", std::process::id(), self.since, COUNT.fetch_add(1, Ordering::Relaxed));
+        let partial = self.folder.join(array).join(own);
         let write = || -> io::Result<()> {
             use io::Write;
             let mut file = fs::File::create(&partial)?;
@@ -111,7 +128,11 @@ impl NamedArrays for FolderArrays {
         };
         let written = match write() {
             Err(error) if error.kind() == ErrorKind::NotFound => {
-                fs::create_dir_all(self.folder.join(array)).and_then(|()| write())
+                // Not the folder itself: a process that was thought lost must not make again what was removed.
+                match fs::create_dir(self.folder.join(array)) {
+                    Err(error) if error.kind() != ErrorKind::AlreadyExists => Err(error),
+                    _ => write(),
+                }
             }
             written => written,
         };
@@ -181,6 +202,21 @@ mod tests {
         assert!(again.length("z-0", 3).is_err());
         arrays.remove("z-0");
         assert!(arrays.read("z-0", 3, 0, &mut out).is_err());
+    }
+
+    #[test]
+    fn another_machine_sees_the_arrays_and_makes_no_folder_of_its_own() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("spilled");
+        assert!(FolderArrays::shared(&path).is_err());
+        FolderArrays::open(&path).unwrap().write("z", 0, b"1").unwrap();
+        fs::write(path.join(SYSTEM), "another").unwrap();
+        let shared = FolderArrays::shared(&path).unwrap();
+        assert!(shared.is_whole("z", 0));
+        shared.write("y", 4, b"23").unwrap();
+        assert!(shared.is_whole("y", 4) && shared.length("y", 4).unwrap() == 2);
+        fs::remove_dir_all(&path).unwrap();
+        assert!(shared.write("x", 0, b"1").is_err() && !path.exists());
     }
 
     #[test]

@@ -40,12 +40,16 @@ fn size(bytes: Option<u64>) -> String {
 pub fn share_freed_memory(threads: usize) {
     /// Blocks from this size go back to the system when they are freed.
     const LARGE: libc::c_int = 4 << 20;
+    /// Bytes that are kept for what comes next: without them a tenth of the time went into giving memory back and taking it
+    /// again.
+    const KEPT: libc::c_int = 16 << 20;
     let arenas = threads.clamp(1, 1 << 10) as libc::c_int;
     #[expect(unsafe_code, reason = "the standard library cannot set up its allocator")]
     // SAFETY: the call changes where later blocks come from, not those that exist; it may be made from any thread.
     unsafe {
         libc::mallopt(libc::M_ARENA_MAX, arenas);
         libc::mallopt(libc::M_MMAP_THRESHOLD, LARGE);
+        libc::mallopt(libc::M_TRIM_THRESHOLD, KEPT);
     }
 }
 

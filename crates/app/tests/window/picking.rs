@@ -17,7 +17,7 @@ use survey::Progress;
 const LEAF: u32 = 80;
 
 fn extract(project: &mut Project, settings: &ExtractSettings) {
-    let extract = Extract { volume: None, settings: settings.clone(), memory_bytes: None };
+    let extract = Extract { volume: None, settings: settings.clone(), memory_bytes: None, just_stored: false };
     project.apply(&Command::Extract(extract), &Progress::silent()).unwrap();
 }
 

@@ -44,7 +44,7 @@ impl Bricks<'_> {
                 }
                 self.keep(["breaks-x", "breaks-y"][axis], &patch, &ratios)?;
             }
-            self.keep_samples(&self.name("spread", kind), brick, &samples)?;
+            self.keep_samples(&self.name("spread", kind), brick, samples)?;
         }
         Ok(())
     }

@@ -96,9 +96,9 @@ impl Bricks<'_> {
                     strong.push(0, amplitude);
                 }
             }
-            self.keep_samples(&self.name("heights", kind), brick, &heights)?;
+            self.keep_samples(&self.name("heights", kind), brick, heights)?;
         }
-        self.keep_samples("strong", brick, &strong)?;
+        self.keep_samples("strong", brick, strong)?;
         self.write("jumps", brick, histograms.as_flattened().as_flattened())
     }
 
@@ -160,7 +160,7 @@ impl Bricks<'_> {
                 lobes::each_beside(&trace, strong, |pair| (0..2).for_each(|which| samples.push(which, pair[which])));
             }
         }
-        self.keep_samples("beside", brick, &samples)
+        self.keep_samples("beside", brick, samples)
     }
 
     /// The side lobes of the survey's reflectors: distance and height, or nothing.
@@ -197,8 +197,8 @@ impl Bricks<'_> {
                     changes.push(height * DIP_CLASSES + dip, change);
                 });
             }
-            self.keep_samples(&self.name("places", kind), brick, &places)?;
-            self.keep_samples(&self.name("changes", kind), brick, &changes)?;
+            self.keep_samples(&self.name("places", kind), brick, places)?;
+            self.keep_samples(&self.name("changes", kind), brick, changes)?;
             self.keep("dips", &patch, &dips)?;
             self.keep_links(&patch, &links)?;
         }

@@ -3,7 +3,7 @@
 use super::Bricks;
 use super::run::BYTES_A_TRIANGLE;
 use super::tiles::{Area, Halo, Tiling};
-use super::trees::Cell;
+use super::trees::{Cell, Leaf};
 use crate::distance::{CandidateColumns, CellRow, CellTriangle, ROW_CELLS, columns_among};
 use crate::error::InterpError;
 use bytemuck::Zeroable;
@@ -41,11 +41,13 @@ impl Bricks<'_> {
         let lines = area.x.len().div_ceil(area.x.len().div_ceil(most));
         let samples = area.traces() * nz;
         let (mut distance, mut leaf) = (Vec::<u8>::with_capacity(samples), Vec::<u32>::with_capacity(samples));
+        let around = self.columns().with_halo(&area, Halo::around(reach));
+        let leaves = self.forest()?.leaves_within(&around.x, &around.y)?;
         for first in area.x.clone().step_by(lines) {
             progress.check()?;
             let strip = Area { x: first..(first + lines).min(area.x.end), y: area.y.clone() };
             let around = self.columns().with_halo(&strip, Halo::around(reach));
-            let cells = self.cells_within(&around)?;
+            let cells = self.cells_within(&leaves, &around)?;
             let size = [around.x.len(), around.y.len(), nz];
             let local = |range: &Range<usize>, from: usize| range.start - from..range.end - from;
             let (x, y) = (local(&strip.x, around.x.start), local(&strip.y, around.y.start));
@@ -59,11 +61,11 @@ impl Bricks<'_> {
         self.write("leaf", column, &leaf)
     }
 
-    /// The triangles whose cells lie in an area, by cell of the area, in rows of [`ROW_CELLS`].
-    fn cells_within(&self, Area { x, y }: &Area) -> Result<Vec<CellRow>, InterpError> {
+    /// The triangles of leaves whose cells lie in an area, by cell of the area, in rows of [`ROW_CELLS`].
+    fn cells_within(&self, leaves: &[(usize, u32, Leaf)], Area { x, y }: &Area) -> Result<Vec<CellRow>, InterpError> {
         let mut rows: Vec<CellRow> = vec![Vec::new(); x.len().div_ceil(ROW_CELLS)];
         let mut room = Vec::new();
-        for (batch, id, leaf) in self.forest()?.leaves_within(x, y)? {
+        for &(batch, id, leaf) in leaves.iter().filter(|(.., leaf)| leaf.meets(x, y)) {
             let [start, end] = leaf.triangles.map(|at| at as usize);
             room.resize(end - start, Cell::zeroed());
             self.read_at("tree-cells", batch, start, &mut room)?;

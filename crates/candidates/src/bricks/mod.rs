@@ -25,7 +25,7 @@
 //! | `trees` | | none: whole surfaces, some at a time |
 //! | `distances` | the greatest distance | |
 //!
-//! Quantiles are exact (`samples`): bricks store their samples, which are counted twice. Floating-point sums are made
+//! Quantiles are exact (`samples`): bricks store their samples in order, with marks by which few of them are read. Floating-point sums are made
 //! within one task, in the order of the whole survey, or are sums of integers. So the result depends neither on the
 //! bricks' shape nor on threads, tasks or retries. Surfaces are numbered by their first vertex, leaves by their surface
 //! and their place in its tree; neither depends on the bricks.
@@ -58,7 +58,6 @@ use crate::grow::{GrowError, Method};
 use crate::surfaces::Extremum;
 use bytemuck::Pod;
 use std::convert::Infallible;
-use std::sync::OnceLock;
 use survey::arrays::NamedArrays;
 use survey::source::BoxSource;
 use tiles::Tiling;
@@ -73,8 +72,6 @@ pub struct Bricks<'a> {
     tiles: Tiling,
     /// Triangles of the surfaces whose trees one task builds, unless one surface has more.
     together: u64,
-    /// Index of the first extremum of each trace, by kind, once the stage `offsets` has run.
-    offsets: Vec<OnceLock<Vec<u32>>>,
 }
 
 impl<'a> Bricks<'a> {
@@ -102,23 +99,13 @@ impl<'a> Bricks<'a> {
         crate::forest::check_settings(&settings.forest)?;
         settings.distance.check()?;
         let tiles = Tiling { size: [size[0], size[1]], edge: bricks.edge.map(|edge| edge.max(1)) };
-        let offsets = kinds.iter().map(|_| OnceLock::new()).collect();
         let (settings, together) = (settings.clone(), bricks.triangles_together.max(1));
-        Ok(Self { source, arrays, settings, kinds, size, tiles, together, offsets })
+        Ok(Self { source, arrays, settings, kinds, size, tiles, together })
     }
 
     /// Name of an array that each kind of extremum has.
     fn name(&self, array: &str, kind: usize) -> String {
         format!("{array}-{kind}")
-    }
-
-    /// Index of the first extremum of each trace, and the count of all.
-    fn offsets(&self, kind: usize) -> Result<&Vec<u32>, InterpError> {
-        if let Some(offsets) = self.offsets[kind].get() {
-            return Ok(offsets);
-        }
-        let read = self.read(&self.name("offsets", kind), 0)?;
-        Ok(self.offsets[kind].get_or_init(|| read))
     }
 
     fn write<T: Pod>(&self, array: &str, part: usize, values: &[T]) -> Result<(), InterpError> {

@@ -11,7 +11,7 @@ use crate::error::InterpError;
 use crate::extrema::Extrema;
 use crate::grow::links::{BACK_X, BACK_Y, Links, NEXT_X, NEXT_Y, NONE};
 use bytemuck::Pod;
-use std::ops::Range;
+use std::ops::{Index, Range};
 
 /// The extrema of one kind in a brick and its halo.
 pub(crate) struct Patch {
@@ -27,6 +27,22 @@ pub(crate) struct Patch {
     pub(crate) extrema: Extrema,
     /// Index of the first extremum of each trace, `[x][y]`.
     firsts: Vec<u32>,
+    offsets: Offsets,
+}
+
+/// Index of the first extremum of each trace of the survey, of the inlines that a patch needs.
+struct Offsets {
+    /// Number of the first trace.
+    from: usize,
+    values: Vec<u32>,
+}
+
+impl Index<usize> for Offsets {
+    type Output = u32;
+
+    fn index(&self, trace: usize) -> &u32 {
+        &self.values[trace - self.from]
+    }
 }
 
 /// A link as it is stored: the number of the partner on its trace.
@@ -40,7 +56,7 @@ impl Bricks<'_> {
     pub(crate) fn patch(&self, kind: usize, brick: usize, halo: Halo) -> Result<Patch, InterpError> {
         let own = self.tiles.area(brick);
         let area = self.tiles.with_halo(&own, halo);
-        let offsets = self.offsets(kind)?;
+        let offsets = self.offsets(kind, &area)?;
         let ny = self.size[1];
         let (mut counts, mut firsts, mut reached) = (Vec::with_capacity(area.traces() + 1), Vec::new(), 0);
         counts.push(0);
@@ -53,15 +69,24 @@ impl Bricks<'_> {
         }
         let size = [area.x.len(), area.y.len(), self.size[2]];
         let empty = Extrema { size, kind: self.kinds[kind], offsets: counts, z: Vec::new(), amplitude: Vec::new() };
-        let mut patch = Patch { kind, brick, own, area, extrema: empty, firsts };
+        let mut patch = Patch { kind, brick, own, area, extrema: empty, firsts, offsets };
         patch.extrema.z = self.values("z", &patch)?;
         patch.extrema.amplitude = self.values("amplitude", &patch)?;
         Ok(patch)
     }
 
+    /// The offsets of the bricks that an area meets, as far as its last inline.
+    fn offsets(&self, kind: usize, area: &Area) -> Result<Offsets, InterpError> {
+        let ny = self.size[1];
+        let first = self.tiles.area(self.tiles.brick_of(area.x.start, area.y.start)).x.start;
+        let mut values = vec![0; (area.x.end - first) * ny + 1];
+        self.read_at(&self.name("offsets", kind), 0, first * ny, &mut values)?;
+        Ok(Offsets { from: first * ny, values })
+    }
+
     /// The values of an array for all extrema of a patch.
     pub(crate) fn values<T: Pod>(&self, array: &str, patch: &Patch) -> Result<Vec<T>, InterpError> {
-        let (name, offsets, ny) = (self.name(array, patch.kind), self.offsets(patch.kind)?, self.size[1]);
+        let (name, offsets, ny) = (self.name(array, patch.kind), &patch.offsets, self.size[1]);
         let count = patch.extrema.offsets.last().map_or(0, |&count| count as usize);
         let mut values = vec![T::zeroed(); count];
         // Values before the row of each brick that is met, by brick.
@@ -76,7 +101,8 @@ impl Bricks<'_> {
                 let (first, last) = (offsets[x * ny + y], offsets[x * ny + end]);
                 if first < last {
                     let known = before.iter().position(|(known, _)| *known == brick).unwrap_or_else(|| {
-                        before.push((brick, rows_before(&area, offsets, ny)));
+                        let met = Area { x: area.x.start..area.x.end.min(patch.area.x.end), y: area.y.clone() };
+                        before.push((brick, rows_before(&met, offsets, ny)));
                         before.len() - 1
                     });
                     let from = before[known].1[x - area.x.start] + first - offsets[x * ny + area.y.start];
@@ -145,7 +171,7 @@ impl Bricks<'_> {
 }
 
 /// Count of values of a brick before each of its rows.
-fn rows_before(area: &Area, offsets: &[u32], ny: usize) -> Vec<u32> {
+fn rows_before(area: &Area, offsets: &Offsets, ny: usize) -> Vec<u32> {
     let mut reached = 0;
     area.x
         .clone()

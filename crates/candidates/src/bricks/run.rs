@@ -65,6 +65,17 @@ impl BrickSettings {
         let triangles_together = (memory_bytes / workers / BYTES_A_TRIANGLE).max(1);
         Ok(Self { edge: [even(size[0]), even(size[1])], triangles_together, workers: workers as usize })
     }
+
+    /// The same with bricks of at most `edge` traces along x and y: more tasks, for more workers.
+    #[must_use]
+    pub fn with_edge(self, edge: usize) -> Self {
+        Self { edge: self.edge.map(|fitting| fitting.min(edge.max(1))), ..self }
+    }
+}
+
+/// Name of the array that notes which tasks of a stage are done.
+fn done(stage: Stage) -> String {
+    format!("done-{}", stage.name())
 }
 
 impl Bricks<'_> {
@@ -94,13 +105,40 @@ impl Bricks<'_> {
 
     /// Count of stages that an earlier run has done.
     pub fn done_stages(&self) -> usize {
-        let is_done = |stage: &Stage| self.arrays.is_whole(&format!("done-{}", stage.name()), usize::MAX);
+        let is_done = |stage: &Stage| self.arrays.is_whole(&done(*stage), usize::MAX);
         self.stages().iter().take_while(|stage| is_done(stage)).count()
+    }
+
+    /// Does a task unless it is noted as done, and notes it. So a task may be asked for again at any time, even when what
+    /// it read has been removed: a cluster repeats tasks whose answer was lost with a machine.
+    ///
+    /// # Errors
+    /// As [`Bricks::run_task`].
+    pub fn do_task(&self, stage: Stage, task: usize, progress: &Progress) -> Result<(), InterpError> {
+        let done = done(stage);
+        if self.arrays.is_whole(&done, usize::MAX) || self.arrays.is_whole(&done, task) {
+            return Ok(());
+        }
+        self.run_task(stage, task, progress)?;
+        self.write::<u8>(&done, task, &[])
+    }
+
+    /// Notes that all tasks of a stage are done, and removes the arrays that no later stage reads.
+    ///
+    /// # Errors
+    /// The note cannot be written.
+    pub fn close_stage(&self, stage: Stage) -> Result<(), InterpError> {
+        self.write::<u8>(&done(stage), usize::MAX, &[])?;
+        for array in stage.last_to_read() {
+            self.arrays.remove(array);
+            (0..self.kinds.len()).for_each(|kind| self.arrays.remove(&self.name(array, kind)));
+        }
+        Ok(())
     }
 
     /// Does all tasks of a stage that are not done yet.
     fn run_stage(&self, stage: Stage, workers: usize, progress: &Progress) -> Result<(), InterpError> {
-        let done = format!("done-{}", stage.name());
+        let done = done(stage);
         if self.arrays.is_whole(&done, usize::MAX) {
             return Ok(());
         }
@@ -109,8 +147,7 @@ impl Bricks<'_> {
         let (next, failure) = (AtomicUsize::new(0), Mutex::new(None));
         let work = || {
             while let Some(&task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let finished = self.run_task(stage, task, progress).and_then(|()| self.write::<u8>(&done, task, &[]));
-                if let Err(error) = finished.and_then(|()| Ok(progress.step(1)?)) {
+                if let Err(error) = self.do_task(stage, task, progress).and_then(|()| Ok(progress.step(1)?)) {
                     // Others stop at their next task.
                     next.store(tasks.len(), Ordering::Relaxed);
                     failure.lock().unwrap_or_else(std::sync::PoisonError::into_inner).get_or_insert(error);
@@ -133,12 +170,7 @@ impl Bricks<'_> {
         if let Some(error) = failure.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
             return Err(error);
         }
-        self.write::<u8>(&done, usize::MAX, &[])?;
-        for array in stage.last_to_read() {
-            self.arrays.remove(array);
-            (0..self.kinds.len()).for_each(|kind| self.arrays.remove(&self.name(array, kind)));
-        }
-        Ok(())
+        self.close_stage(stage)
     }
 
     /// The summary of an extraction whose stages are done, without times.

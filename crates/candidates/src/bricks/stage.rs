@@ -90,7 +90,7 @@ impl Stage {
     }
 
     /// Whether the stage has one task, which handles summaries of all bricks.
-    pub(crate) fn is_merging(self) -> bool {
+    pub fn is_merging(self) -> bool {
         use Kind::{Components, Divides, Field, Joined, Layers, Lobes, Noise, Offsets, Order, Surroundings, Variances};
         matches!(
             self.0,
@@ -108,6 +108,11 @@ impl Stage {
         )
     }
 
+    /// Whether the count of its tasks depends on the survey and the bricks alone.
+    pub fn is_counted(self) -> bool {
+        self.0 != Kind::Trees
+    }
+
     pub(crate) fn is_growing(self) -> bool {
         !matches!(self.0, Kind::Trees | Kind::Distances)
     }
@@ -120,10 +125,10 @@ impl Stage {
     pub(crate) fn last_to_read(self) -> &'static [&'static str] {
         match self.0 {
             Kind::Offsets => &["counts"],
-            Kind::Field => &["jumps", "heights", "strong"],
-            Kind::Lobes => &["beside"],
-            Kind::Noise => &["places", "changes"],
-            Kind::Variances => &["spread"],
+            Kind::Field => &["jumps", "heights", "marks-heights", "strong", "marks-strong"],
+            Kind::Lobes => &["beside", "marks-beside"],
+            Kind::Noise => &["places", "marks-places", "changes", "marks-changes"],
+            Kind::Variances => &["spread", "marks-spread"],
             Kind::Surroundings => &["sums"],
             Kind::Evidence => &["breaks-x", "breaks-y"],
             Kind::Parted => &["raw-evidence"],

@@ -11,7 +11,7 @@ use synth::{SynthSettings, Synthetic};
 
 /// Arrays in memory.
 #[derive(Default)]
-struct Held(Mutex<HashMap<(String, usize), Vec<u8>>>);
+pub(super) struct Held(Mutex<HashMap<(String, usize), Vec<u8>>>);
 
 impl NamedArrays for Held {
     fn write(&self, array: &str, part: usize, bytes: &[u8]) -> Result<(), SourceError> {

@@ -38,6 +38,15 @@ pub(crate) struct Leaf {
     pub(crate) triangles: [u32; 2],
 }
 
+impl Leaf {
+    /// Whether the box that its cells span meets a box of cells.
+    pub(crate) fn meets(&self, x: &Range<usize>, y: &Range<usize>) -> bool {
+        let [low, high] = self.cells.map(|cell| cell.map(usize::from));
+        let meets = |axis: usize, range: &Range<usize>| low[axis] < range.end && high[axis] >= range.start;
+        meets(0, x) && meets(1, y)
+    }
+}
+
 /// What a task makes.
 #[derive(Default)]
 struct Made {
@@ -245,9 +254,7 @@ impl BrickForest<'_> {
         for batch in 0..self.starts.len() - 1 {
             let leaves: Vec<Leaf> = self.bricks.read("tree-leaves", batch)?;
             for (leaf, id) in leaves.into_iter().zip(self.leaves[batch] as u32 + 1..) {
-                let [low, high] = leaf.cells.map(|cell| cell.map(usize::from));
-                let meets = |axis: usize, range: &Range<usize>| low[axis] < range.end && high[axis] >= range.start;
-                if meets(0, x) && meets(1, y) {
+                if leaf.meets(x, y) {
                     found.push((batch, id, leaf));
                 }
             }

@@ -13,6 +13,10 @@ use crate::surfaces::Vertex;
 use bytemuck::{Pod, Zeroable};
 use std::collections::BTreeMap;
 
+/// Triangles of the surfaces whose trees one task builds, unless one surface has more: few seconds of work, so that many
+/// workers have enough tasks.
+const TRIANGLES_OF_A_TASK: u64 = 1 << 20;
+
 /// A vertex as bricks hand it on.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -155,7 +159,7 @@ impl Bricks<'_> {
         let (mut outlines, mut members, mut batches) = (Vec::new(), Vec::new(), vec![0u32]);
         let mut waiting = 0;
         for (n, ((kind, label), (_, counts, own))) in surfaces.into_iter().enumerate() {
-            if waiting > 0 && waiting + counts[1] > self.together {
+            if waiting > 0 && waiting + counts[1] > self.together.min(TRIANGLES_OF_A_TASK) {
                 batches.push(n as u32);
                 waiting = 0;
             }

@@ -99,7 +99,8 @@ pub fn run(out: &Path, progress: &Progress) -> Result<Demonstration, ProjectErro
     done.steps.push(format!("imported volumes and faults into {}", done.project.display()));
     done.stages.push(stage.lap("import"));
 
-    let extract = Extract { volume: None, settings: ExtractSettings::default(), memory_bytes: None };
+    let extract =
+        Extract { volume: None, settings: ExtractSettings::default(), memory_bytes: None, just_stored: false };
     if let Effect::Extracted(found) = project.apply(&Command::Extract(extract), progress)? {
         done.steps.push(format!("found {} candidates with {} leaves", found.report.surfaces, found.report.leaves));
     }

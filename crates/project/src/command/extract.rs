@@ -29,6 +29,10 @@ pub struct Extract {
     /// recorded, since the result does not depend on it.
     #[serde(skip)]
     pub memory_bytes: Option<u64>,
+    /// Whether this program has stored the candidates a moment ago, so that they are not read whole to verify them. Not
+    /// recorded.
+    #[serde(skip)]
+    pub just_stored: bool,
 }
 
 impl Extract {
@@ -45,7 +49,7 @@ impl Extract {
             document,
             volume,
             &self.settings,
-            (Stored::Verified, self.memory_bytes),
+            (if self.just_stored { Stored::Trusted } else { Stored::Verified }, self.memory_bytes),
             progress,
         )?;
         Ok(extracted.report.seconds.filter(|_| extracted.computed))

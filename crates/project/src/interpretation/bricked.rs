@@ -6,7 +6,8 @@ use crate::error::ProjectError;
 use interp::bricks::{BrickSettings, Bricks};
 use interp::{CandidateColumns, ExtractReport, ExtractSettings, InterpError, StageSeconds};
 use rayon::prelude::*;
-use std::path::Path;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 use store::{CandidateWriter, FolderArrays, StoredVolume};
 use survey::Progress;
@@ -32,12 +33,7 @@ impl BrickedExtraction<'_> {
         let stated = memory_bytes.saturating_sub(PROGRAM_BYTES);
         let cut = BrickSettings::within(stated, size, rayon::current_num_threads())?;
         survey::memory::share_freed_memory(cut.workers);
-        // Arrays of other bricks are no use, so the bricks are part of the name.
-        let [x, y] = cut.edge;
-        let name = format!("{RESUMABLE}{}-{x}x{y}-{}", self.key, cut.triangles_together);
-        let Some(scratch) = Scratch::resume(self.root, &name)? else {
-            return Err(InterpError::DoneElsewhere.into());
-        };
+        let scratch = self.scratch(&cut)?;
         let done = self.extract(&scratch, &cut, progress);
         match &done {
             Ok(_) => scratch.publish(self.file)?,
@@ -46,6 +42,37 @@ impl BrickedExtraction<'_> {
             Err(_) => {}
         }
         done
+    }
+
+    /// The folder of the work.
+    fn scratch(&self, cut: &BrickSettings) -> Result<Scratch, ProjectError> {
+        // Arrays of other bricks are no use, so the bricks are part of the name.
+        let [x, y] = cut.edge;
+        let name = format!("{RESUMABLE}{}-{x}x{y}-{}", self.key, cut.triangles_together);
+        Scratch::resume(self.root, &name)?.ok_or_else(|| InterpError::DoneElsewhere.into())
+    }
+
+    /// Begins, for other processes to do the tasks.
+    pub(super) fn share(
+        &self,
+        volume: &Path,
+        memory_bytes: u64,
+        edge: usize,
+    ) -> Result<SharedExtraction, ProjectError> {
+        let cut = BrickSettings::within(memory_bytes, self.source.info().geometry.size(), 1)?.with_edge(edge);
+        let scratch = self.scratch(&cut)?;
+        let arrays = scratch.path("arrays");
+        FolderArrays::open(&arrays)?;
+        let plan = ExtractionPlan {
+            volume: volume.to_owned(),
+            arrays,
+            out: scratch.path(self.file),
+            key: self.key.to_owned(),
+            settings: self.settings.clone(),
+            edge: cut.edge,
+            triangles_together: cut.triangles_together,
+        };
+        Ok(SharedExtraction { scratch, plan, file: self.file.to_owned() })
     }
 
     fn extract(
@@ -86,5 +113,52 @@ impl BrickedExtraction<'_> {
             *total += *stored;
         }
         Ok(report)
+    }
+}
+
+/// An extraction whose tasks other processes do. While it lives, nobody else does the same or removes what they write;
+/// what is neither published nor left is removed when it is dropped.
+pub struct SharedExtraction {
+    scratch: Scratch,
+    plan: ExtractionPlan,
+    file: String,
+}
+
+/// What each process knows of an extraction whose tasks it does.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct ExtractionPlan {
+    /// Folder of the volume.
+    pub volume: PathBuf,
+    /// Folder of the arrays that stages exchange.
+    pub arrays: PathBuf,
+    /// Folder of the candidates.
+    pub out: PathBuf,
+    /// Identifies volume, settings and method.
+    pub key: String,
+    /// The settings.
+    pub settings: ExtractSettings,
+    /// Traces of a brick along x and y.
+    pub edge: [usize; 2],
+    /// Triangles of the surfaces whose trees one task builds.
+    pub triangles_together: u64,
+}
+
+impl SharedExtraction {
+    /// What each process needs to know.
+    pub fn plan(&self) -> &ExtractionPlan {
+        &self.plan
+    }
+
+    /// Stores the candidates, which are complete, under their key, where the command `extract` finds them.
+    ///
+    /// # Errors
+    /// They cannot be renamed.
+    pub fn publish(self) -> Result<(), ProjectError> {
+        self.scratch.publish(&self.file)
+    }
+
+    /// Leaves what was written, so that the same extraction goes on where this one was stopped.
+    pub fn leave(self) {
+        self.scratch.leave();
     }
 }

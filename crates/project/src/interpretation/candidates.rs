@@ -111,7 +111,7 @@ mod tests {
     }
 
     fn extract(project: &mut Project, settings: &ExtractSettings) {
-        let extract = Extract { volume: None, settings: settings.clone(), memory_bytes: None };
+        let extract = Extract { volume: None, settings: settings.clone(), memory_bytes: None, just_stored: false };
         project.apply(&Command::Extract(extract), &Progress::silent()).unwrap();
     }
 

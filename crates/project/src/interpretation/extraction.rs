@@ -7,19 +7,19 @@
 //! the project's own lattice, so that their voxels are the project's voxels.
 
 use super::bricked::BrickedExtraction;
+pub use super::bricked::{ExtractionPlan, SharedExtraction};
+use crate::Project;
 use crate::content;
 use crate::derived::{Scratch, folder, key_of, remove_resumable, revision};
 use crate::document::{Document, VolumeEntry};
 use crate::error::ProjectError;
-use crate::folder::{history, refuse_inside_project, storage};
+use crate::folder::{history, storage};
 use crate::memory_budget;
 use interp::{ExtractReport, ExtractSettings, Forest, Method, extract_into};
 use serde::Serialize;
 use std::fmt;
-use std::fs::File;
-use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
-use store::{CandidateWriter, Replacement, StoreError, StoredCandidates};
+use store::{CandidateWriter, StoreError, StoredCandidates, StoredVolume};
 use survey::Progress;
 
 /// Number of inlines of a stored volume that are read at a time: the edge length of its bricks.
@@ -227,6 +227,52 @@ fn needs_bricks(size: [usize; 3], settings: &ExtractSettings, memory_bytes: Opti
     }
 }
 
+/// What is to be extracted.
+struct Job<'a> {
+    entry: &'a VolumeEntry,
+    settings: ExtractSettings,
+    key: String,
+    source: StoredVolume,
+}
+
+impl<'a> Job<'a> {
+    fn of(
+        root: &Path,
+        document: &'a Document,
+        volume: Option<&str>,
+        settings: &ExtractSettings,
+    ) -> Result<Self, ProjectError> {
+        let entry = choose(document, volume)?;
+        let mut settings = settings.clone();
+        settings.grow.slab_inlines = SLAB_INLINES;
+        // Before anything that was extracted from these samples is found again by their hash.
+        let source = content::open_recorded(root, entry, document.frame()?)?;
+        Ok(Self { entry, key: key(entry, &settings), settings, source })
+    }
+}
+
+/// Begins an extraction whose tasks other processes do; `None` when its candidates are stored, undamaged, already.
+/// Bricks have as many traces as fit in `memory_bytes` of one process, and at most `edge` along both axes.
+///
+/// # Errors
+/// There is no such volume, the settings are invalid, the memory is too little, or another program does the same.
+pub fn share(
+    project: &Project,
+    (volume, settings): (Option<&str>, &ExtractSettings),
+    (memory_bytes, edge): (u64, usize),
+    progress: &Progress,
+) -> Result<Option<SharedExtraction>, ProjectError> {
+    let root =
+        std::path::absolute(project.root()).map_err(|source| ProjectError::io("read", project.root(), source))?;
+    let job = Job::of(&root, project.document(), volume, settings)?;
+    if find_stored(&root, &job.key, Stored::Verified, progress)?.is_some() {
+        return Ok(None);
+    }
+    let (key, file) = (job.key.as_str(), parked(&job.key));
+    let work = BrickedExtraction { root: &root, key, file: &file, source: &job.source, settings: &job.settings };
+    work.share(&root.join(&job.entry.file), memory_bytes, edge).map(Some)
+}
+
 /// Extracts the candidates of a volume, unless they exist undamaged, and stores them under their key;
 /// [`crate::command::Extract`] makes the state that names them. Needs no lock. Takes at most `memory_bytes`, or half of
 /// what is available: in bricks, where one piece would take more.
@@ -242,10 +288,7 @@ pub(crate) fn compute(
     (how, memory_bytes): (Stored, Option<u64>),
     progress: &Progress,
 ) -> Result<Extracted, ProjectError> {
-    let entry = choose(document, volume)?;
-    let mut settings = settings.clone();
-    settings.grow.slab_inlines = SLAB_INLINES;
-    let key = key(entry, &settings);
+    let Job { entry, settings, key, source } = Job::of(root, document, volume, settings)?;
     let answer = |file: PathBuf, report, computed| Extracted {
         file,
         volume: entry.name.clone(),
@@ -253,8 +296,6 @@ pub(crate) fn compute(
         computed,
         report,
     };
-    // Before anything that was extracted from these samples is found again by their hash.
-    let source = content::open_recorded(root, entry, document.frame()?)?;
     if let Some((file, report)) = find_stored(root, &key, how, progress)? {
         return Ok(answer(file, report, false));
     }
@@ -276,48 +317,4 @@ pub(crate) fn compute(
         progress.warn(&sentence);
     }
     Ok(answer(folder(root).join(file), report, true))
-}
-
-/// Writes all candidates as points: inline, crossline, z in the vertical unit, leaf and surface, both numbered from 1.
-/// A point on the border of several leaves is written once, with the smallest of their numbers. Returns the number of
-/// points.
-///
-/// # Errors
-/// There are no candidates, data are damaged, the file cannot be written, or the user cancelled.
-pub fn export_points(root: &Path, document: &Document, out: &Path, progress: &Progress) -> Result<usize, ProjectError> {
-    refuse_inside_project(out)?;
-    let forest = forest(&open(root, document)?, progress)?;
-    let frame = document.frame()?;
-    let mut leaf_of = vec![0u32; forest.surfaces.vertices.len()];
-    for (n, &node) in forest.leaves.iter().enumerate() {
-        let range = &forest.nodes[node as usize].triangles;
-        for &vertex in forest.surfaces.triangles[range.start as usize..range.end as usize].as_flattened() {
-            let leaf = &mut leaf_of[vertex as usize];
-            if *leaf == 0 {
-                *leaf = n as u32 + 1;
-            }
-        }
-    }
-    let fail = |source| ProjectError::io("written", out, source);
-    let replacement = Replacement::of(out)?;
-    let mut file = BufWriter::new(File::create(replacement.path()).map_err(fail)?);
-    writeln!(file, "inline,crossline,z,leaf,surface").map_err(fail)?;
-    progress.begin("writing candidates", forest.surfaces.surfaces.len() as u64);
-    let mut count = 0;
-    for (surface, part) in forest.surfaces.surfaces.iter().enumerate() {
-        let own = part.vertices.start as usize..part.vertices.end as usize;
-        for (vertex, &leaf) in forest.surfaces.vertices[own.clone()].iter().zip(&leaf_of[own]) {
-            if leaf != 0 {
-                let inline = frame.inlines.number_at(vertex.x.into());
-                let crossline = frame.crosslines.number_at(vertex.y.into());
-                let z = frame.vertical.value_at(vertex.z.into());
-                writeln!(file, "{inline},{crossline},{z:.3},{leaf},{}", surface + 1).map_err(fail)?;
-                count += 1;
-            }
-        }
-        progress.step(1)?;
-    }
-    file.into_inner().map_err(std::io::IntoInnerError::into_error).and_then(|file| file.sync_all()).map_err(fail)?;
-    replacement.commit()?;
-    Ok(count)
 }

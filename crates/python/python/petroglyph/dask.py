@@ -4,6 +4,8 @@ A task is a pure function of named arrays in the store: it reads a brick with it
 whole files, each of which has its name only when it is complete. Nothing is kept from one task to the next. So a task may
 run anywhere, twice, or again after its worker was lost: the bytes are the same, and they are those of the program itself.
 
+Stages whose result depends on the whole survey hand short summaries of each brick to a task that merges them.
+
 Every function takes ``scheduler``, as of :func:`dask.compute` (``"threads"``, ``"processes"``, ``"synchronous"``), or a
 :class:`distributed.Client`; the names of tasks in the dashboard are those of the stages.
 """
@@ -417,16 +419,12 @@ def _attribute_graph(
 ) -> tuple[_Graph, list[Any]]:
     from dask.base import tokenize
 
-
-    def as_json(options: Options | None) -> str | None:
-        return None if options is None else json.dumps(dict(options))
-
     nx, ny, nz = size
     own = min(FILE_LINES, nx) * min(FILE_LINES, ny)
     computed = [folders[new] for new, suffix, _ in made if kind != "dip" or suffix]
     reach = bricks.halo(kind, dip=dip, semblance=semblance)
     lines = _piece_lines(kind, nz, own, reach, memory)
-    settings = (as_json(dip), as_json(semblance), geometry.to_json(), (__version__, STORE_VERSION))
+    settings = (_as_json(dip), _as_json(semblance), geometry.to_json(), (__version__, STORE_VERSION))
     stage = _Stage(kind, path, tuple(computed), size, lines, *settings)
     graph = _Graph(tokenize(stage, folders))
     columns = {
@@ -459,6 +457,144 @@ def _attribute_graph(
 def _after(function: Callable[..., Any], stage: _Stage, sources: Any, start: Any, count: Any, *_: Any) -> Any:
     """Calls a function once what else is in the arguments is done."""
     return function(stage, sources, start, count)
+
+
+# Horizon candidates.
+
+
+def _candidates_task(plan: str, stage: str, slot: int, slots: int, version: tuple[str, int], *_: Any) -> None:
+    """Does the tasks of a stage that fall to a slot: one, where there are as many slots as tasks."""
+    tasks = _candidates(plan, version)
+    for number in range(slot, tasks.count(stage), slots):
+        tasks.run(stage, number)
+
+
+def _candidates_end(plan: str, stage: str, version: tuple[str, int], *_: Any) -> None:
+    """Notes that a stage is done; the other arguments are its tasks."""
+    _candidates(plan, version).close(stage)
+
+
+def _candidates(plan: str, version: tuple[str, int]) -> _native.ExtractionTasks:
+    _same_version(version)
+    told = json.loads(plan)
+    for folder in (told["volume"], told["arrays"]):
+        _at_hand(folder)
+    return _native.ExtractionTasks(plan)
+
+
+def _candidates_graph(plan: str) -> tuple[_Graph, list[Any]]:
+    """Stages one after the other; of each, one task for each brick, column, file or slot."""
+    version = (__version__, STORE_VERSION)
+    stages = _native.ExtractionTasks(plan).stages()
+    graph = _Graph(_token(plan))
+    told = graph.add("plan", (), (str, plan))
+    slots = _slots(stages)
+    before: Any = None
+    for stage, count in stages:
+        many = slots if count is None else count
+        tasks = [graph.add(stage, (n,), (_candidates_task, told, stage, n, many, version, before)) for n in range(many)]
+        before = graph.add(f"{stage}-end", (), (_candidates_end, told, stage, version, tasks))
+    return graph, [before]
+
+
+def _slots(stages: list[tuple[str, int | None]]) -> int:
+    """Tasks of stages whose count depends on what is found: as many as others have."""
+    return max(count or 1 for _, count in stages)
+
+
+def plan_extraction(
+    source: Path, *, settings: Options | None = None, edge: int = FILE_LINES, memory: int = MEMORY
+) -> Plan:
+    """What :func:`extract` of a stored volume will do.
+
+    Parameters
+    ----------
+    source : path
+        Folder of the volume.
+    settings, edge, memory
+        As of :func:`extract`.
+
+    Notes
+    -----
+    Bytes are those of the volume and of the candidates with ids of two bytes. What stages hand to one another through the
+    project's folder is not known beforehand.
+    """
+    import numpy as np
+
+    found = json.loads(_native.volume_info(source))
+    levels: list[tuple[int, int, int]] = [tuple(size) for size in found["levels"]]
+    _, stages = _native.extraction_stages(source, _as_json(settings), memory, edge)
+    slots = _slots(stages)
+    tasks = {stage: slots if count is None else count for stage, count in stages}
+    voxels = [size[0] * size[1] * size[2] for size in levels]
+    nx, ny, nz = levels[0]
+    # A column as it is found, and one of its files while it is written.
+    column = min(nx, FILE_LINES) * min(ny, FILE_LINES) * nz * 5 + FILE_LINES**3 * 4 * 2
+    read = voxels[0] * np.dtype(found["dtype"]).itemsize
+    return Plan(tasks, read, sum(voxels) * 3, max(memory, column))
+
+
+def extract(
+    project: Project,
+    *,
+    volume: str | None = None,
+    settings: Options | None = None,
+    edge: int = FILE_LINES,
+    scheduler: Scheduler = None,
+    memory: int = MEMORY,
+    retries: int = RETRIES,
+) -> dict[str, Any]:
+    """Finds horizon candidates on a cluster: surfaces, their trees, and the closest leaf of every voxel.
+
+    Parameters
+    ----------
+    project : Project
+        The project, on a disk that all workers see.
+    volume : str, optional
+        The volume to extract from; by default the first on the project's lattice.
+    settings : mapping, optional
+        Settings, as of :meth:`petroglyph.Project.extract`.
+    edge : int
+        Traces of a brick along both axes, at most; fewer where `memory` asks for it. Smaller bricks are more tasks, and
+        read more of what lies around them.
+    scheduler : str or distributed.Client, optional
+        Where it runs; by default on threads of this process.
+    memory : int
+        Memory that a task may use, bytes; see :func:`plan_extraction`.
+    retries : int
+        How often a task that failed is tried again on a cluster.
+
+    Returns
+    -------
+    dict
+        What was done, as of :meth:`petroglyph.Project.extract`.
+
+    Notes
+    -----
+    The bytes are those of :meth:`petroglyph.Project.extract`, whatever the bricks and the workers. Stages exchange what
+    they find through files in the project. If a task fails for good they are removed, and the project is what it was. If
+    the run was interrupted, or the cluster was lost, the same call goes on where it was.
+    """
+    change = {"volume": volume, "settings": None if settings is None else dict(settings)}
+    command = {"extract": {name: value for name, value in change.items() if value is not None}}
+    shared = _native.Extraction.begin(project._native, volume, _as_json(settings), memory, edge)
+    if shared is None:
+        return project.apply(command)
+    try:
+        graph, wanted = _candidates_graph(shared.plan())
+        _run(graph, wanted, scheduler, retries)
+    except PetroglyphError:
+        shared.end(leave=False)
+        raise
+    except BaseException:
+        shared.end(leave=True)
+        raise
+    shared.publish()
+    return project.apply(command, _moved=True)
+
+
+def _as_json(options: Options | None) -> str | None:
+    return None if options is None else json.dumps(dict(options))
 
 
 # Extrema, i, j, k and pictures.

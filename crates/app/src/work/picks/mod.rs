@@ -190,7 +190,12 @@ impl Picks {
                 let done = compute_apart(|| {
                     let mut project = Project::open(&root)?.waiting(DEFAULT_WAIT);
                     project.apply(
-                        &Command::Extract(Extract { volume, settings: *settings, memory_bytes: None }),
+                        &Command::Extract(Extract {
+                            volume,
+                            settings: *settings,
+                            memory_bytes: None,
+                            just_stored: false,
+                        }),
                         &progress,
                     )?;
                     snapshot(&project)
