@@ -6,58 +6,24 @@ use model::{FaultNetwork, ModelSettings, StructuralModel};
 use survey::horizon::{NodeGrid, Quality, Sheet};
 use survey::stratigraphy::{Contact, StratigraphicHorizon, Stratigraphy};
 use survey::{Fault, Horizon, Progress, SurveyGeometry, TriangleMesh, VerticalUnit};
+use synth::elliptic::EllipticFault;
 
 const SIZE: [usize; 3] = [80, 90, 70];
-/// Centre of the fault, voxels.
-const CENTRE: DVec3 = DVec3::new(40.0, 45.0, 35.0);
-/// Half axes of its ellipse along strike (y) and down (z), voxels.
-const AXES: DVec2 = DVec2::new(26.0, 22.0);
-/// Largest throw, samples.
-const THROW: f64 = 8.0;
+/// It dips by some 60 degrees.
+const FAULT: EllipticFault = EllipticFault {
+    centre: DVec3::new(40.0, 45.0, 35.0),
+    axes: DVec2::new(26.0, 22.0),
+    lean: 0.24,
+    throw: 8.0,
+    width: 22.0,
+};
+const CENTRE: DVec3 = FAULT.centre;
+const AXES: DVec2 = FAULT.axes;
 /// Heights of the horizons in the absence of the fault.
 const LEVELS: [f64; 3] = [20.0, 34.0, 50.0];
 
 fn geometry() -> SurveyGeometry {
     SurveyGeometry::regular(SIZE, 25.0, 10.0, VerticalUnit::Metres)
-}
-
-/// x of the fault at a depth: it dips by some 60 degrees.
-fn fault_x(z: f64) -> f64 {
-    CENTRE.x + 0.24 * (z - CENTRE.z)
-}
-
-/// Distance from the centre of the ellipse, 1 on the tip line.
-fn radius(y: f64, z: f64) -> f64 {
-    (DVec2::new(y - CENTRE.y, z - CENTRE.z) / AXES).length()
-}
-
-/// Height of a horizon on one side of the fault: half the throw, which dies out towards the tip line and away from
-/// the fault. The tip at the horizon's own undeformed level decides, so that the form is explicit.
-fn height(level: f64, hanging: bool, x: f64, y: f64) -> f64 {
-    let throw = THROW * (1.0 - radius(y, level).powi(2)).max(0.0).powi(2);
-    let decay = (-((x - fault_x(level)) / 22.0).powi(2)).exp();
-    level + if hanging { 0.5 } else { -0.5 } * throw * decay
-}
-
-/// The surface through sticks at the given y, each with so many picks from tip to tip.
-fn drawn(sticks: &[f64], picks: usize) -> Fault {
-    let geometry = geometry();
-    let mut mesh = TriangleMesh::default();
-    for &y in sticks {
-        let half = AXES.y * (1.0 - ((y - CENTRE.y) / AXES.x).powi(2)).max(0.0).sqrt();
-        for n in 0..picks {
-            let z = CENTRE.z + half * (2.0 * n as f64 / (picks - 1) as f64 - 1.0);
-            mesh.vertices.push(geometry.world_from_voxel(DVec3::new(fault_x(z), y, z)));
-        }
-    }
-    for s in 0..sticks.len() as u32 - 1 {
-        for n in 0..picks as u32 - 1 {
-            let a = s * picks as u32 + n;
-            let b = a + picks as u32;
-            mesh.triangles.extend([[a, a + 1, b], [a + 1, b + 1, b]]);
-        }
-    }
-    Fault::new("elliptic", mesh)
 }
 
 /// The horizons at the nodes that `is_picked` names.
@@ -66,8 +32,12 @@ fn horizons(is_picked: impl Fn(usize, usize) -> bool) -> Vec<Horizon> {
     let of = |(h, &level): (usize, &f64)| {
         let node = |n: usize| {
             let (x, y) = ((n / SIZE[1]) as f64, (n % SIZE[1]) as f64);
-            let hanging = x > fault_x(level);
-            if is_picked(n / SIZE[1], n % SIZE[1]) { (10.0 * height(level, hanging, x, y)) as f32 } else { f32::NAN }
+            let hanging = x > FAULT.x_at(level);
+            if is_picked(n / SIZE[1], n % SIZE[1]) {
+                (10.0 * FAULT.height(level, hanging, x, y)) as f32
+            } else {
+                f32::NAN
+            }
         };
         let depth = (0..SIZE[0] * SIZE[1]).map(node).collect();
         Horizon::new(format!("H{h}"), vec![Sheet::new(grid, depth, Quality::Picked)])
@@ -87,9 +57,9 @@ const STICKS: [f64; 3] = [25.0, 45.0, 65.0];
 
 #[test]
 fn its_tip_lies_within_a_fifth_of_the_spacing_of_sticks() {
-    let network = model(&[drawn(&STICKS, 5)], |_, _| true);
+    let network = model(&[FAULT.drawn(&geometry(), &STICKS, 5)], |_, _| true);
     let faults = network.faults();
-    let on = |y: f64, z: f64| DVec3::new(fault_x(z), y, z).as_vec3();
+    let on = |y: f64, z: f64| DVec3::new(FAULT.x_at(z), y, z).as_vec3();
     let fifth = 0.2 * 20.0;
     for step in 0..360 {
         let (sine, cosine) = f64::from(step).to_radians().sin_cos();
@@ -105,7 +75,7 @@ fn its_tip_lies_within_a_fifth_of_the_spacing_of_sticks() {
     }
     // Nor does it reach above or beside itself when sticks are farther apart, or have two picks each.
     for (sticks, picks) in [(&[20.0, 45.0, 70.0][..], 5), (&[25.0, 65.0][..], 2), (&[19.5, 70.5][..], 12)] {
-        let network = model(&[drawn(sticks, picks)], |_, _| true);
+        let network = model(&[FAULT.drawn(&geometry(), sticks, picks)], |_, _| true);
         for z in [CENTRE.z - AXES.y - 1.0, CENTRE.z + AXES.y + 1.0] {
             assert!(!network.faults().is_real(0, on(45.0, z)), "{sticks:?} at {z}");
         }
@@ -117,9 +87,9 @@ fn its_tip_lies_within_a_fifth_of_the_spacing_of_sticks() {
 
 #[test]
 fn a_grown_fault_reaches_so_much_farther() {
-    let fault = Fault { grown_m: 50.0, ..drawn(&STICKS, 5) };
+    let fault = Fault { grown_m: 50.0, ..FAULT.drawn(&geometry(), &STICKS, 5) };
     let network = model(&[fault], |_, _| true);
-    let is_real = |y: f64, z: f64| network.faults().is_real(0, DVec3::new(fault_x(z), y, z).as_vec3());
+    let is_real = |y: f64, z: f64| network.faults().is_real(0, DVec3::new(FAULT.x_at(z), y, z).as_vec3());
     // 50 m are two lines, or some four and a half samples along the dip.
     assert!(is_real(23.2, 35.0) && !is_real(22.6, 35.0));
     let along = 1.0f64.hypot(0.24 * 25.0 / 10.0);
@@ -133,7 +103,7 @@ fn unrest(model: &StructuralModel, beyond: f64) -> f64 {
         for x in 0..SIZE[0] * 4 - 4 {
             for y in 0..SIZE[1] * 4 - 4 {
                 let (x, y) = (0.25 * x as f64, 0.25 * y as f64);
-                if radius(y, level) > 1.0 + beyond / AXES.x {
+                if FAULT.radius(y, level) > 1.0 + beyond / AXES.x {
                     let block = model.block_at(Vec3::new(x as f32, y as f32, level as f32));
                     let found = f64::from(model.horizon_z(h, block, x as f32, y as f32));
                     worst = worst.max((found - level).abs());
@@ -150,13 +120,13 @@ fn step_beyond(model: &StructuralModel) -> f64 {
     for (h, &level) in LEVELS.iter().enumerate() {
         for y in 0..8 * SIZE[1] - 8 {
             let y = 0.125 * y as f64;
-            let place = |z: f64| DVec3::new(fault_x(z), y, z).as_vec3();
+            let place = |z: f64| DVec3::new(FAULT.x_at(z), y, z).as_vec3();
             let sides = [-0.05, 0.05].map(|off| {
                 let block = model.block_at(place(level) + Vec3::new(off, 0.0, 0.0));
-                f64::from(model.horizon_z(h, block, fault_x(level) as f32, y as f32))
+                f64::from(model.horizon_z(h, block, FAULT.x_at(level) as f32, y as f32))
             });
             // Straight between their ends, sticks leave out a little of the ellipse; there the picks themselves step.
-            if radius(y, level) > 1.0 {
+            if FAULT.radius(y, level) > 1.0 {
                 worst = worst.max((sides[0] - sides[1]).abs());
             }
         }
@@ -166,7 +136,7 @@ fn step_beyond(model: &StructuralModel) -> f64 {
 
 #[test]
 fn horizons_beyond_the_tip_stay_as_they_were() {
-    let fault = drawn(&STICKS, 5);
+    let fault = FAULT.drawn(&geometry(), &STICKS, 5);
     // All nodes; every sixth line; scattered ones, a hundred for a horizon.
     let scattered = |x: usize, y: usize| (x * 7919 + y * 104_729 + x * y * 31).is_multiple_of(72);
     type Picking<'a> = (&'a str, &'a dyn Fn(usize, usize) -> bool);
@@ -187,15 +157,15 @@ fn horizons_beyond_the_tip_stay_as_they_were() {
 
 #[test]
 fn the_throw_dies_out_towards_the_tip() {
-    let faulted = model(&[drawn(&STICKS, 5)], |_, _| true);
+    let faulted = model(&[FAULT.drawn(&geometry(), &STICKS, 5)], |_, _| true);
     let (level, h) = (LEVELS[1], 1);
     let mut last = f64::INFINITY;
     for y in 45..=76 {
         let y = f64::from(y);
         let throw = {
-            let z = |block: u16| f64::from(faulted.sheet(h, block).z_at(fault_x(level) as f32, y as f32));
+            let z = |block: u16| f64::from(faulted.sheet(h, block).z_at(FAULT.x_at(level) as f32, y as f32));
             let [foot, hanging] = [-1.0, 1.0]
-                .map(|off| faulted.block_at(Vec3::new((fault_x(level) + off) as f32, y as f32, level as f32)));
+                .map(|off| faulted.block_at(Vec3::new((FAULT.x_at(level) + off) as f32, y as f32, level as f32)));
             z(hanging) - z(foot)
         };
         assert!(throw >= -0.05 && throw <= last + 0.05, "throw {throw} after {last} at {y}");

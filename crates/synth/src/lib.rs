@@ -17,6 +17,7 @@
 pub mod closed_form;
 mod column;
 mod design;
+pub mod elliptic;
 mod events;
 mod faulting;
 mod fold;

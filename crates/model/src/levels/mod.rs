@@ -8,6 +8,7 @@ mod cut;
 mod distance;
 mod least_squares;
 mod oriented;
+mod rounding;
 mod series;
 mod shape;
 mod silhouette;

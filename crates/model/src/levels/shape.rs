@@ -1,6 +1,7 @@
 //! A horizon given as triangles: checked, and as a level surface.
 
 use super::distance::{NodeBox, Surface, signed_distance};
+use super::rounding::round_off;
 use super::tree::Tree;
 use super::{LevelSurface, cut::MARGIN};
 use crate::report::{ModelError, SurfaceProblem};
@@ -118,14 +119,21 @@ impl<'a> Shape<'a> {
             return Ok(None);
         }
         if kept.len() == self.mesh.mesh.triangles.len() {
-            return self.level(&self.mesh, false, progress).map(Some);
+            return self.layering(&self.mesh, progress).map(Some);
         }
         let triangles = kept.iter().map(|&n| self.mesh.mesh.triangles[n]).collect();
         let part = TriangleMesh { vertices: self.mesh.mesh.vertices.clone(), triangles };
         match OrientedMesh::of(&part, 0.01 * WELD) {
-            Ok(part) => self.level(&part, false, progress).map(Some),
+            Ok(part) => self.layering(&part, progress).map(Some),
             Err(_) => Ok(None),
         }
+    }
+
+    /// A level surface that layers follow far away from it.
+    fn layering(&self, mesh: &OrientedMesh, progress: &Progress) -> Result<LevelSurface, ModelError> {
+        let mut surface = self.level(mesh, false, progress)?;
+        round_off(Arc::make_mut(&mut surface.field), self.metric, progress)?;
+        Ok(surface)
     }
 
     /// The signed distance around a closed mesh, or in the whole volume.

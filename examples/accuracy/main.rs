@@ -1,12 +1,13 @@
-//! Measures the rows of `docs/accuracy.md`: `cargo run --example accuracy > docs/accuracy.md`.
+//! Measures the rows of `docs/accuracy.md`; `make accuracy` writes them.
 //!
 //! Closed-form models and the synthetic survey, whose truth is a closed form too; the exact lookup and the paper's
 //! packed, extrapolated one (P-illus 3.3 and 3.4) side by side, at the same places, by the same yardstick. Lengths are
 //! voxels, angles degrees.
 
-#[path = "../crates/render/tests/pictures/compare.rs"]
+#[path = "../../crates/render/tests/pictures/compare.rs"]
 #[expect(dead_code, reason = "the tests use more of it")]
 mod compare;
+mod shapes;
 
 use anyhow::{Context, Result};
 use glam::{DVec3, Vec3};
@@ -247,13 +248,21 @@ const DEFINITIONS: [(&str, KDefinition); 6] = [
     ("parallel-to-top", KDefinition::ParallelToTop),
 ];
 
+/// Whether a definition measures the layer above a horizon from there, and the one below. The top and the bottom layer have
+/// one horizon alone.
+fn is_measured_from(definition: KDefinition, horizon: usize, horizons: usize) -> [bool; 2] {
+    [
+        definition != KDefinition::ParallelToTop || horizon == 0,
+        definition != KDefinition::ParallelToBottom || horizon + 1 == horizons,
+    ]
+}
+
 /// Error of k at a horizon, voxels of depth: 0 in the layer above it, 1 in the one below, as far as the definition
 /// measures that layer from there.
 fn k_errors(case: &Case, param: &Parameterization, definition: KDefinition, point: &HorizonPoint) -> Vec<f32> {
     let horizons = case.model.layer_count() - 1;
     let layer_above = (horizons - point.horizon) as u16;
-    let from_bottom = definition != KDefinition::ParallelToTop || point.horizon == 0;
-    let from_top = definition != KDefinition::ParallelToBottom || point.horizon + 1 == horizons;
+    let [from_bottom, from_top] = is_measured_from(definition, point.horizon, horizons);
     let sides = [(from_bottom, layer_above, 0.0), (from_top, layer_above - 1, 1.0)];
     let error = |(_, layer, k): (bool, u16, f32)| {
         let (found, jacobian) = param.lookup_in(&case.model, point.p, Region { layer, block: point.block });
@@ -363,6 +372,7 @@ fn main() -> Result<()> {
     k_and_angles(&cases)?;
     boundaries(&cases)?;
     definitions(&cases)?;
+    shapes::print(&shapes::all()?, ZOOM)?;
     devices(&cases)?;
     determinism(&cases)
 }
