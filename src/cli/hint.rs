@@ -3,11 +3,25 @@
 use param::ParamError;
 use project::ProjectError;
 use std::error::Error;
+use std::io::ErrorKind;
 
 /// What to do next about an error, or about what caused it; `None` where no general advice is possible.
 pub(super) fn of(error: &(dyn Error + 'static)) -> Option<String> {
     let own = error.downcast_ref::<ProjectError>().and_then(words).map(str::to_owned);
     own.or_else(|| of(error.source()?))
+}
+
+/// What to do next about an answer of the file system.
+pub(super) fn of_files(error: &(dyn Error + 'static)) -> Option<&'static str> {
+    Some(match error.downcast_ref::<std::io::Error>()?.kind() {
+        ErrorKind::NotFound => "check the path: there is no such file or folder",
+        ErrorKind::PermissionDenied => "choose a place where you may read and write, or change its permissions",
+        ErrorKind::ReadOnlyFilesystem => "choose a place that can be written",
+        ErrorKind::StorageFull => "free some space there, then try again",
+        ErrorKind::IsADirectory => "give a file, not a folder",
+        ErrorKind::NotADirectory => "check the path: a part of it is a file, not a folder",
+        _ => return None,
+    })
 }
 
 /// What to do next on the command line, where general advice is possible.

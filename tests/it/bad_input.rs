@@ -232,3 +232,19 @@ fn what_is_no_project() {
     fs::write(at.join("newer.petro/project.toml"), "version = 1\nstep = 0\nhorisons = []\n").unwrap();
     refused(at, "info newer.petro", &["cannot be understood", "horisons"]);
 }
+
+/// The last line of a refusal helps: it names what to look at, or the command's own help.
+#[test]
+fn a_refusal_ends_with_a_hint_that_helps() {
+    let folder = project();
+    let at = folder.path();
+    for (line, hint) in [
+        ("horizon add p.petro nowhere.irap --name N", "hint: check the path: there is no such file or folder"),
+        ("--json horizon add p.petro p.petro --name N", "hint: give a file, not a folder"),
+        ("render p.petro a.gif", "hint: `petroglyph render --help` shows an example"),
+        ("fault extent p.petro F1 reach", "hint: `petroglyph fault extent --help` shows an example"),
+    ] {
+        let told = run_in(at, line);
+        assert!(told.code > 0 && told.stderr.contains(hint), "{line}: {}", told.stderr);
+    }
+}

@@ -6,7 +6,7 @@ use crate::state::{
 };
 use eframe::egui::{Button, Checkbox, Context, DragValue, Grid, Spinner, TextEdit, Ui, Vec2};
 use figure::Annotation;
-use pictures::SparseHorizon;
+use pictures::PickedShare;
 use pictures::figures::FigureFormat;
 use render::{LabelChange, Scene};
 use std::path::Path;
@@ -44,7 +44,7 @@ pub struct Shows<'a> {
     /// Whether a page is being drawn.
     pub is_drawing: bool,
     /// Horizons that were hardly picked.
-    pub sparse: &'a [SparseHorizon],
+    pub sparse: &'a [PickedShare],
 }
 
 /// Shows the dialogue; whether its page is to be laid out.
@@ -213,7 +213,7 @@ fn choices(ui: &mut Ui, has_layers: bool, next: &mut ExportForm) {
 }
 
 /// Says which horizons were hardly picked; returns whether there are none, or a picture is wanted all the same.
-fn accept(ui: &mut Ui, sparse: &[SparseHorizon], next: &mut ExportForm) -> bool {
+fn accept(ui: &mut Ui, sparse: &[PickedShare], next: &mut ExportForm) -> bool {
     for sentence in pictures::sparse_sentences(sparse) {
         ui.colored_label(ui.visuals().warn_fg_color, capital(&sentence));
     }

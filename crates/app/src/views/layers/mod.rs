@@ -16,6 +16,7 @@ use eframe::egui::{
     WidgetInfo, vec2,
 };
 use legibility::Legibility;
+use pictures::PickedShare;
 use project::command::{Command, ResetLayer, SetContact, SetLayer};
 use project::document::Document;
 use project::document::HorizonEntry;
@@ -39,6 +40,8 @@ pub struct Layers {
     /// The layer whose style was shown last.
     editing: Option<String>,
     legibility: Legibility,
+    /// How much of each horizon was picked, as far as it is known.
+    picked: Vec<PickedShare>,
 }
 
 impl Layers {
@@ -85,13 +88,17 @@ impl Layers {
             });
             return;
         }
+        if let Some(loaded) = rocks.and_then(|(rocks, _)| rocks.try_read().ok()) {
+            self.picked.clone_from(&loaded.picked);
+        }
         ScrollArea::vertical().show(ui, |ui| {
             let layers = document.layers();
             for (index, name) in layers.iter().enumerate() {
                 let style = self.style_of(document, index, name);
                 row(ui, session, name, &style, swatches, tiles, actions);
                 if let Some(horizon) = document.horizons.get(index) {
-                    boundary(ui, index, horizon, actions);
+                    let share = self.picked.iter().find(|known| known.name == horizon.name).map(|known| known.share);
+                    boundary(ui, (index, share), horizon, actions);
                 }
             }
             unpicked(ui, session, actions);
@@ -251,18 +258,30 @@ fn row(
 
 /// Width that the contact beside the name of a horizon takes, points.
 const BESIDE_HORIZON: f32 = 130.0;
+/// Width of the share that was picked, points.
+const BESIDE_SHARE: f32 = 70.0;
 
-/// The horizon between two layers, and its contact.
-fn boundary(ui: &mut Ui, index: usize, horizon: &HorizonEntry, actions: &mut Vec<Action>) {
+/// Share from which a horizon counts as picked everywhere.
+const WHOLE: f64 = 0.995;
+
+/// The horizon between two layers, how much of it was picked where that is not all, and its contact.
+fn boundary(ui: &mut Ui, (index, picked): (usize, Option<f64>), horizon: &HorizonEntry, actions: &mut Vec<Action>) {
     let (name, contact) = (horizon.name.as_str(), horizon.contact);
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(SWATCH[0] + 8.0, 16.0), Sense::hover());
         ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(2.5, entry_colour(horizon, index)));
-        let room = (ui.available_width() - BESIDE_HORIZON).max(40.0);
+        let share = picked.filter(|share| *share < WHOLE);
+        let beside = BESIDE_HORIZON + if share.is_some() { BESIDE_SHARE } else { 0.0 };
+        let room = (ui.available_width() - beside).max(40.0);
         ui.scope(|ui| {
             ui.set_max_width(room);
             ui.add(Label::new(RichText::new(name).small()).truncate());
         });
+        if let Some(share) = share {
+            let percent = format!("{:.0} %", 100.0 * share);
+            let hint = format!("{name} was picked on {percent} of its traces; the rest is filled or extrapolated");
+            ui.label(RichText::new(format!("{percent} picked")).small().weak()).on_hover_text(hint);
+        }
         let mut chosen = contact;
         let combo = ComboBox::from_id_salt(("contact", name)).selected_text(contact_name(contact)).width(96.0);
         ui.name_inputs(format!("Contact of {name}"), |ui| {
