@@ -240,7 +240,7 @@ fn a_refusal_ends_with_a_hint_that_helps() {
     let at = folder.path();
     for (line, hint) in [
         ("horizon add p.petro nowhere.irap --name N", "hint: check the path: there is no such file or folder"),
-        ("--json horizon add p.petro p.petro --name N", "hint: give a file, not a folder"),
+        ("--json horizon add p.petro p.petro --name N", "hint: `petroglyph horizon add --help` shows an example"),
         ("render p.petro a.gif", "hint: `petroglyph render --help` shows an example"),
         ("fault extent p.petro F1 reach", "hint: `petroglyph fault extent --help` shows an example"),
     ] {

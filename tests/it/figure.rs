@@ -260,9 +260,9 @@ mod window {
 fn a_fault_has_its_colour_on_every_figure() {
     let folder = project();
     let at = folder.path();
-    for (name, inline) in [("Border", 120), ("Plain", 160)] {
+    for (name, inline) in [("Border", 112), ("Plain", 132)] {
         let sticks: Vec<String> =
-            [500, 560].map(|line| format!("--stick {inline},{line},0 {},{line},2000", inline + 4)).to_vec();
+            [501, 540].map(|line| format!("--stick {inline},{line},0 {},{line},550", inline + 4)).to_vec();
         run_in(at, &format!("fault pick p.petro --name {name} {}", sticks.join(" "))).done();
     }
     let block = "render p.petro a.svg --size-cm 12x9 --legend --ground off --device cpu";

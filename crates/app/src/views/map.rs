@@ -98,7 +98,7 @@ impl MapView {
             let label = ui.strong("Map of");
             let mut chosen = upper;
             ui.label_inputs_by(label.id, |ui| {
-                ComboBox::from_id_salt("mapped").selected_text(&horizons[upper].name).show_ui(ui, |ui| {
+                ComboBox::from_id_salt("mapped").selected_text(&horizons[upper].name).truncate().show_ui(ui, |ui| {
                     for (index, entry) in horizons.iter().enumerate() {
                         ui.selectable_value(&mut chosen, index, &entry.name);
                     }

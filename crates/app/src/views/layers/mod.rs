@@ -12,8 +12,8 @@ use super::tiles::Tiles;
 use crate::state::{Action, Choice, Dialogue, Panel, Place, Session, State};
 use crate::work::{Rocks, Swatches};
 use eframe::egui::{
-    Button, ComboBox, Frame, Grid, Key, Label, Response, RichText, Role, ScrollArea, Sense, Stroke, TextEdit, Ui,
-    WidgetInfo, vec2,
+    Align, Button, ComboBox, Frame, Grid, Key, Label, Layout, Response, RichText, Role, ScrollArea, Sense, Stroke,
+    TextEdit, Ui, WidgetInfo, vec2,
 };
 use legibility::Legibility;
 use pictures::PickedShare;
@@ -24,6 +24,7 @@ use render::Unpicked;
 use style::{colours, definition, frequencies, intervals};
 use survey::Contact;
 use ttf::{Colour, LayerStyle, LayerTtf, TextureLibrary};
+use widgets::form::{self, LABELS};
 use widgets::obstacle::{needs, unless};
 use widgets::percent;
 
@@ -142,7 +143,7 @@ impl Layers {
         let present = self.style_of(document, index, layer);
         let mut style = present.clone();
         self.rename(ui, layer, actions);
-        Grid::new("style").num_columns(2).show(ui, |ui| {
+        Grid::new("style").num_columns(2).min_col_width(LABELS).show(ui, |ui| {
             colours(ui, &mut style);
             frequencies(ui, &mut style);
             let label = ui.label("In cut-outs").on_hover_text(
@@ -193,8 +194,8 @@ impl Layers {
         let (_, mut text) =
             self.name.take().filter(|(of, _)| of == layer).unwrap_or((layer.to_owned(), layer.to_owned()));
         ui.horizontal(|ui| {
-            let label = ui.strong("Name");
-            let edit = ui.add(TextEdit::singleline(&mut text).desired_width(180.0)).labelled_by(label.id);
+            let label = form::label(ui, "Name");
+            let edit = ui.add(TextEdit::singleline(&mut text).desired_width(170.0)).labelled_by(label.id);
             let name = text.trim().to_owned();
             let is_meant = edit.lost_focus() && !ui.input(|input| input.key_pressed(Key::Escape));
             if is_meant && !name.is_empty() && name != layer {
@@ -256,11 +257,6 @@ fn row(
     }
 }
 
-/// Width that the contact beside the name of a horizon takes, points.
-const BESIDE_HORIZON: f32 = 130.0;
-/// Width of the share that was picked, points.
-const BESIDE_SHARE: f32 = 70.0;
-
 /// Share from which a horizon counts as picked everywhere.
 const WHOLE: f64 = 0.995;
 
@@ -270,25 +266,24 @@ fn boundary(ui: &mut Ui, (index, picked): (usize, Option<f64>), horizon: &Horizo
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(SWATCH[0] + 8.0, 16.0), Sense::hover());
         ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(2.5, entry_colour(horizon, index)));
-        let share = picked.filter(|share| *share < WHOLE);
-        let beside = BESIDE_HORIZON + if share.is_some() { BESIDE_SHARE } else { 0.0 };
-        let room = (ui.available_width() - beside).max(40.0);
-        ui.scope(|ui| {
-            ui.set_max_width(room);
-            ui.add(Label::new(RichText::new(name).small()).truncate());
-        });
-        if let Some(share) = share {
-            let percent = format!("{:.0} %", 100.0 * share);
-            let hint = format!("{name} was picked on {percent} of its traces; the rest is filled or extrapolated");
-            ui.label(RichText::new(format!("{percent} picked")).small().weak()).on_hover_text(hint);
-        }
         let mut chosen = contact;
-        let combo = ComboBox::from_id_salt(("contact", name)).selected_text(contact_name(contact)).width(96.0);
-        ui.name_inputs(format!("Contact of {name}"), |ui| {
-            combo.show_ui(ui, |ui| {
-                for contact in Contact::ALL {
-                    ui.selectable_value(&mut chosen, contact, contact_name(contact));
-                }
+        // From the right, so that contacts stand in a column whatever the names are.
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let combo = ComboBox::from_id_salt(("contact", name)).selected_text(contact_name(contact)).width(96.0);
+            ui.name_inputs(format!("Contact of {name}"), |ui| {
+                combo.truncate().show_ui(ui, |ui| {
+                    for contact in Contact::ALL {
+                        ui.selectable_value(&mut chosen, contact, contact_name(contact));
+                    }
+                });
+            });
+            if let Some(share) = picked.filter(|share| *share < WHOLE) {
+                let percent = format!("{:.0} %", 100.0 * share);
+                let hint = format!("{name} was picked on {percent} of its traces; the rest is filled or extrapolated");
+                ui.label(RichText::new(format!("{percent} picked")).small().weak()).on_hover_text(hint);
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add(Label::new(RichText::new(name).small()).truncate());
             });
         });
         if chosen != contact {

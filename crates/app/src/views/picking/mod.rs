@@ -80,10 +80,21 @@ pub(super) fn go(geometry: &SurveyGeometry, place: [f64; 3], actions: &mut Vec<A
     actions.push(Action::Slices(voxel_of(geometry, place).to_array()));
 }
 
+/// Width of the column of labels in front of tools, points.
+const TOOLS: f32 = 52.0;
+
+/// A label in front of tools; these begin in one column.
+fn tools(ui: &mut Ui, name: &str) {
+    ui.scope(|ui| {
+        ui.set_min_width(TOOLS);
+        ui.label(name);
+    });
+}
+
 fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let picking = &session.view.picking;
     ui.horizontal_wrapped(|ui| {
-        ui.label("Pointer");
+        tools(ui, "Pointer");
         for (tool, name, hint) in [
             (Tool::Pick, "Pick", "Click a reflection: its leaf is selected"),
             (Tool::Lasso, "Lasso", "Drag around what is to be erased (or hold A and drag)"),
@@ -109,7 +120,7 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     });
     drawing::show(ui, session, actions);
     ui.horizontal_wrapped(|ui| {
-        ui.label("Block");
+        tools(ui, "Block");
         for (look, name, hint) in [
             (Look::Faces, "Faces", "The faces of the block, with the horizons in front of them"),
             (Look::VolumeRendering, "Volume rendering", "Strong reflections in white, shaded by occlusion (O)"),
@@ -120,7 +131,7 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         }
     });
     ui.horizontal_wrapped(|ui| {
-        ui.label("Show");
+        tools(ui, "Show");
         for (show, name, hint) in [
             (FaceData::Rock, "Amplitudes", "The volume as it is"),
             (FaceData::Leaves, "Candidate pieces", "Each piece (leaf) of the candidates in a colour of its own"),
