@@ -1,5 +1,6 @@
 //! What to do next about an error, in the words of the command line.
 
+use formats::FormatError;
 use param::ParamError;
 use project::ProjectError;
 use std::error::Error;
@@ -7,6 +8,9 @@ use std::io::ErrorKind;
 
 /// What to do next about an error, or about what caused it; `None` where no general advice is possible.
 pub(super) fn of(error: &(dyn Error + 'static)) -> Option<String> {
+    if let Some(FormatError::NoSuchName { .. }) = error.downcast_ref() {
+        return Some("choose one of them with --select NAME".to_owned());
+    }
     let own = error.downcast_ref::<ProjectError>().and_then(words).map(str::to_owned);
     own.or_else(|| of(error.source()?))
 }

@@ -1,10 +1,14 @@
 //! What to do next about an error, in the words of the window.
 
+use formats::FormatError;
 use project::ProjectError;
 use std::error::Error;
 
 /// What to do next about an error, or about what caused it; `None` where no general advice is possible.
 pub fn of(error: &(dyn Error + 'static)) -> Option<String> {
+    if let Some(FormatError::NoSuchName { .. }) = error.downcast_ref() {
+        return Some("choose one of the names that are listed".to_owned());
+    }
     let own = error.downcast_ref::<ProjectError>().and_then(words).map(str::to_owned);
     own.or_else(|| of(error.source()?))
 }
