@@ -123,7 +123,8 @@ impl Interpreted {
 }
 
 impl ShownFault {
-    fn mesh(&self) -> FaultMesh<'_> {
+    /// In the form that figures take.
+    pub fn mesh(&self) -> FaultMesh<'_> {
         FaultMesh { name: &self.name, colour: self.colour, triangles: &self.triangles }
     }
 }
