@@ -21,7 +21,7 @@ pub fn sparse(at: &Path) {
 fn picture(at: &Path, outlines: &str) -> RgbImage {
     let line = format!("render p.petro {outlines}.png --outlines {outlines} --device cpu --samples 1 --size 500x400");
     let told = run_in(at, &line).done().stderr;
-    assert!(told.contains("horizon Sparse was picked on 27 % of its traces"), "{told}");
+    assert!(told.contains("horizon Sparse was picked on or near 27 % of its traces"), "{told}");
     assert!(!told.contains("Whole"), "{told}");
     image::open(at.join(format!("{outlines}.png"))).unwrap().to_rgb8()
 }

@@ -33,7 +33,10 @@ impl PickedShare {
         let percent = (100.0 * self.share).round();
         // "Horizon 1" is its name already.
         let noun = if self.name.to_lowercase().starts_with("horizon") { "" } else { "horizon " };
-        format!("{noun}{} was picked on {percent:.0} % of its traces; the rest is filled or extrapolated", self.name)
+        format!(
+            "{noun}{} was picked on or near {percent:.0} % of its traces; the rest is filled or extrapolated",
+            self.name
+        )
     }
 }
 
@@ -47,13 +50,13 @@ const MOST_NAMED: usize = 8;
 /// let sparse: Vec<_> = (0..1000).map(|n| PickedShare { name: format!("H{n}"), share: 0.0 }).collect();
 /// assert_eq!(sparse_sentences(&sparse[..2]).len(), 2);
 /// assert_eq!(sparse_sentences(&sparse).len(), 9);
-/// assert!(sparse_sentences(&sparse)[8].starts_with("992 more horizons were picked on less than half"));
+/// assert!(sparse_sentences(&sparse)[8].starts_with("992 more horizons were picked on or near less than half"));
 /// ```
 pub fn sparse_sentences(sparse: &[PickedShare]) -> Vec<String> {
     // A line that counts a single one would be no shorter.
     let named = if sparse.len() > MOST_NAMED + 1 { MOST_NAMED } else { sparse.len() };
     let rest = sparse.len() - named;
-    let counted = format!("{rest} more horizons were picked on less than half of their traces");
+    let counted = format!("{rest} more horizons were picked on or near less than half of their traces");
     sparse[..named].iter().map(PickedShare::sentence).chain((rest > 0).then_some(counted)).collect()
 }
 

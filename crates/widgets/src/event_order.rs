@@ -13,6 +13,10 @@ const LINE: f32 = 24.0;
 /// Lines of a page.
 const PAGE: f32 = 10.0;
 
+/// Longest time between the two clicks of a double click, seconds: each takes a frame for its press and one for its
+/// release.
+const DOUBLE_CLICK_S: f64 = 0.6;
+
 /// Holds back the events that belong to later frames.
 #[derive(Debug, Default)]
 pub struct EventOrder {
@@ -22,10 +26,13 @@ pub struct EventOrder {
 
 impl EventOrder {
     /// Puts the events of windows of this context in order, and lets a press that is held for long in a slow frame count
-    /// as a click.
+    /// as a click, and two that are far apart in slow frames as a double click.
     pub fn install(ctx: &Context) {
         ctx.add_plugin(Self::default());
-        ctx.options_mut(|options| options.input_options.max_click_duration = f64::INFINITY);
+        ctx.options_mut(|options| {
+            options.input_options.max_click_duration = f64::INFINITY;
+            options.input_options.max_double_click_delay = DOUBLE_CLICK_S;
+        });
     }
 
     /// Takes the events of the next frame out of those that wait.

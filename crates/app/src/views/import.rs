@@ -355,7 +355,7 @@ fn map(ui: &mut Ui, texture: &TextureHandle, geometry: &SurveyGeometry) {
     ui.painter().add(Shape::mesh(mesh));
     let first = geometry.origin;
     let text = format!(
-        "inline {}, crossline {}: X {:.0}, Y {:.0}",
+        "inline {}, crossline {}: X {:.0} m, Y {:.0} m",
         geometry.inlines.first, geometry.crosslines.first, first.x, first.y
     );
     ui.painter().circle_filled(place(world[0]), 4.0, theme::accent(ui.visuals()));

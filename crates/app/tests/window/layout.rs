@@ -10,7 +10,7 @@ use state::{Action, Panel};
 use std::collections::BTreeMap;
 
 /// Where the panels on the left and on the right lie, and their rows begin.
-const PANELS: [([f32; 2], f32); 2] = [([0.0, 320.0], 16.0), ([965.0, 1280.0], 981.0)];
+const PANELS: [([f32; 2], f32); 2] = [([0.0, 316.0], 16.0), ([965.0, 1280.0], 981.0)];
 /// A label and the gap beside it.
 const COLUMN: f32 = 108.0;
 const FIELDS: [Role; 6] =
@@ -75,6 +75,14 @@ fn buttons_have_one_height_and_fields_one_column() {
             let all = placed(harness, role).into_iter().filter(|(name, _)| !name.starts_with("Layer "));
             let odd: Vec<_> = all.filter(|(_, rect)| (rect.height() - 25.0).abs() > 0.5).collect();
             assert!(odd.is_empty(), "{panel:?} {role:?}: {odd:?}");
+        }
+        // Nothing runs out of its panel.
+        for role in [Role::Button, Role::ComboBox, Role::SpinButton, Role::CheckBox, Role::Label] {
+            let outside = placed(harness, role).into_iter().filter(|(_, rect)| {
+                PANELS.iter().any(|([from, to], _)| rect.left() >= *from && rect.left() < *to && rect.right() > *to)
+            });
+            let outside: Vec<_> = outside.collect();
+            assert!(outside.is_empty(), "{panel:?} {role:?}: {outside:?}");
         }
         let columns = columns(harness);
         fields += columns.len();

@@ -277,13 +277,17 @@ fn boundary(ui: &mut Ui, (index, picked): (usize, Option<f64>), horizon: &Horizo
                     }
                 });
             });
-            if let Some(share) = picked.filter(|share| *share < WHOLE) {
-                let percent = format!("{:.0} %", 100.0 * share);
-                let hint = format!("{name} was picked on {percent} of its traces; the rest is filled or extrapolated");
-                ui.label(RichText::new(format!("{percent} picked")).small().weak()).on_hover_text(hint);
-            }
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            ui.with_layout(Layout::top_down(Align::Min), |ui| {
+                ui.spacing_mut().item_spacing.y = 1.0;
                 ui.add(Label::new(RichText::new(name).small()).truncate());
+                if let Some(share) = picked.filter(|share| *share < WHOLE) {
+                    let percent = format!("{:.0} %", 100.0 * share);
+                    let hint = format!(
+                        "{name} was picked on {percent} of its traces or within four traces of them; the rest is filled or \
+                         extrapolated"
+                    );
+                    ui.label(RichText::new(format!("{percent} picked")).small().weak()).on_hover_text(hint);
+                }
             });
         });
         if chosen != contact {
