@@ -238,7 +238,13 @@ fn what_is_no_project() {
 fn a_refusal_ends_with_a_hint_that_helps() {
     let folder = project();
     let at = folder.path();
+    let polygon = |id: usize, x: f64| {
+        format!("{x},0,500,east-{id}\n{x},500,500,east-{id}\n{},0,520,east-{id}\n{x},0,500,east-{id}\n", x + 50.0)
+    };
+    let rows: String = (1..=2).map(|id| polygon(id, 400.0 * id as f64)).collect();
+    fs::write(at.join("polygons.csv"), format!("X,Y,Z,POLY_ID\n{rows}")).unwrap();
     for (line, hint) in [
+        ("fault add p.petro polygons.csv --name F", "hint: choose one of them with --select NAME"),
         ("horizon add p.petro nowhere.irap --name N", "hint: check the path: there is no such file or folder"),
         ("--json horizon add p.petro p.petro --name N", "hint: `petroglyph horizon add --help` shows an example"),
         ("render p.petro a.gif", "hint: `petroglyph render --help` shows an example"),

@@ -195,7 +195,9 @@ impl Picking {
     fn turn_to(&mut self, chosen: Option<String>, document: &Document) -> Vec<Task> {
         // The selection belongs to the horizon that it was made for.
         let tasks: Vec<Task> = self.accept().into_iter().chain(self.end_line(document)).collect();
-        let taken = self.horizon.clone().filter(|_| !tasks.is_empty());
+        // The project does not have the horizon yet whose first pick or line was just added.
+        let is_added = !tasks.is_empty() || self.accepted.is_some() || !self.added.is_empty();
+        let taken = self.horizon.clone().filter(|_| is_added);
         self.horizon = Some(chosen.unwrap_or_else(|| {
             let name = free_name(document, Noun::Horizon, "Horizon");
             if taken.as_ref() != Some(&name) {

@@ -11,7 +11,7 @@ use eframe::egui::{
 use figure::Annotation;
 use pictures::PickedShare;
 use pictures::figures::FigureFormat;
-use render::{LabelChange, Scene};
+use render::{LabelChange, Scene, Unpicked};
 use std::path::Path;
 use widgets::dialogue;
 use widgets::keyboard::is_entered;
@@ -143,7 +143,7 @@ fn fields(
             });
             ui.end_row();
         }
-        choices(ui, !session.document.horizons.is_empty(), &mut next);
+        choices(ui, session, &mut next);
     });
     let [width, height] = next.size_px();
     let is_too_large = width.max(height) > LARGEST;
@@ -197,7 +197,7 @@ fn shows_rock(session: &Session) -> bool {
 }
 
 /// What is written on the picture and beside it, in rows of two: a dialogue is no higher than a small screen.
-fn choices(ui: &mut Ui, has_layers: bool, next: &mut ExportForm) {
+fn choices(ui: &mut Ui, session: &Session, next: &mut ExportForm) {
     let count = 3 + WRITTEN.len();
     let half = count.div_ceil(2);
     for row in 0..half {
@@ -207,7 +207,7 @@ fn choices(ui: &mut Ui, has_layers: bool, next: &mut ExportForm) {
                 let size = vec2(CHOICE, ui.spacing().interact_size.y);
                 ui.allocate_ui_with_layout(size, Alignment::left_to_right(Align::Center), |ui| {
                     ui.set_min_width(CHOICE);
-                    choice(ui, index, has_layers, next);
+                    choice(ui, index, session, next);
                 });
             }
         });
@@ -215,15 +215,16 @@ fn choices(ui: &mut Ui, has_layers: bool, next: &mut ExportForm) {
     }
 }
 
-fn choice(ui: &mut Ui, index: usize, has_layers: bool, next: &mut ExportForm) {
+fn choice(ui: &mut Ui, index: usize, session: &Session, next: &mut ExportForm) {
     let (shown, name, can) = match index {
-        0 => (&mut next.legend, "Legend", has_layers),
+        0 => (&mut next.legend, "Legend", !session.document.horizons.is_empty()),
         1 => (&mut next.scale_bar, "Scale bar and exaggeration", true),
         2 => (&mut next.north_arrow, "North arrow", true),
         _ => {
             let (annotation, name) = WRITTEN[index - 3];
-            let mut is_shown = next.annotate.contains(&annotation);
-            if ui.checkbox(&mut is_shown, name).changed() {
+            let is_dashed = annotation == Annotation::Quality && is_dashed(session);
+            let mut is_shown = is_dashed || next.annotate.contains(&annotation);
+            if unless(ui, needs(!is_dashed, DASHED), Checkbox::new(&mut is_shown, name)).changed() {
                 next.annotate.retain(|known| *known != annotation);
                 next.annotate.extend(is_shown.then_some(annotation));
             }
@@ -235,6 +236,14 @@ fn choice(ui: &mut Ui, index: usize, has_layers: bool, next: &mut ExportForm) {
     if unless(ui, layers, Checkbox::new(&mut is_shown, name)).changed() {
         *shown = if is_shown { Shown::Yes } else { Shown::No };
     }
+}
+
+/// Why lines are dashed although nobody asks for it here.
+const DASHED: &str = "The block is dashed in this view: switch it under Layers, Dashed where not picked";
+
+/// Whether the page shows nothing but a block whose horizons are dashed where they were not picked.
+fn is_dashed(session: &Session) -> bool {
+    session.view.layout == Layout::Block && session.view.scene.outlines.unpicked == Unpicked::Dashed
 }
 
 /// Says which horizons were hardly picked; returns whether there are none, or a picture is wanted all the same.

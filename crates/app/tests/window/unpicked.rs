@@ -4,6 +4,7 @@
 use super::command::{act, applied};
 use super::driven::{click, open, state, wait};
 use eframe::egui::Key;
+use eframe::egui::accesskit::Toggled;
 use egui_kittest::kittest::{NodeT, Queryable};
 use formats::ImportOptions;
 use project::command::{AddHorizon, Age, Command};
@@ -30,6 +31,10 @@ fn an_export_with_a_horizon_that_was_hardly_picked_is_asked_for() {
         harness.query_by_label_contains("Horizon Few was picked on or near 42 % of its traces").is_some()
     });
     assert!(harness.get_by_label("Export").accesskit_node().is_disabled());
+    // The block is dashed already, and that is said.
+    let dashes = harness.get_by_label("Dashes and ? where not picked");
+    let dashes = dashes.accesskit_node();
+    assert!(dashes.is_disabled() && dashes.toggled() == Some(Toggled::True));
     harness.key_press(Key::Enter);
     harness.run_steps(3);
     assert!(harness.get_by_label("Export").accesskit_node().is_disabled(), "Enter does not answer it");

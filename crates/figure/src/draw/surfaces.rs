@@ -91,7 +91,11 @@ impl Cells {
         let mut open = if triangles.len() > CELLS * CELLS { joined(triangles, step) } else { triangles.to_vec() };
         let most = open.len() + 3 * CELLS * CELLS;
         let mut cells = Vec::new();
+        let last = DVec3::from(size.map(|count| count.saturating_sub(1) as f64));
         while let Some([a, b, c]) = open.pop() {
+            if a.min(b).min(c).cmpgt(last).any() || a.max(b).max(c).cmplt(DVec3::ZERO).any() {
+                continue;
+            }
             let length = |from: DVec3, to: DVec3| ((to - from) / step).length();
             let sides = [(length(a, b), [a, b, c]), (length(b, c), [b, c, a]), (length(c, a), [c, a, b])];
             let (longest, [a, b, c]) =
