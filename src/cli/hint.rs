@@ -8,9 +8,6 @@ use std::io::ErrorKind;
 
 /// What to do next about an error, or about what caused it; `None` where no general advice is possible.
 pub(super) fn of(error: &(dyn Error + 'static)) -> Option<String> {
-    if let Some(FormatError::NoSuchName { .. }) = error.downcast_ref() {
-        return Some("choose one of them with --select NAME".to_owned());
-    }
     let own = error.downcast_ref::<ProjectError>().and_then(words).map(str::to_owned);
     own.or_else(|| of(error.source()?))
 }
@@ -88,6 +85,7 @@ fn words(error: &ProjectError) -> Option<&'static str> {
             "import it into a new project, or check its header bytes with `petroglyph info FILE`"
         }
         ProjectError::SeveralInFile { .. } => "choose one with --select NAME",
+        ProjectError::Format(FormatError::NoSuchName { .. }) => "choose one of them with --select NAME",
         ProjectError::Crossing { .. } => {
             "check unit, sign and picks there, put it elsewhere with --above or --below, or state --contact erosional, onlap or intrusive"
         }

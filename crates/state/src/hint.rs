@@ -6,9 +6,6 @@ use std::error::Error;
 
 /// What to do next about an error, or about what caused it; `None` where no general advice is possible.
 pub fn of(error: &(dyn Error + 'static)) -> Option<String> {
-    if let Some(FormatError::NoSuchName { .. }) = error.downcast_ref() {
-        return Some("choose one of the names that are listed".to_owned());
-    }
     let own = error.downcast_ref::<ProjectError>().and_then(words).map(str::to_owned);
     own.or_else(|| of(error.source()?))
 }
@@ -65,7 +62,9 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         ProjectError::Style(_) => "choose another pattern for the layer, or go back to its default style",
         ProjectError::Scene(_) => "show the whole survey without cut-outs, or another scene",
         ProjectError::Placement { .. } => "import it into a new project, or check its header bytes",
-        ProjectError::SeveralInFile { .. } => "choose one of the names that are listed",
+        ProjectError::SeveralInFile { .. } | ProjectError::Format(FormatError::NoSuchName { .. }) => {
+            "choose one of the names that are listed"
+        }
         ProjectError::Crossing { .. } => {
             "check unit, sign and picks there, or choose another contact: erosional, onlap or intrusive"
         }

@@ -279,8 +279,13 @@ fn boundary(ui: &mut Ui, (index, picked): (usize, Option<f64>), horizon: &Horizo
             });
             ui.with_layout(Layout::top_down(Align::Min), |ui| {
                 ui.spacing_mut().item_spacing.y = 1.0;
+                let share = picked.filter(|share| *share < WHOLE);
+                if share.is_none() {
+                    // In the middle of its row.
+                    ui.add_space(5.0);
+                }
                 ui.add(Label::new(RichText::new(name).small()).truncate());
-                if let Some(share) = picked.filter(|share| *share < WHOLE) {
+                if let Some(share) = share {
                     let percent = format!("{:.0} %", 100.0 * share);
                     let hint = format!(
                         "{name} was picked on {percent} of its traces or within four traces of them; the rest is filled or \
