@@ -99,7 +99,7 @@ key o; sleep 6; look 10-faces
 key p; sleep 12; look 11-illustrated
 key ctrl+e; sleep 2; look 12-export
 # One horizon was picked on less than half of its traces, so the picture has to be wanted all the same.
-click "$((width / 2 - 213))" "$((height * 692 / 800))"
+click "$((width / 2 - 260))" "$((height / 2 + 212))"
 key Return
 until_so "the picture is exported" '[ -s window.png ]'
 took=$(($(date +%s) - began))

@@ -207,7 +207,7 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
     Ok((
         cube,
         Loaded {
-            sparse: Vec::new(),
+            picked: Vec::new(),
             geometry,
             rock: Some(rock),
             volumes: Vec::new(),

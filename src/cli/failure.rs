@@ -16,44 +16,52 @@ pub struct Refusal {
     pub code: u8,
     /// What is wrong.
     pub reason: String,
-    /// What to do next.
+    /// What to do next; empty where nothing is known that helps.
     pub hint: String,
 }
 
 impl Refusal {
     /// What is wrong with the words of a command.
-    pub(super) fn of_usage(told: &clap::Error) -> Self {
+    pub(super) fn of_usage(told: &clap::Error, command: &str) -> Self {
         let text = told.to_string();
         let reason = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
-        Self { code: u8::try_from(told.exit_code()).unwrap_or(2), reason, hint: GENERAL_HINT.to_owned() }
+        Self { code: u8::try_from(told.exit_code()).unwrap_or(2), reason, hint: example_of(command) }
     }
 }
 
 /// What the program says about an error: the error with its causes in one sentence, and what to do next.
 pub fn explain(error: impl Error + Send + Sync + 'static) -> Refusal {
-    refusal(&Failure::Failed(error.into()))
+    failed(&error.into())
 }
 
-/// The same for a failure.
-pub(super) fn refusal(failure: &Failure) -> Refusal {
-    let (code, reason, hint) = match failure {
-        Failure::Usage(reason) => (2, reason.clone(), GENERAL_HINT.to_owned()),
-        Failure::Failed(error) => {
-            let sentence = sentence(error);
-            match hint::of(error.as_ref())
-                .or_else(|| remedy_of(error.as_ref()).map(|ways| format!("state {}", option::remedy(&ways))))
-            {
-                Some(hint) => (1, sentence, hint),
-                None => advice(sentence),
-            }
-        }
+/// The same for a failure of a command.
+pub(super) fn refusal(failure: &Failure, command: &str) -> Refusal {
+    match failure {
+        Failure::Usage(reason) => Refusal { code: 2, reason: reason.clone(), hint: example_of(command) },
+        Failure::Failed(error) => match failed(error) {
+            refusal if refusal.hint.is_empty() => Refusal { hint: example_of(command), ..refusal },
+            refusal => refusal,
+        },
+    }
+}
+
+/// What is said about an error: what its kind or its remedy says, what its own sentence ends with, or what the file
+/// system's answer tells.
+fn failed(error: &anyhow::Error) -> Refusal {
+    let sentence = sentence(error);
+    let known = hint::of(error.as_ref())
+        .or_else(|| remedy_of(error.as_ref()).map(|ways| format!("state {}", option::remedy(&ways))));
+    let (reason, hint) = match known {
+        Some(hint) => (sentence, Some(hint)),
+        None => advice(sentence),
     };
-    Refusal { code, reason, hint }
+    let hint = hint.or_else(|| error.chain().find_map(hint::of_files).map(str::to_owned));
+    Refusal { code: 1, reason, hint: hint.unwrap_or_default() }
 }
 
 /// Prints a failure.
-pub(super) fn print(failure: &Failure, json: bool) -> ExitCode {
-    let Refusal { code, reason, hint } = refusal(failure);
+pub(super) fn print(failure: &Failure, command: &str, json: bool) -> ExitCode {
+    let Refusal { code, reason, hint } = refusal(failure, command);
     if json {
         // The exit code says that it failed, whether or not this can be written.
         let _ = write_out(&plain_json(&serde_json::json!({ "error": reason, "hint": hint }).to_string()));
@@ -62,17 +70,22 @@ pub(super) fn print(failure: &Failure, json: bool) -> ExitCode {
     ExitCode::from(code)
 }
 
-/// The hint when nothing more specific is known.
-const GENERAL_HINT: &str = "`petroglyph COMMAND --help` shows an example";
+/// The hint when nothing more specific is known: where there is an example of the command.
+fn example_of(command: &str) -> String {
+    match command {
+        "" => "`petroglyph --help` lists the commands".to_owned(),
+        _ => format!("`petroglyph {command} --help` shows an example"),
+    }
+}
 
-/// Splits an error of the other crates into the error and the hint: it ends with what to do, after a semicolon or in a
+/// Splits an error of the other crates into the error and the hint, if it ends with what to do, after a semicolon or in a
 /// sentence of its own.
-fn advice(sentence: String) -> (u8, String, String) {
+fn advice(sentence: String) -> (String, Option<String>) {
     let own_sentence = |at: &usize| sentence[at + 2..].starts_with(char::is_uppercase);
     let stop = sentence.match_indices(". ").map(|(at, _)| at).filter(own_sentence).last();
     match stop.max(sentence.rfind("; ")) {
-        Some(at) => (1, sentence[..at].to_owned(), sentence[at + 2..].to_owned()),
-        None => (1, sentence, GENERAL_HINT.to_owned()),
+        Some(at) => (sentence[..at].to_owned(), Some(sentence[at + 2..].to_owned())),
+        None => (sentence, None),
     }
 }
 
@@ -96,13 +109,23 @@ mod tests {
 
     #[test]
     fn advice_is_told_from_the_reason() {
-        let parts = |text: &str| {
-            let (_, reason, hint) = advice(text.to_owned());
-            (reason, hint)
-        };
-        assert_eq!(parts("a.b is cut; in two; copy it"), ("a.b is cut; in two".into(), "copy it".into()));
-        assert_eq!(parts("it is 3. at 4. Check the unit"), ("it is 3. at 4".into(), "Check the unit".into()));
-        assert_eq!(parts("it is gone").1, GENERAL_HINT);
+        let parts = |text: &str| advice(text.to_owned());
+        assert_eq!(parts("a.b is cut; in two; copy it"), ("a.b is cut; in two".into(), Some("copy it".into())));
+        assert_eq!(parts("it is 3. at 4. Check the unit"), ("it is 3. at 4".into(), Some("Check the unit".into())));
+        assert_eq!(parts("it is gone").1, None);
+    }
+
+    #[test]
+    fn without_a_remedy_the_file_system_or_the_command_itself_tells_what_to_do() {
+        let gone = anyhow::Error::from(std::io::Error::from(std::io::ErrorKind::NotFound)).context("reading a.csv");
+        assert_eq!(
+            refusal(&Failure::Failed(gone), "horizon add").hint,
+            "check the path: there is no such file or folder"
+        );
+        let other = refusal(&Failure::Failed(anyhow::anyhow!("it is gone")), "horizon add");
+        assert_eq!(other.hint, "`petroglyph horizon add --help` shows an example");
+        // Where there is no command, as in Python, nothing is said that does not help.
+        assert_eq!(failed(&anyhow::anyhow!("it is gone")).hint, "");
     }
 
     #[test]

@@ -1,13 +1,28 @@
 //! What to do next about an error, in the words of the command line.
 
+use formats::FormatError;
 use param::ParamError;
 use project::ProjectError;
 use std::error::Error;
+use std::io::ErrorKind;
 
 /// What to do next about an error, or about what caused it; `None` where no general advice is possible.
 pub(super) fn of(error: &(dyn Error + 'static)) -> Option<String> {
     let own = error.downcast_ref::<ProjectError>().and_then(words).map(str::to_owned);
     own.or_else(|| of(error.source()?))
+}
+
+/// What to do next about an answer of the file system.
+pub(super) fn of_files(error: &(dyn Error + 'static)) -> Option<&'static str> {
+    Some(match error.downcast_ref::<std::io::Error>()?.kind() {
+        ErrorKind::NotFound => "check the path: there is no such file or folder",
+        ErrorKind::PermissionDenied => "choose a place where you may read and write, or change its permissions",
+        ErrorKind::ReadOnlyFilesystem => "choose a place that can be written",
+        ErrorKind::StorageFull => "free some space there, then try again",
+        ErrorKind::IsADirectory => "give a file, not a folder",
+        ErrorKind::NotADirectory => "check the path: a part of it is a file, not a folder",
+        _ => return None,
+    })
 }
 
 /// What to do next on the command line, where general advice is possible.
@@ -70,6 +85,7 @@ fn words(error: &ProjectError) -> Option<&'static str> {
             "import it into a new project, or check its header bytes with `petroglyph info FILE`"
         }
         ProjectError::SeveralInFile { .. } => "choose one with --select NAME",
+        ProjectError::Format(FormatError::NoSuchName { .. }) => "choose one of them with --select NAME",
         ProjectError::Crossing { .. } => {
             "check unit, sign and picks there, put it elsewhere with --above or --below, or state --contact erosional, onlap or intrusive"
         }

@@ -21,6 +21,7 @@ fn option(setting: Setting) -> (&'static str, &'static str) {
         Setting::XByte => ("--x-byte", ""),
         Setting::YByte => ("--y-byte", ""),
         Setting::ScalarByte => ("--scalar-byte", ""),
+        Setting::CoordinateScalar => ("--coordinate-scalar", ""),
         Setting::Duplicates => ("--duplicates", ""),
         Setting::TraceWeight => ("--trace-weight", ""),
         Setting::Format => ("--format", ""),

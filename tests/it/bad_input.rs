@@ -232,3 +232,25 @@ fn what_is_no_project() {
     fs::write(at.join("newer.petro/project.toml"), "version = 1\nstep = 0\nhorisons = []\n").unwrap();
     refused(at, "info newer.petro", &["cannot be understood", "horisons"]);
 }
+
+/// The last line of a refusal helps: it names what to look at, or the command's own help.
+#[test]
+fn a_refusal_ends_with_a_hint_that_helps() {
+    let folder = project();
+    let at = folder.path();
+    let polygon = |id: usize, x: f64| {
+        format!("{x},0,500,east-{id}\n{x},500,500,east-{id}\n{},0,520,east-{id}\n{x},0,500,east-{id}\n", x + 50.0)
+    };
+    let rows: String = (1..=2).map(|id| polygon(id, 400.0 * id as f64)).collect();
+    fs::write(at.join("polygons.csv"), format!("X,Y,Z,POLY_ID\n{rows}")).unwrap();
+    for (line, hint) in [
+        ("fault add p.petro polygons.csv --name F", "hint: choose one of them with --select NAME"),
+        ("horizon add p.petro nowhere.irap --name N", "hint: check the path: there is no such file or folder"),
+        ("--json horizon add p.petro p.petro --name N", "hint: `petroglyph horizon add --help` shows an example"),
+        ("render p.petro a.gif", "hint: `petroglyph render --help` shows an example"),
+        ("fault extent p.petro F1 reach", "hint: `petroglyph fault extent --help` shows an example"),
+    ] {
+        let told = run_in(at, line);
+        assert!(told.code > 0 && told.stderr.contains(hint), "{line}: {}", told.stderr);
+    }
+}

@@ -255,6 +255,38 @@ mod window {
     }
 }
 
+/// A colour that a fault was given holds on the block, in its legend, and on sections of rock; others are as they were.
+#[test]
+fn a_fault_has_its_colour_on_every_figure() {
+    let folder = project();
+    let at = folder.path();
+    for (name, inline) in [("Border", 112), ("Plain", 132)] {
+        let sticks: Vec<String> =
+            [501, 540].map(|line| format!("--stick {inline},{line},0 {},{line},550", inline + 4)).to_vec();
+        run_in(at, &format!("fault pick p.petro --name {name} {}", sticks.join(" "))).done();
+    }
+    let block = "render p.petro a.svg --size-cm 12x9 --legend --ground off --device cpu";
+    let rock = "render p.petro a.svg --crossline 520 --section-blend 0 --size-cm 12x9 --legend --device cpu";
+    for page in [block, rock] {
+        let drawn = |with: &str| {
+            run_in(at, &format!("{page} {with}")).done();
+            fs::read_to_string(at.join("a.svg")).unwrap()
+        };
+        let before = drawn("");
+        assert!(before.contains(">Fault</text>") && !before.contains("#c0182c"), "{page}");
+        run_in(at, "fault colour p.petro Border #c0182c").done();
+        let after = drawn("");
+        // The line itself, and the entry of the legend that explains it.
+        assert!(after.matches("#c0182c").count() >= 2, "{page}: {}", after.matches("#c0182c").count());
+        let (_, legend) = after.split_once("inkscape:label=\"legend\"").unwrap();
+        for entry in [">Border</text>", ">Fault</text>", "#c0182c"] {
+            assert!(legend.contains(entry), "{page}: no {entry}");
+        }
+        assert!(!drawn("--preset black-and-white").contains("#c0182c"), "{page} in black and white");
+        run_in(at, "undo p.petro").done();
+    }
+}
+
 #[test]
 fn a_figure_is_written_as_paths_and_text() {
     let folder = project();

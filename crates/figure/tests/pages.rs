@@ -215,6 +215,23 @@ fn a_picture_of_distortion_has_its_colours_in_the_legend() {
     assert!(!measured.contains(&"Chalk".to_owned()) && legend(FaceData::Rock).contains(&"Chalk".to_owned()));
 }
 
+/// A slice is a plan: under it stand its own scale and no exaggeration, neither its own nor the block's beside it.
+#[test]
+fn under_a_slice_stands_no_exaggeration() {
+    let scene = Scene { exaggeration: 2.5, ..Scene::default() };
+    let block: Part = BlockPart { scene, comparison: Comparison::None }.into();
+    let page = |parts: Vec<Part>| -> (usize, Vec<String>) {
+        let made = made(&Figure { scale_bar: true, ..figure(parts) }).unwrap();
+        let texts = made.texts().into_iter().map(|text| text.text.clone());
+        let (told, rest): (Vec<String>, Vec<String>) = texts.partition(|text| text.contains("exaggeration"));
+        (told.len(), rest)
+    };
+    let (told, rest) = page(vec![section(SectionKind::Slice, 12.0)]);
+    assert!(told == 0 && rest.iter().any(|text| text.ends_with(" m")), "{told} {rest:?}");
+    assert_eq!(page(vec![section(SectionKind::Inline, 12.0)]).0, 1);
+    assert_eq!(page(vec![block, section(SectionKind::Slice, 12.0)]).0, 1);
+}
+
 #[test]
 fn what_has_no_page_is_refused() {
     assert!(matches!(made(&figure(Vec::new())), Err(FigureError::Parts { found: 0 })));

@@ -119,6 +119,7 @@ pub(super) fn surfaces(
     let mut by_name: HashMap<Option<String>, usize> = HashMap::new();
     let mut separators = 0usize;
     let mut breaks = 0.0;
+    let mut polygons = HashMap::new();
     for line in rows {
         let fields = cut.fields(line.text);
         if is_separator(&fields, cut) {
@@ -130,7 +131,7 @@ pub(super) fn surfaces(
             let expected = format!("at least {} fields", last + 1);
             return Err(source.syntax(line.number, expected, line.text));
         }
-        let (name, mut point) = point_of(source, line, &fields, cut, &layout.columns)?;
+        let (name, mut point) = point_of(source, line, &fields, cut, &layout.columns, &mut polygons)?;
         if separators > 0 || context.kind == super::SurfaceKind::Fault {
             point.stick = point.stick.or((separators > 0).then_some(breaks));
         }
@@ -164,15 +165,18 @@ fn is_separator(fields: &[Field<'_>], cut: Cut) -> bool {
     fields.len() == 3 && fields.iter().all(|f| cut.number(f.text) == Some(999.0))
 }
 
+/// The name and the point of a row. Polygons are numbered as they appear: each is a surface of its own, or, where rows
+/// have a name, a stick of the surface of that name.
 fn point_of(
     source: &SourceFile,
     line: &Line<'_>,
     fields: &[Field<'_>],
     cut: Cut,
     columns: &[Column],
+    polygons: &mut HashMap<String, f64>,
 ) -> Result<(Option<String>, RawPoint), FormatError> {
     let (mut inline, mut crossline, mut x, mut y) = (None, None, None, None);
-    let mut name = None;
+    let (mut name, mut polygon) = (None, None);
     let mut normal = DVec3::NAN;
     let mut point = RawPoint { z: f64::NAN, ..RawPoint::default() };
     for (field, column) in fields.iter().zip(columns) {
@@ -194,8 +198,9 @@ fn point_of(
             Column::Name => name = Some(field.text.to_string()),
             Column::Stick => point.stick = Some(finite("stick")?),
             Column::Polygon => {
-                point.stick = Some(finite("polygon")?);
-                name = Some(field.text.to_string());
+                let next = polygons.len() as f64;
+                point.stick = Some(*polygons.entry(field.text.to_string()).or_insert(next));
+                polygon = Some(field.text.to_string());
             }
             Column::Node => point.node = Some(finite("node")?),
             Column::Sheet => point.sheet = Some(finite("sheet")?),
@@ -213,7 +218,7 @@ fn point_of(
     }
     point.normal = normal.is_finite().then_some(normal);
     point.xy = x.zip(y).map(|(a, b)| DVec2::new(a, b));
-    Ok((name, point))
+    Ok((name.or(polygon), point))
 }
 
 /// The columns the user gave, the header's, or those that fit the survey.

@@ -13,22 +13,30 @@ const SPARSE: f64 = 0.5;
 /// Distance above and below a horizon at which the layers are compared, samples.
 const BESIDE: f32 = 0.05;
 
-/// A horizon that was picked on less than half of the traces where it bounds a layer.
+/// How much of a horizon was picked of the places where it bounds a layer.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SparseHorizon {
+pub struct PickedShare {
     /// Its name.
     pub name: String,
-    /// The share that was picked, 0 to 1.
+    /// The share that was picked, 0 to 1; NaN where it bounds no layer.
     pub share: f64,
 }
 
-impl SparseHorizon {
+impl PickedShare {
+    /// Whether less than half was picked.
+    pub fn is_sparse(&self) -> bool {
+        self.share < SPARSE
+    }
+
     /// What there is to know before a picture is believed.
     pub fn sentence(&self) -> String {
         let percent = (100.0 * self.share).round();
         // "Horizon 1" is its name already.
         let noun = if self.name.to_lowercase().starts_with("horizon") { "" } else { "horizon " };
-        format!("{noun}{} was picked on {percent:.0} % of its traces; the rest is filled or extrapolated", self.name)
+        format!(
+            "{noun}{} was picked on or near {percent:.0} % of its traces; the rest is filled or extrapolated",
+            self.name
+        )
     }
 }
 
@@ -38,18 +46,18 @@ const MOST_NAMED: usize = 8;
 /// What there is to know of horizons that were hardly picked: a sentence each, and one that counts the rest of very many.
 ///
 /// ```
-/// use pictures::{SparseHorizon, sparse_sentences};
-/// let sparse: Vec<_> = (0..1000).map(|n| SparseHorizon { name: format!("H{n}"), share: 0.0 }).collect();
+/// use pictures::{PickedShare, sparse_sentences};
+/// let sparse: Vec<_> = (0..1000).map(|n| PickedShare { name: format!("H{n}"), share: 0.0 }).collect();
 /// assert_eq!(sparse_sentences(&sparse[..2]).len(), 2);
 /// assert_eq!(sparse_sentences(&sparse).len(), 9);
-/// assert!(sparse_sentences(&sparse)[8].starts_with("992 more horizons were picked on less than half"));
+/// assert!(sparse_sentences(&sparse)[8].starts_with("992 more horizons were picked on or near less than half"));
 /// ```
-pub fn sparse_sentences(sparse: &[SparseHorizon]) -> Vec<String> {
+pub fn sparse_sentences(sparse: &[PickedShare]) -> Vec<String> {
     // A line that counts a single one would be no shorter.
     let named = if sparse.len() > MOST_NAMED + 1 { MOST_NAMED } else { sparse.len() };
     let rest = sparse.len() - named;
-    let counted = format!("{rest} more horizons were picked on less than half of their traces");
-    sparse[..named].iter().map(SparseHorizon::sentence).chain((rest > 0).then_some(counted)).collect()
+    let counted = format!("{rest} more horizons were picked on or near less than half of their traces");
+    sparse[..named].iter().map(PickedShare::sentence).chain((rest > 0).then_some(counted)).collect()
 }
 
 impl Rock {
@@ -87,10 +95,9 @@ impl Rock {
         (0..model.stratigraphy().horizons.len()).map(share).collect()
     }
 
-    /// The horizons that were picked on less than half of the places where they bound a layer.
-    pub fn sparse_horizons(&self) -> Vec<SparseHorizon> {
+    /// The same by name.
+    pub fn picked(&self) -> Vec<PickedShare> {
         let named = self.model.stratigraphy().horizons.iter().zip(self.picked_shares());
-        let sparse = named.filter(|(_, share)| *share < SPARSE);
-        sparse.map(|(horizon, share)| SparseHorizon { name: horizon.name.clone(), share }).collect()
+        named.map(|(horizon, share)| PickedShare { name: horizon.name.clone(), share }).collect()
     }
 }

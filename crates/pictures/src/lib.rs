@@ -20,7 +20,7 @@ mod painter;
 pub mod scene;
 mod shown_candidates;
 
-pub use certainty::{SparseHorizon, sparse_sentences};
+pub use certainty::{PickedShare, sparse_sentences};
 pub use motion::Motion;
 pub use painter::{Device, Painter, write_png};
 pub use shown_candidates::{LeafFacts, ShownCandidates};

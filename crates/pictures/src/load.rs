@@ -1,7 +1,7 @@
 //! Loads the input of renderers from a project: reads data, builds the model, parameterizes layers and compiles styles.
 //! Each step does only what is needed, and earlier results are taken from `derived/`.
 
-use super::SparseHorizon;
+use super::PickedShare;
 use crate::shown_candidates::ShownCandidates;
 use glam::{DVec3, Vec3};
 use model::{ModelSettings, StructuralModel};
@@ -236,8 +236,8 @@ pub struct Loaded {
     pub geometry: SurveyGeometry,
     /// The interpretation, if there is one and the scene shows it.
     pub rock: Option<Rock>,
-    /// Horizons that were picked on less than half of where they bound a layer.
-    pub sparse: Vec<SparseHorizon>,
+    /// How much of each horizon was picked, youngest first.
+    pub picked: Vec<PickedShare>,
     /// The volumes that the scene shows.
     pub volumes: Vec<LoadedVolume>,
     /// The packed volume, for the lookup that needs it.
@@ -286,9 +286,9 @@ pub fn load_within(
     let geometry = document.frame()?.clone();
     // Raw data alone needs no interpretation, but outlines and ground do.
     let rock = rock(project, progress)?;
-    let sparse = rock.as_ref().map_or_else(Vec::new, Rock::sparse_horizons);
+    let picked = rock.as_ref().map_or_else(Vec::new, Rock::picked);
     if scene.blend < 1.0 {
-        super::sparse_sentences(&sparse).into_iter().for_each(|sentence| progress.warn(sentence));
+        super::sparse_sentences(&sparse(&picked)).into_iter().for_each(|sentence| progress.warn(sentence));
     }
     let mut functions = styles::transfer_functions(document);
     if let Some(raw) = &scene.raw {
@@ -327,7 +327,7 @@ pub fn load_within(
         candidates,
         geometry,
         rock,
-        sparse,
+        picked,
         volumes,
         packed,
         raw: functions.raw,
@@ -383,7 +383,7 @@ pub fn load_bare(
     let wanted: Vec<&str> = raw.iter().map(|raw| raw.volume.as_str()).chain(volumes_within(scene)).collect();
     Ok(Loaded {
         rock: None,
-        sparse: Vec::new(),
+        picked: Vec::new(),
         volumes: read_volumes(project.root(), document, &geometry, &wanted, volume_bytes, progress)?,
         packed: None,
         wells: read_wells(project.root(), document, &geometry)?,
@@ -472,7 +472,16 @@ pub fn block_extent(geometry: &SurveyGeometry, rock: &Rock, names: Vec<String>, 
     }
 }
 
+fn sparse(picked: &[PickedShare]) -> Vec<PickedShare> {
+    picked.iter().filter(|horizon| horizon.is_sparse()).cloned().collect()
+}
+
 impl Loaded {
+    /// The horizons that were picked on less than half of the places where they bound a layer.
+    pub fn sparse(&self) -> Vec<PickedShare> {
+        sparse(&self.picked)
+    }
+
     /// Whether everything that the volume rendering of a scene needs is loaded.
     pub fn holds_media(&self, media: &Media) -> bool {
         let knows = |name: &str| self.candidates.as_ref().is_some_and(|known| !known.leaves_of(name).is_empty());

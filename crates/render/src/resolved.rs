@@ -257,6 +257,7 @@ fn no_tables() -> TtfTables {
         volumes: Vec::new(),
         textures: Vec::new(),
         patterns: Vec::new(),
+        faults: Vec::new(),
     }
 }
 

@@ -501,7 +501,7 @@ fn provenance(document: &Document, loaded: &Loaded) -> Vec<String> {
     if let Some(raw) = &loaded.raw {
         lines.push(format!("raw data: volume {}", raw.volume));
     }
-    lines.extend(pictures::sparse_sentences(&loaded.sparse));
+    lines.extend(pictures::sparse_sentences(&loaded.sparse()));
     for entry in document.volumes.iter().take(1) {
         let file = entry.source.path.file_name().map(|name| name.to_string_lossy().into_owned());
         lines.extend(file.map(|file| format!("seismic data: {file}")));

@@ -187,8 +187,8 @@ impl<'a> Coordinates<'a> {
     }
 
     /// The scalar that would make bins of these sides, in metres as they are read, those of a survey: a power of ten,
-    /// where the numbers are integers.
-    fn better_scalar(&self, sides: [f64; 2]) -> Option<String> {
+    /// where the numbers are integers; and what it would do.
+    fn better_scalar(&self, sides: [f64; 2]) -> Option<(i32, String)> {
         let [now, same] = self.scalar.range();
         let is_integer = matches!(self.number_type, NumberType::I32 | NumberType::I16 | NumberType::U16);
         let unscaled = sides.map(|side| side / scaled(1, now));
@@ -197,7 +197,7 @@ impl<'a> Coordinates<'a> {
             is_integer && now == same && unscaled.into_iter().all(is_usual)
         })?;
         let [a, b] = unscaled.map(|side| in_figures(side * scaled(1, likely)));
-        Some(format!("with a coordinate scalar of {likely} in place of {now} they would be {a} by {b} m"))
+        Some((likely, format!("with a coordinate scalar of {likely} in place of {now} they would be {a} by {b} m")))
     }
 
     /// Whether X or Y varies.
@@ -502,17 +502,18 @@ fn note_bins(
     let [x, y] = coordinates.bytes;
     let sides = [fit.inline_vector, fit.crossline_vector].map(|side| side.length() * unit.metres());
     let [inline, crossline] = sides.map(in_figures);
-    let likely = if look_like_degrees(coordinates.largest(), fit) {
-        "X and Y may be degrees, which have to be projected first".to_owned()
+    let (scalar, likely) = if look_like_degrees(coordinates.largest(), fit) {
+        (None, "X and Y may be degrees, which have to be projected first".to_owned())
+    } else if let Some((scalar, likely)) = coordinates.better_scalar(sides) {
+        (Some(Setting::CoordinateScalar.stated_as(scalar)), likely)
     } else {
-        coordinates.better_scalar(sides).unwrap_or_else(|| {
-            "other bytes may hold them, or another coordinate scalar or unit may be meant".to_owned()
-        })
+        let scalar = Some(Setting::CoordinateScalar.stated());
+        (scalar, "other bytes may hold them, or another coordinate scalar or unit may be meant".to_owned())
     };
     let bytes = (!is_stated(options)).then(other_bytes);
     findings.warning(Note::unless(
         format!("X and Y at bytes {x} and {y} make bins of {inline} by {crossline} m, which no survey has: {likely}"),
-        Remedy::any(bytes.into_iter().chain([Setting::CoordinateUnit.stated(), Setting::Bin.stated()])),
+        Remedy::any(scalar.into_iter().chain(bytes).chain([Setting::CoordinateUnit.stated(), Setting::Bin.stated()])),
     ));
 }
 

@@ -94,7 +94,7 @@ impl Words {
                     (unit == FileUnit::Milliseconds || !is_of_gear)
                         && (number * factor - interval).abs() < 1e-6 * interval
                 });
-                let is_of_axis = matches!(words[index], "UNIT" | "UNITS")
+                let is_of_axis = matches!(words[index], "UNIT" | "UNITS" | "IN")
                     && !is_of_gear
                     && OF_AXIS.contains(&beside(&words, index, -1));
                 if is_interval || is_of_axis {
@@ -136,7 +136,9 @@ fn words(line: &str) -> Vec<String> {
         if !number.is_empty() && unit_word(unit).is_some() {
             words.extend([number.to_owned(), unit.to_owned()]);
         } else {
-            words.push(piece.to_owned());
+            // Samples may be called depths or times.
+            let plural = matches!(piece, "DEPTHS" | "TIMES");
+            words.push(piece[..piece.len() - usize::from(plural)].to_owned());
         }
     }
     words
@@ -160,10 +162,12 @@ fn offers_both(words: &[&str]) -> bool {
 /// Whether the word at a place is named as the axis by the words around it.
 fn is_axis(words: &[&str], index: usize) -> bool {
     let [before, after] = [-1, 1].map(|by| beside(words, index, by));
+    let is_in_unit = after == "IN" && unit_word(beside(words, index, 2)).is_some();
     AXIS.contains(&before)
         || AXIS.contains(&after)
         || INTO.contains(&before)
-        || before == "IS" && words.contains(&"AXIS")
+        || is_in_unit && !words.iter().any(|word| GEAR.contains(word))
+        || matches!(before, "IS" | "ARE") && words.iter().any(|word| matches!(*word, "AXIS" | "SAMPLES"))
 }
 
 /// What a line says for time.
@@ -244,6 +248,11 @@ mod tests {
             ("VERTICAL DOMAIN: TIME (MS)", [Some(Axis), None]),
             ("Z-DOMAIN: DEPTH (M)", [None, Some(Axis)]),
             ("VERTICAL AXIS IS DEPTH", [None, Some(Axis)]),
+            ("SAMPLES ARE DEPTHS BELOW SEA LEVEL", [None, Some(Axis)]),
+            ("DEPTHS IN FEET", [None, Some(Axis)]),
+            ("WATER DEPTHS IN FEET", [None, None]),
+            ("TIMES IN MS", [Some(Axis), None]),
+            ("STACKED 8 TIMES", [None, None]),
             ("KIRCHHOFF PSDM, STRETCHED BACK TO TWT", [Some(Axis), Some(Method)]),
             ("PRESTACK DEPTH MIGRATION", [None, Some(Method)]),
             ("OUTPUT IN TIME", [Some(Axis), None]),
@@ -280,11 +289,14 @@ mod tests {
             ("Z UNITS: FEET", FileUnit::Feet),
             ("VERTICAL UNIT = METER", FileUnit::Metres),
             ("SAMPLING UNITS (MS)", FileUnit::Milliseconds),
+            ("SAMPLES ARE DEPTHS IN FEET BELOW SEA LEVEL", FileUnit::Feet),
         ] {
             let words = Words::find([line.to_owned()].iter(), 4.0);
             assert_eq!(words.unit.map(|(unit, _)| unit), Some(unit), "{line}");
         }
-        for line in ["SOURCE DEPTH 4 M", "BIN SIZE 4 M", "XY UNITS: M", "UNITS M", "WATER DEPTH UNIT: M"] {
+        for line in
+            ["SOURCE DEPTH 4 M", "BIN SIZE 4 M", "XY UNITS: M", "UNITS M", "WATER DEPTH UNIT: M", "WATER DEPTH IN M"]
+        {
             assert!(Words::find([line.to_owned()].iter(), 4.0).unit.is_none(), "{line}");
         }
         assert!(Words::find(["4 MS".to_owned(), "4 M".to_owned()].iter(), 4.0).unit.is_none());

@@ -278,6 +278,8 @@ pub struct ShareForm {
     pub limit_mb: f64,
     /// Most triangles of the model.
     pub triangles: usize,
+    /// Whether it is wanted although a horizon was hardly picked.
+    pub accepts_sparse: bool,
 }
 
 impl ShareForm {
@@ -294,6 +296,7 @@ impl ShareForm {
             sections: review::SECTIONS,
             limit_mb: SIZE_MB,
             triangles: OFFICE_TRIANGLES,
+            accepts_sparse: false,
         }
     }
 
@@ -326,7 +329,7 @@ impl ShareForm {
     /// What of it decides what is previewed: not where files lie, nor what only their size depends on.
     pub fn previewed(&self) -> Self {
         let (density, limit_mb) = (review::DENSITY, SIZE_MB);
-        Self { page: String::new(), model: String::new(), density, limit_mb, ..self.clone() }
+        Self { page: String::new(), model: String::new(), density, limit_mb, accepts_sparse: false, ..self.clone() }
     }
 }
 

@@ -1,5 +1,6 @@
 //! What to do next about an error, in the words of the window.
 
+use formats::FormatError;
 use project::ProjectError;
 use std::error::Error;
 
@@ -61,7 +62,9 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         ProjectError::Style(_) => "choose another pattern for the layer, or go back to its default style",
         ProjectError::Scene(_) => "show the whole survey without cut-outs, or another scene",
         ProjectError::Placement { .. } => "import it into a new project, or check its header bytes",
-        ProjectError::SeveralInFile { .. } => "choose one of the names that are listed",
+        ProjectError::SeveralInFile { .. } | ProjectError::Format(FormatError::NoSuchName { .. }) => {
+            "choose one of the names that are listed"
+        }
         ProjectError::Crossing { .. } => {
             "check unit, sign and picks there, or choose another contact: erosional, onlap or intrusive"
         }

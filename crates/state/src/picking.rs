@@ -85,6 +85,12 @@ pub struct Picking {
     /// The node accepted last, until the project contains it.
     #[serde(skip)]
     pub accepted: Option<Pick>,
+    /// Whether a worker is looking for the node to select.
+    #[serde(skip)]
+    pub awaits: bool,
+    /// What was done meanwhile, and counts as soon as the node is known.
+    #[serde(skip)]
+    pub hasty: Vec<PickingStep>,
     /// What the pointer does.
     pub tool: Tool,
     /// How the block is shown.

@@ -14,7 +14,10 @@ impl State {
         let Some(geometry) = session.document.geometry.clone() else { return Vec::new() };
         let document = &session.document;
         let picking = &mut session.view.picking;
-        let ask = |task| vec![Task::Picking(task)];
+        if picking.awaits && is_of_selection(&step) {
+            picking.hasty.push(step);
+            return Vec::new();
+        }
         if matches!(step, PickingStep::At(..) | PickingStep::Accept | PickingStep::Erase(_)) {
             self.notices.retain(|notice| notice.place != Place::Interpret);
         }
@@ -32,6 +35,9 @@ impl State {
                     picking.horizon = Some(free_name(document, Noun::Horizon, "Horizon"));
                 }
                 picking.pick = Some(pick);
+                picking.awaits = false;
+                let hasty = std::mem::take(&mut picking.hasty);
+                return hasty.into_iter().flat_map(|step| self.pick(step)).collect();
             }
             PickingStep::Climb(by) => {
                 if let Some(pick) = &mut picking.pick {
@@ -40,7 +46,8 @@ impl State {
             }
             PickingStep::HighestValid => {
                 if let Some(pick) = &picking.pick {
-                    return ask(PickingTask::HighestValid(pick.clone(), picking.horizon.clone()));
+                    picking.awaits = true;
+                    return vec![Task::Picking(PickingTask::HighestValid(pick.clone(), picking.horizon.clone()))];
                 }
             }
             PickingStep::Accept => {
@@ -106,6 +113,8 @@ impl State {
     pub(super) fn reselect(&mut self) {
         let Some(session) = &mut self.session else { return };
         let picking = &mut session.view.picking;
+        // Nothing was found.
+        (picking.awaits, picking.hasty) = (false, Vec::new());
         if let Some(pick) = picking.accepted.take()
             && picking.pick.is_none()
         {
@@ -118,6 +127,12 @@ impl State {
     }
 }
 
+/// Whether a step does something with the node that is selected, or selects another.
+fn is_of_selection(step: &PickingStep) -> bool {
+    use PickingStep::{Accept, At, Begin, Choose, Climb, Erase, HighestValid};
+    matches!(step, At(..) | Climb(_) | HighestValid | Accept | Begin | Choose(_) | Erase(_))
+}
+
 impl Picking {
     /// What was begun is given up; where nothing was, the tool is.
     fn give_up(&mut self) {
@@ -127,6 +142,7 @@ impl Picking {
         self.stick.clear();
         self.line.clear();
         self.pick = None;
+        self.hasty.clear();
     }
 
     /// The last point of the line or stick that is being drawn is taken back; then that of the stick before.
@@ -156,6 +172,7 @@ impl Picking {
         if how == How::Extend {
             tasks.extend(self.accept());
         }
+        self.awaits = true;
         tasks.push(Task::Picking(PickingTask::Find(at)));
         tasks
     }
@@ -178,7 +195,9 @@ impl Picking {
     fn turn_to(&mut self, chosen: Option<String>, document: &Document) -> Vec<Task> {
         // The selection belongs to the horizon that it was made for.
         let tasks: Vec<Task> = self.accept().into_iter().chain(self.end_line(document)).collect();
-        let taken = self.horizon.clone().filter(|_| !tasks.is_empty());
+        // The project does not have the horizon yet whose first pick or line was just added.
+        let is_added = !tasks.is_empty() || self.accepted.is_some() || !self.added.is_empty();
+        let taken = self.horizon.clone().filter(|_| is_added);
         self.horizon = Some(chosen.unwrap_or_else(|| {
             let name = free_name(document, Noun::Horizon, "Horizon");
             if taken.as_ref() != Some(&name) {

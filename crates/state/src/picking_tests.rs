@@ -40,6 +40,30 @@ fn a_selection_climbs_within_its_tree_and_is_accepted_as_a_command() {
     assert!(picking(&state).pick.is_none());
 }
 
+/// Keys that come before the worker's answer count after it, in their order.
+#[test]
+fn what_is_done_before_a_node_is_found_counts_when_it_is() {
+    let mut state = open();
+    let at = |x: f64| PickingStep::At(DVec3::new(x, 3.25, 5.0), How::Replace);
+    for step in [at(2.0), PickingStep::HighestValid, PickingStep::Accept, PickingStep::Begin, at(9.0)] {
+        let is_first = step == at(2.0);
+        assert_eq!(state.apply(Action::Picking(step)).len(), usize::from(is_first));
+    }
+    let leaf =
+        |leaf: u32, up: u32| Action::Picking(PickingStep::Found(Pick { at: [3.0, 4.0, 8.0], leaf, up, levels: 3 }));
+    let tasks = state.apply(leaf(7, 0));
+    assert!(matches!(&tasks[..], [Task::Picking(PickingTask::HighestValid(..))]), "{tasks:?}");
+    let tasks = state.apply(leaf(7, 2));
+    let [Task::Apply(command), Task::Picking(PickingTask::Find(_))] = &tasks[..] else { panic!("{tasks:?}") };
+    let Command::Pick(node) = command.as_ref() else { panic!("{command:?}") };
+    assert_eq!((node.horizon.as_str(), node.climb), ("Horizon 1", Climb::Levels(2)));
+    assert_eq!(picking(&state).horizon.as_deref(), Some("Horizon 2"));
+    // Where nothing is found, nothing of it counts.
+    state.apply(Action::Picking(PickingStep::Accept));
+    state.apply(Action::Tell(Notice { failed: true, ..Notice::note(Place::Interpret, "no leaf is near") }));
+    assert!(picking(&state).hasty.is_empty() && !picking(&state).awaits);
+}
+
 #[test]
 fn what_a_failed_command_was_to_accept_is_selected_again() {
     let mut state = open();

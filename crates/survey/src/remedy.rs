@@ -38,6 +38,8 @@ pub enum Setting {
     YByte,
     /// Header byte of the coordinate scalar.
     ScalarByte,
+    /// The coordinate scalar itself.
+    CoordinateScalar,
     /// Which of several traces at one place is kept.
     Duplicates,
     /// How the trace weight is applied.
@@ -92,6 +94,7 @@ impl Setting {
             Self::XByte => "X byte",
             Self::YByte => "Y byte",
             Self::ScalarByte => "coordinate scalar byte",
+            Self::CoordinateScalar => "coordinate scalar",
             Self::Duplicates => "repeated traces",
             Self::TraceWeight => "trace weight",
             Self::Format => "format",

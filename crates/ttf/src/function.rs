@@ -27,6 +27,10 @@ pub struct TransferFunctions {
     pub layers: LayerTtf,
     /// Scalar functions, composited over the layers first to last.
     pub scalars: Vec<ScalarTtf>,
+    /// Colours of the lines of faults, in the order of the model; absent: that of the scene's outlines. The faults
+    /// themselves state them, so that they are not stored here.
+    #[serde(skip)]
+    pub faults: Vec<Option<Colour>>,
 }
 
 /// The settings that hold for all functions.

@@ -8,7 +8,9 @@ use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::{Frequency, LayerStyle, LayerTtf, ScalarInterval, Texture, TextureLibrary, TransferFunctions, TtfError};
+use crate::{
+    Colour, Frequency, LayerStyle, LayerTtf, ScalarInterval, Texture, TextureLibrary, TransferFunctions, TtfError,
+};
 
 /// Stands for "no texture" or "no volume" in the tables.
 pub const NONE: u32 = u32::MAX;
@@ -164,6 +166,8 @@ pub struct TtfTables {
     pub textures: Vec<Arc<Texture>>,
     /// Their indices in the library.
     pub patterns: Vec<usize>,
+    /// Own colours of the lines of faults, as they are printed ([`TransferFunctions::faults`]).
+    pub faults: Vec<Option<Colour>>,
 }
 
 impl TtfTables {
@@ -235,7 +239,26 @@ impl TtfTables {
         let Slots { volumes, textures, library_indices: patterns, .. } = slots;
         let thicknesses_m = block.layers.iter().map(|layer| layer.thickness_m).collect();
         let extent_i_m = block.extent_i_m;
-        Ok(Self { globals, extent_i_m, thicknesses_m, layers, intervals, scalars, stops, volumes, textures, patterns })
+        let preset = functions.settings.preset;
+        let faults = functions.faults.iter().map(|own| own.map(|colour| preset.line(colour))).collect();
+        Ok(Self {
+            globals,
+            extent_i_m,
+            thicknesses_m,
+            layers,
+            intervals,
+            scalars,
+            stops,
+            volumes,
+            textures,
+            patterns,
+            faults,
+        })
+    }
+
+    /// The colour that a fault's lines were given; `None`: they are drawn as the scene's outlines say.
+    pub fn fault_colour(&self, fault: Option<usize>) -> Option<Colour> {
+        fault.and_then(|fault| self.faults.get(fault).copied().flatten())
     }
 
     /// The opaque average colour of a layer at local k, its texture included. The ground has the average
@@ -358,7 +381,7 @@ impl<'a> Slots<'a> {
     }
 }
 
-fn opaque_or_nothing(colour: Option<crate::Colour>) -> [f32; 4] {
+fn opaque_or_nothing(colour: Option<Colour>) -> [f32; 4] {
     colour.map_or([0.0; 4], |colour| {
         let [r, g, b] = colour.to_unit();
         [r, g, b, 1.0]

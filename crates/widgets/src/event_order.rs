@@ -3,8 +3,9 @@
 //! egui looks at the pointer and at the Tab key once a frame: a click belongs to the widget, the place and the modifier
 //! keys of the frame's end. Where a frame takes long, the pointer has gone elsewhere by then. So a frame is given the
 //! events up to a button or the wheel, and no event that would change where or how that counts; the others wait for the
-//! next frame, which follows at once. Two clicks in one frame become two frames, so both count. What is typed before and
-//! after a Tab or a click belongs to the fields before and after it.
+//! next frame, which follows at once. Two clicks in one frame become two frames, so both count, and these frames have the
+//! time at which the clicks arrived, so that a double click is one. What is typed before and after a Tab or a click belongs
+//! to the fields before and after it.
 
 use eframe::egui::{Context, Event, Key, MouseWheelUnit, Plugin, Pos2, RawInput, Ui};
 
@@ -13,10 +14,19 @@ const LINE: f32 = 24.0;
 /// Lines of a page.
 const PAGE: f32 = 10.0;
 
+/// Longest time between the two clicks of a double click, seconds: that of most systems.
+const DOUBLE_CLICK_S: f64 = 0.5;
+/// Least time from one frame to the next, seconds.
+const LEAST_STEP_S: f64 = 1e-3;
+
 /// Holds back the events that belong to later frames.
 #[derive(Debug, Default)]
 pub struct EventOrder {
     waiting: Vec<Event>,
+    /// When each of those that wait arrived, seconds.
+    arrived_s: Vec<f64>,
+    /// The time of the frame before, seconds.
+    frame_s: f64,
     at: Option<Pos2>,
 }
 
@@ -25,11 +35,15 @@ impl EventOrder {
     /// as a click.
     pub fn install(ctx: &Context) {
         ctx.add_plugin(Self::default());
-        ctx.options_mut(|options| options.input_options.max_click_duration = f64::INFINITY);
+        ctx.options_mut(|options| {
+            options.input_options.max_click_duration = f64::INFINITY;
+            options.input_options.max_double_click_delay = DOUBLE_CLICK_S;
+        });
     }
 
     /// Takes the events of the next frame out of those that wait.
-    fn next(&mut self, arrived: Vec<Event>) -> Vec<Event> {
+    fn next(&mut self, arrived: Vec<Event>, now_s: f64) -> Vec<Event> {
+        self.arrived_s.resize(self.waiting.len() + arrived.len(), now_s);
         self.waiting.extend(arrived);
         let mut last = None;
         let mut end = self.waiting.len();
@@ -49,6 +63,9 @@ impl EventOrder {
                 _ => {}
             }
         }
+        let first_s = self.arrived_s.first().copied().unwrap_or(now_s);
+        self.frame_s = first_s.max(self.frame_s + LEAST_STEP_S).min(now_s.max(self.frame_s));
+        self.arrived_s.drain(..end);
         let later = self.waiting.split_off(end);
         std::mem::replace(&mut self.waiting, later)
     }
@@ -89,7 +106,8 @@ impl Plugin for EventOrder {
 
     fn input_hook(&mut self, _ctx: &Context, input: &mut RawInput) {
         let arrived = std::mem::take(&mut input.events);
-        input.events = self.next(arrived);
+        input.events = self.next(arrived, input.time.unwrap_or(self.frame_s));
+        input.time = input.time.map(|_| self.frame_s);
     }
 
     fn on_end_pass(&mut self, ui: &mut Ui) {
@@ -140,9 +158,9 @@ mod tests {
     /// Lengths of the frames into which events are put.
     fn frames(events: Vec<Event>) -> Vec<usize> {
         let mut order = EventOrder::default();
-        let mut counts = vec![order.next(events).len()];
+        let mut counts = vec![order.next(events, 1.0).len()];
         while !order.waiting.is_empty() {
-            counts.push(order.next(Vec::new()).len());
+            counts.push(order.next(Vec::new(), 1.0).len());
         }
         counts
     }
@@ -156,6 +174,20 @@ mod tests {
         assert_eq!(frames([&click[..], &click[..]].concat()), [4, 2]);
         let key = Event::ModifiersChanged(Modifiers::SHIFT);
         assert_eq!(frames([std::slice::from_ref(&key), &click[..], std::slice::from_ref(&key)].concat()), [4, 1]);
+    }
+
+    #[test]
+    fn clicks_in_slow_frames_have_the_times_at_which_they_arrived() {
+        let mut order = EventOrder::default();
+        let click = [button(1.0, true), button(1.0, false)];
+        let mut times = Vec::new();
+        for (now_s, arrived) in [(7.0, [&click[..], &click[..]].concat()), (9.0, Vec::new()), (9.1, click.to_vec())] {
+            order.next(arrived, now_s);
+            times.push(order.frame_s);
+        }
+        // The second click waited for a frame of two seconds; what arrives later has its own time.
+        assert!(times[0] == 7.0 && (7.0..7.01).contains(&times[1]) && times[2] == 9.1, "{times:?}");
+        assert!(order.waiting.is_empty() && order.arrived_s.is_empty());
     }
 
     #[test]

@@ -15,6 +15,7 @@ pub fn field(setting: Setting) -> Option<&'static str> {
         Setting::Interval => "Sample interval",
         Setting::Start => "First sample",
         Setting::CoordinateUnit => "Unit of X and Y",
+        Setting::CoordinateScalar => "Coordinate scalar",
         Setting::Bin => "Square bins, m",
         Setting::LineNumbers => "Line numbers",
         Setting::Duplicates => "Repeated traces",
@@ -78,6 +79,7 @@ mod tests {
     fn what_is_to_be_stated_names_its_field() {
         assert_eq!(advice(&Setting::MdUnit.stated_as("m or ft")), "state m or ft under “Lengths along the well”");
         assert_eq!(advice(&Setting::Head.stated()), "state “Head X, Y, m”");
+        assert_eq!(advice(&Setting::CoordinateScalar.stated_as(-100)), "state -100 under “Coordinate scalar”");
         let bytes = Remedy::all([Setting::InlineByte.stated_as(9), Setting::CrosslineByte.stated_as(21)]);
         let typed = Remedy::all([bytes.clone(), Setting::LineType.stated_as("i16")]);
         assert_eq!(advice(&Remedy::any([typed, bytes])), "state 9 under “Inline” and 21 under “Crossline”");

@@ -1,8 +1,21 @@
 //! Rows of the dialogues' forms: the name of a setting, and its stated value or that of the file.
 
 use crate::fields::field;
-use eframe::egui::{ComboBox, DragValue, TextEdit, Ui};
+use eframe::egui::{Align, ComboBox, DragValue, Layout, Response, TextEdit, Ui, vec2};
 use survey::Setting;
+
+/// Width of the column of labels that fields of a panel stand beside, points.
+pub const LABELS: f32 = 100.0;
+
+/// A label in the column of labels, outside a grid.
+pub fn label(ui: &mut Ui, name: &str) -> Response {
+    let spacing = ui.spacing().interact_size.y;
+    ui.allocate_ui_with_layout(vec2(LABELS, spacing), Layout::left_to_right(Align::Center), |ui| {
+        ui.set_min_width(LABELS);
+        ui.label(name)
+    })
+    .inner
+}
 
 /// The text of a field whose value is taken from the file.
 pub const AS_FILE: &str = "as the file says";

@@ -316,7 +316,7 @@ pub(in crate::cli) enum FaultAction {
         #[arg(value_name = "drawn|grow M", num_args = 1..=2, required = true, allow_hyphen_values = true)]
         extent: Vec<String>,
     },
-    /// Give a fault another colour on sections
+    /// Give a fault another colour, on sections and on the block
     #[command(after_help = "Example:\n  petroglyph fault colour north.petro F1 #c0182c")]
     Colour {
         /// Project folder

@@ -158,7 +158,7 @@ fn comparison(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         if session.view.compare == Compare::Blend {
             let mut blend = session.view.scene.blend;
             let name = ui.weak("to raw");
-            ui.spacing_mut().slider_width = 80.0;
+            ui.spacing_mut().slider_width = 62.0;
             let slider = ui.add(percent::slider(&mut blend));
             if slider.labelled_by(name.id).on_hover_text("0 % is illustrated, 100 % is raw").changed() {
                 actions.push(Action::Show(Box::new(Scene { blend, ..session.view.scene.clone() })));

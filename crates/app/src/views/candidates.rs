@@ -69,7 +69,7 @@ impl CandidatesPanel {
                 let first = own().next().map_or_else(String::new, |entry| entry.name.clone());
                 ui.label_inputs_by(label.id, |ui| {
                     let text = self.volume.clone().unwrap_or(first);
-                    ComboBox::from_id_salt("extracted").selected_text(text).show_ui(ui, |ui| {
+                    ComboBox::from_id_salt("extracted").selected_text(text).truncate().show_ui(ui, |ui| {
                         for entry in own() {
                             ui.selectable_value(&mut self.volume, Some(entry.name.clone()), &entry.name);
                         }
@@ -87,7 +87,7 @@ impl CandidatesPanel {
             ui.label("Follow");
             ui.vertical(|ui| {
                 for (kind, name) in
-                    [(Extremum::Peak, "Peaks"), (Extremum::Trough, "Troughs"), (Extremum::Zero, "Zeros")]
+                    [(Extremum::Peak, "Peaks"), (Extremum::Trough, "Troughs"), (Extremum::Zero, "Zero crossings")]
                 {
                     let mut is_followed = settings.grow.extrema.contains(&kind);
                     if ui.checkbox(&mut is_followed, name).changed() {

@@ -8,17 +8,18 @@ use project::command::{AddScene, Command, RemoveScene};
 use render::{Corner, Ground, PatternSize, Projection, Scene, VoxelBox};
 use survey::VerticalUnit;
 use ttf::Preset;
+use widgets::form::{self, LABELS};
 use widgets::obstacle::{needs, unless};
 use widgets::percent;
 
 /// Opening angle that a perspective starts with.
 const FOV_DEG: f64 = 35.0;
-/// Width of the labels in front of sliders, points.
-const LABELS: f32 = 100.0;
 /// Width that the label and the number beside a slider take, points.
 const BESIDE_SLIDER: f32 = 184.0;
 /// Width that the button beside a scene takes, points.
 const BESIDE_SCENE: f32 = 90.0;
+/// Margins of a field, and room beside it, points.
+const BESIDE_FIELD: f32 = 16.0;
 /// Shares of the block that a new corner cut takes.
 const CUT_SHARE: [f64; 2] = [0.45, 0.45];
 
@@ -71,19 +72,22 @@ impl Controls {
                 }
             });
         }
-        let obstacle = super::present::obstacle(session);
-        let present = unless(ui, obstacle, Button::new("Present"));
-        if present.on_hover_text("The scenes one after the other over the whole screen (F5)").clicked() {
-            actions.push(Action::Present(Some(0)));
-        }
         ui.horizontal(|ui| {
-            let label = ui.label("Scene name");
-            ui.add(TextEdit::singleline(&mut self.scene_name).desired_width(100.0)).labelled_by(label.id);
+            let label = form::label(ui, "Scene name");
+            let room = (ui.available_width() - BESIDE_FIELD).max(40.0);
+            ui.add(TextEdit::singleline(&mut self.scene_name).desired_width(room)).labelled_by(label.id);
+        });
+        ui.horizontal(|ui| {
             let name = self.scene_name.trim().to_owned();
             if unless(ui, needs(!name.is_empty(), "Give the scene a name"), Button::new("Save scene")).clicked() {
                 let command = AddScene { name, scene: session.view.scene.clone() };
                 actions.push(Action::Apply(Box::new(Command::AddScene(command))));
                 self.scene_name.clear();
+            }
+            let obstacle = super::present::obstacle(session);
+            let present = unless(ui, obstacle, Button::new("Present"));
+            if present.on_hover_text("The scenes one after the other over the whole screen (F5)").clicked() {
+                actions.push(Action::Present(Some(0)));
             }
         });
     }
@@ -131,7 +135,7 @@ fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
         if has_layers {
             row(ui, "Pattern size", |ui| {
                 let mut on_paper = scene.pattern_size == PatternSize::Paper;
-                let constant = ui.checkbox(&mut on_paper, "constant while zooming");
+                let constant = ui.checkbox(&mut on_paper, "kept while zooming");
                 if constant.changed() {
                     scene.pattern_size = if on_paper { PatternSize::Paper } else { PatternSize::Rock };
                 }
@@ -181,10 +185,7 @@ fn block(ui: &mut Ui, session: &Session, scene: &mut Scene, actions: &mut Vec<Ac
             VerticalUnit::Metres => "Depth, m",
         };
         for (axis, name) in ["Inlines", "Crosslines", vertical].into_iter().enumerate() {
-            ui.horizontal(|ui| {
-                ui.set_min_width(LABELS);
-                ui.label(name);
-            });
+            form::label(ui, name);
             for (end, word) in ["from", "to"].into_iter().enumerate() {
                 let voxel = if end == 0 { bounds.min[axis] } else { bounds.max[axis] };
                 let at = |voxel: f64| match axis {

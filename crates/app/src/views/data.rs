@@ -16,6 +16,7 @@ use project::styles;
 use render::Scene;
 use survey::VerticalUnit;
 use ttf::ColourMap;
+use widgets::form;
 use widgets::keyboard::{Renamed, Renaming};
 use widgets::obstacle::{needs, unless};
 use widgets::percent;
@@ -301,7 +302,7 @@ impl Data {
             let row = UiBuilder::new().scope_id(Id::unique("velocity of the survey"));
             ui.scope_builder(row, |ui| {
                 ui.horizontal(|ui| {
-                    let label = ui.label("Velocity").on_hover_text("Turns two-way time into metres");
+                    let label = form::label(ui, "Velocity").on_hover_text("Turns two-way time into metres");
                     let (response, settled) = settled(ui, &mut self.velocity, geometry.velocity_m_s, |velocity| {
                         DragValue::new(velocity).speed(10.0).range(300.0..=9000.0).suffix(" m/s").max_decimals(0)
                     });
@@ -339,13 +340,13 @@ pub(super) fn remove(ui: &mut Ui, hint: &str) -> bool {
 }
 
 /// The name of a row, and whether it is to be removed.
-struct Row {
+pub(super) struct Row {
     name: Response,
-    is_removed: bool,
+    pub(super) is_removed: bool,
 }
 
 /// A name that is cut off where there is no room, and can be chosen where that means something, and a button to remove it at the end of the row.
-fn named(ui: &mut Ui, name: &str, is_chosen: Option<bool>, hint: &str) -> Row {
+pub(super) fn named(ui: &mut Ui, name: &str, is_chosen: Option<bool>, hint: &str) -> Row {
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         let is_removed = ui.button("Remove").on_hover_text(hint).clicked();
         let name = ui.with_layout(Layout::left_to_right(Align::Center), |ui| match is_chosen {

@@ -4,11 +4,14 @@ use super::notices;
 use crate::state::{
     Action, Dialogue, ExportForm, Layout, Panel, Place, SectionFill, SectionVolumes, Session, Shown, State,
 };
-use eframe::egui::{Button, Checkbox, Context, DragValue, Grid, Spinner, TextEdit, Ui, Vec2};
+use eframe::egui::{
+    Align, Button, Checkbox, Context, DragValue, Grid, Layout as Alignment, ScrollArea, Spinner, TextEdit, Ui, Vec2,
+    vec2,
+};
 use figure::Annotation;
-use pictures::SparseHorizon;
+use pictures::PickedShare;
 use pictures::figures::FigureFormat;
-use render::{LabelChange, Scene};
+use render::{LabelChange, Scene, Unpicked};
 use std::path::Path;
 use widgets::dialogue;
 use widgets::keyboard::is_entered;
@@ -24,7 +27,7 @@ const WRITTEN: [(Annotation, &str); 7] = [
     (Annotation::Layers, "Names along the layers"),
     (Annotation::Faults, "Names and throws of faults"),
     (Annotation::Wells, "Names of wells and tops"),
-    (Annotation::Quality, "Dashes and question marks where not picked"),
+    (Annotation::Quality, "Dashes and ? where not picked"),
     (Annotation::Colours, "Colour bar of raw data"),
     (Annotation::Provenance, "Program, project and data credit"),
 ];
@@ -36,6 +39,11 @@ const FILLS: [(SectionFill, &str); 3] =
 /// The room of the page beside the form, points of the screen.
 const PREVIEW: Vec2 = Vec2::new(470.0, 430.0);
 
+/// Width of a column of what may be written, points.
+const CHOICE: f32 = 214.0;
+/// Height of what is said of horizons that were hardly picked, points; there may be many.
+const SENTENCES: f32 = 72.0;
+
 /// What the dialogue shows.
 #[derive(Clone, Copy)]
 pub struct Shows<'a> {
@@ -44,7 +52,7 @@ pub struct Shows<'a> {
     /// Whether a page is being drawn.
     pub is_drawing: bool,
     /// Horizons that were hardly picked.
-    pub sparse: &'a [SparseHorizon],
+    pub sparse: &'a [PickedShare],
 }
 
 /// Shows the dialogue; whether its page is to be laid out.
@@ -135,9 +143,7 @@ fn fields(
             });
             ui.end_row();
         }
-        ui.label("With");
-        ui.vertical(|ui| choices(ui, !session.document.horizons.is_empty(), &mut next));
-        ui.end_row();
+        choices(ui, session, &mut next);
     });
     let [width, height] = next.size_px();
     let is_too_large = width.max(height) > LARGEST;
@@ -155,7 +161,7 @@ fn fields(
     if session.view.layout == Layout::Sections && has_measured && session.view.volumes != SectionVolumes::default() {
         ui.weak("Sections on the page show the raw data alone, without a second volume.");
     }
-    let is_accepted = accept(ui, sparse, &mut next);
+    let is_accepted = accept(ui, sparse, "Draw it all the same", &mut next.accepts_sparse);
     ui.horizontal(|ui| {
         let can = !is_drawing && !is_too_large && has_format && is_accepted;
         let button = unless(ui, needs(can, obstacle(is_accepted)), Button::new("Export"));
@@ -190,46 +196,76 @@ fn shows_rock(session: &Session) -> bool {
         && !session.document.horizons.is_empty()
 }
 
-/// What is written on the picture and beside it.
-fn choices(ui: &mut Ui, has_layers: bool, next: &mut ExportForm) {
-    for (shown, name, can) in [
-        (&mut next.legend, "Legend", has_layers),
-        (&mut next.scale_bar, "Scale bar and exaggeration", true),
-        (&mut next.north_arrow, "North arrow", true),
-    ] {
-        let mut is_shown = *shown == Shown::Yes;
-        let layers = needs(can, "There are no layers: add or pick horizons");
-        if unless(ui, layers, Checkbox::new(&mut is_shown, name)).changed() {
-            *shown = if is_shown { Shown::Yes } else { Shown::No };
-        }
+/// What is written on the picture and beside it, in rows of two: a dialogue is no higher than a small screen.
+fn choices(ui: &mut Ui, session: &Session, next: &mut ExportForm) {
+    let count = 3 + WRITTEN.len();
+    let half = count.div_ceil(2);
+    for row in 0..half {
+        ui.label(if row == 0 { "With" } else { "" });
+        ui.horizontal(|ui| {
+            for index in [row, row + half].into_iter().filter(|index| *index < count) {
+                let size = vec2(CHOICE, ui.spacing().interact_size.y);
+                ui.allocate_ui_with_layout(size, Alignment::left_to_right(Align::Center), |ui| {
+                    ui.set_min_width(CHOICE);
+                    choice(ui, index, session, next);
+                });
+            }
+        });
+        ui.end_row();
     }
-    for (annotation, name) in WRITTEN {
-        let mut is_shown = next.annotate.contains(&annotation);
-        if ui.checkbox(&mut is_shown, name).changed() {
-            next.annotate.retain(|known| *known != annotation);
-            next.annotate.extend(is_shown.then_some(annotation));
+}
+
+fn choice(ui: &mut Ui, index: usize, session: &Session, next: &mut ExportForm) {
+    let (shown, name, can) = match index {
+        0 => (&mut next.legend, "Legend", !session.document.horizons.is_empty()),
+        1 => (&mut next.scale_bar, "Scale bar and exaggeration", true),
+        2 => (&mut next.north_arrow, "North arrow", true),
+        _ => {
+            let (annotation, name) = WRITTEN[index - 3];
+            let is_dashed = annotation == Annotation::Quality && is_dashed(session);
+            let mut is_shown = is_dashed || next.annotate.contains(&annotation);
+            if unless(ui, needs(!is_dashed, DASHED), Checkbox::new(&mut is_shown, name)).changed() {
+                next.annotate.retain(|known| *known != annotation);
+                next.annotate.extend(is_shown.then_some(annotation));
+            }
+            return;
         }
+    };
+    let mut is_shown = *shown == Shown::Yes;
+    let layers = needs(can, "There are no layers: add or pick horizons");
+    if unless(ui, layers, Checkbox::new(&mut is_shown, name)).changed() {
+        *shown = if is_shown { Shown::Yes } else { Shown::No };
     }
+}
+
+/// Why lines are dashed although nobody asks for it here.
+const DASHED: &str = "The block is dashed in this view: switch it under Layers, Dashed where not picked";
+
+/// Whether the page shows nothing but a block whose horizons are dashed where they were not picked.
+fn is_dashed(session: &Session) -> bool {
+    session.view.layout == Layout::Block && session.view.scene.outlines.unpicked == Unpicked::Dashed
 }
 
 /// Says which horizons were hardly picked; returns whether there are none, or a picture is wanted all the same.
-fn accept(ui: &mut Ui, sparse: &[SparseHorizon], next: &mut ExportForm) -> bool {
-    for sentence in pictures::sparse_sentences(sparse) {
-        ui.colored_label(ui.visuals().warn_fg_color, capital(&sentence));
+pub(super) fn accept(ui: &mut Ui, sparse: &[PickedShare], wanted: &str, accepts: &mut bool) -> bool {
+    if sparse.is_empty() {
+        return true;
     }
-    if !sparse.is_empty() {
-        ui.checkbox(&mut next.accepts_sparse, "Draw it all the same");
-    }
-    sparse.is_empty() || next.accepts_sparse
+    ScrollArea::vertical().max_height(SENTENCES).id_salt("sparse").show(ui, |ui| {
+        for sentence in pictures::sparse_sentences(sparse) {
+            ui.colored_label(ui.visuals().warn_fg_color, capital(&sentence));
+        }
+    });
+    ui.checkbox(accepts, wanted);
+    *accepts
 }
+
+/// What is to be done where a horizon was hardly picked.
+pub(super) const NOT_ACCEPTED: &str = "Tick the line above first";
 
 /// Why nothing can be written yet.
 fn obstacle(is_accepted: bool) -> &'static str {
-    if is_accepted {
-        "It is being drawn, or what is written in red has to be mended first"
-    } else {
-        "Tick the line above first"
-    }
+    if is_accepted { "It is being drawn, or what is written in red has to be mended first" } else { NOT_ACCEPTED }
 }
 
 /// A sentence from a clause.

@@ -16,7 +16,6 @@ use figure::draw::axes::{self, Axis};
 use figure::draw::section::{Marks, SectionContents};
 use glam::DVec2;
 use image::RgbaImage;
-use project::document::FaultEntry;
 use render::FaceData;
 use std::sync::Arc;
 use widgets::canvas;
@@ -110,7 +109,7 @@ impl FenceView {
             lines: if is_interpreting { &[] } else { &shown.lines },
             horizons: &pictures::figures::horizons(&session.document),
             faults: &[],
-            fault_colours: &session.document.faults.iter().map(FaultEntry::ink).collect::<Vec<_>>(),
+            fault_colours: &session.document.faults.iter().map(|entry| entry.colour).collect::<Vec<_>>(),
             interpretation: None,
             // Lines at the corners of the fence.
             marks: Marks { down: along[1..along.len() - 1].to_vec(), ..Marks::default() },

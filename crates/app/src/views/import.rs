@@ -259,6 +259,9 @@ fn more(ui: &mut Ui, options: &mut SegyOptions) {
         form::number(ui, Setting::Start, &mut options.start);
         let units = [LengthUnit::Metres, LengthUnit::Feet].map(|unit| (unit, unit.symbol()));
         form::choice(ui, Setting::CoordinateUnit, &mut options.coordinate_unit, AS_FOUND, &units);
+        let mut scalar = options.coordinate_scalar.map(f64::from);
+        form::number(ui, Setting::CoordinateScalar, &mut scalar);
+        options.coordinate_scalar = scalar.map(|scalar| scalar.round() as i16);
         form::number(ui, Setting::Bin, &mut options.bin_m);
         let sources = [
             (LineSource::Headers, "in the headers"),
@@ -352,7 +355,7 @@ fn map(ui: &mut Ui, texture: &TextureHandle, geometry: &SurveyGeometry) {
     ui.painter().add(Shape::mesh(mesh));
     let first = geometry.origin;
     let text = format!(
-        "inline {}, crossline {}: X {:.0}, Y {:.0}",
+        "inline {}, crossline {}: X {:.0} m, Y {:.0} m",
         geometry.inlines.first, geometry.crosslines.first, first.x, first.y
     );
     ui.painter().circle_filled(place(world[0]), 4.0, theme::accent(ui.visuals()));

@@ -4,11 +4,14 @@
 use super::texture;
 use crate::state::{Action, Session};
 use crate::work::map::{MapData, MapRequest, Maps};
-use eframe::egui::{ComboBox, Context, Rect, Role, Sense, TextWrapMode, TextureHandle, Ui, Vec2, WidgetInfo, vec2};
+use eframe::egui::{
+    Button, ComboBox, Context, Rect, Role, Sense, TextWrapMode, TextureHandle, Ui, Vec2, WidgetInfo, vec2,
+};
 use figure::draw::map::{self as drawing, MapFrame};
 use figure::map::{HorizonMap, Mapped};
 use glam::DVec2;
 use widgets::canvas;
+use widgets::obstacle::{needs, unless};
 
 /// Smallest and largest zoom.
 const ZOOM: [f32; 2] = [0.8, 40.0];
@@ -95,7 +98,7 @@ impl MapView {
             let label = ui.strong("Map of");
             let mut chosen = upper;
             ui.label_inputs_by(label.id, |ui| {
-                ComboBox::from_id_salt("mapped").selected_text(&horizons[upper].name).show_ui(ui, |ui| {
+                ComboBox::from_id_salt("mapped").selected_text(&horizons[upper].name).truncate().show_ui(ui, |ui| {
                     for (index, entry) in horizons.iter().enumerate() {
                         ui.selectable_value(&mut chosen, index, &entry.name);
                     }
@@ -107,13 +110,12 @@ impl MapView {
             if ui.selectable_label(!self.thickness, "Structure").clicked() {
                 self.thickness = false;
             }
-            ui.add_enabled_ui(lower.is_some(), |ui| {
-                let hint =
-                    lower.map_or_else(String::new, |lower| format!("Vertical, down to {}", horizons[lower].name));
-                if ui.selectable_label(self.thickness, "Thickness").on_hover_text(hint).clicked() {
-                    self.thickness = true;
-                }
-            });
+            let hint = lower.map_or_else(String::new, |lower| format!("Vertical, down to {}", horizons[lower].name));
+            let none = needs(lower.is_some(), "There is no horizon below this one");
+            let thickness = unless(ui, none, Button::selectable(self.thickness, "Thickness"));
+            if thickness.on_hover_text(hint).clicked() {
+                self.thickness = true;
+            }
         });
     }
 

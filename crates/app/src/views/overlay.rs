@@ -11,7 +11,7 @@ use crate::work::{Interpreted, ShownPick, sheet};
 use eframe::egui::{Painter, Pos2, Rect, Ui};
 use figure::SectionKind;
 use figure::draw::overlay::{OverlayLines, SeenOn, stick};
-use figure::draw::surfaces::{Cells, OPACITY};
+use figure::draw::surfaces::{Cells, OPACITY, of_fault};
 use figure::interpretation::{DrawnInterpretation, DrawnSelection, Stick};
 use formats::SurfaceKind;
 use glam::DVec2;
@@ -37,6 +37,7 @@ pub struct Overlay {
     /// Increases with each selection.
     selection: usize,
     cells: Arc<Vec<(Colour, Vec<Cells>)>>,
+    fault_cells: Arc<Vec<(Cells, Colour, f32)>>,
     selected_cells: Arc<Vec<Cells>>,
     lines: HashMap<SectionKind, (Made<u64>, OverlayLines)>,
     fence: Option<(Made<Vec<DVec2>>, OverlayLines)>,
@@ -132,6 +133,8 @@ impl Overlay {
             (figure::style::horizon_colour(horizon.colour, index), cells)
         });
         self.cells = Arc::new(cells.collect());
+        let faults = interpreted.faults.iter().map(|fault| of_fault(&fault.mesh(), geometry.size()));
+        self.fault_cells = Arc::new(faults.collect());
         self.interpreted = Some(interpreted);
         if session.view.picking.pick.is_none() {
             self.select(session, None);
@@ -201,8 +204,8 @@ impl Overlay {
         Some(OverlayLines::new(&DrawnInterpretation { selection, ..seen }, [nx, ny], on))
     }
 
-    /// Draws the horizons and the selection in front of the block.
-    pub fn surfaces_on_block(&self, ui: &Ui, session: &Session, pane: Rect) {
+    /// Draws the faults in front of the block, with the horizons and the selection where the picture has none.
+    pub fn surfaces_on_block(&self, ui: &Ui, session: &Session, pane: Rect, has_horizons: bool) {
         if session.view.panel != Panel::Interpret {
             return;
         }
@@ -215,9 +218,14 @@ impl Overlay {
             let opacity = OPACITY[usize::from(picking.horizon.as_ref() == Some(name))];
             cells.iter().map(move |cells| (cells, *colour, opacity))
         });
+        let names = self.interpreted.iter().flat_map(|shown| &shown.faults).map(|fault| &fault.name);
+        let faults = self.fault_cells.iter().zip(names);
+        let faults = faults.filter(|(_, name)| !session.view.hidden.has(SurfaceKind::Fault, name));
+        let faults = faults.map(|((cells, colour, opacity), _)| (cells, *colour, *opacity));
         let own = picking.colour_in(&session.document);
         let picked = self.selected_cells.iter().map(|cells| (cells, own, OPACITY[2]));
-        surfaces::paint(ui, pane, &session.view.scene, geometry, horizons.chain(picked));
+        let missing = horizons.chain(picked).filter(|_| !has_horizons);
+        surfaces::paint(ui, pane, &session.view.scene, geometry, faults.chain(missing));
     }
 
     /// Draws the sticks in front of the block.

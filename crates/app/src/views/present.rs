@@ -10,11 +10,12 @@ use crate::state::{Action, Panel, Session};
 use crate::work::{Drawing, Rocks};
 use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
-    Align2, CentralPanel, Color32, Context, FontId, Frame, Key, Modifiers, Rect, Role, ScrollArea, Sense, Stroke,
-    StrokeKind, TextureHandle, Ui, WidgetInfo, pos2, vec2,
+    Align2, Button, CentralPanel, Color32, Context, FontId, Frame, Key, Modifiers, Rect, Role, ScrollArea, Sense,
+    Stroke, StrokeKind, TextureHandle, Ui, WidgetInfo, pos2, vec2,
 };
 use image::RgbaImage;
 use std::collections::HashMap;
+use widgets::obstacle::{needs, unless};
 use widgets::theme;
 
 /// Size of a scene's small picture, points.
@@ -75,6 +76,14 @@ impl Presentation {
         ui.horizontal_centered(|ui| {
             if ui.button("Leave").on_hover_text("Back to the window (Escape)").clicked() {
                 actions.push(Action::Present(None));
+            }
+            for (step, name, end) in
+                [(-1, "Previous", "This is the first scene"), (1, "Next", "This is the last scene")]
+            {
+                let to = at.checked_add_signed(step).filter(|to| *to < session.document.scenes.len());
+                if unless(ui, needs(to.is_some(), end), Button::new(name)).clicked() {
+                    actions.push(Action::Present(to));
+                }
             }
             ui.separator();
             ScrollArea::horizontal().show(ui, |ui| {

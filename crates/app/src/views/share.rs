@@ -3,7 +3,7 @@
 //! The preview is the made thing itself, with coarser faces: its triangles turn under the hand, and a press on them
 //! points the arrow of a new note.
 
-use super::{notices, texture};
+use super::{export, notices, texture};
 use crate::state::picking::place_of;
 use crate::state::{Action, Dialogue, Place, Session, ShareForm, ShareKind, State};
 use crate::work::{RunningLine, SharePreview};
@@ -12,6 +12,7 @@ use eframe::egui::{
     Sense, Stroke, StrokeKind, TextEdit, TextureHandle, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
+use pictures::PickedShare;
 use project::command::{AddNote, Command, RemoveNote};
 use project::document::NoteEntry;
 use review::preview::{Preview, Shown, draw};
@@ -99,7 +100,7 @@ impl ShareView {
         ctx: &Context,
         state: &State,
         session: &Session,
-        form: &ShareForm,
+        (form, sparse): (&ShareForm, &[PickedShare]),
         running: Option<&RunningLine>,
         actions: &mut Vec<Action>,
     ) -> bool {
@@ -112,7 +113,7 @@ impl ShareView {
             ui.horizontal_top(|ui| {
                 ui.vertical(|ui| {
                     ui.set_width(430.0);
-                    asks = self.form(ui, state, session, form, running, actions);
+                    asks = self.form(ui, state, session, (form, sparse), running, actions);
                 });
                 if self.seen.is_some() {
                     ui.vertical(|ui| self.preview(ui, session));
@@ -130,7 +131,7 @@ impl ShareView {
         ui: &mut Ui,
         state: &State,
         session: &Session,
-        form: &ShareForm,
+        (form, sparse): (&ShareForm, &[PickedShare]),
         running: Option<&RunningLine>,
         actions: &mut Vec<Action>,
     ) -> bool {
@@ -172,11 +173,13 @@ impl ShareView {
         if let Some(seen) = self.seen.as_ref().filter(|seen| seen.form == next.previewed()) {
             ui.label(facts(seen, &next));
         }
+        let is_accepted = export::accept(ui, sparse, "Share it all the same", &mut next.accepts_sparse);
         let mut asks = false;
         ui.horizontal(|ui| {
             let obstacle = wrong.or(running.map(|_| "Something is under way: wait, or stop it"));
-            let button = unless(ui, obstacle, Button::new("Write the file"));
-            if button.on_hover_text("Enter").clicked() || obstacle.is_none() && is_entered(ui) && !self.is_writing() {
+            let unwanted = obstacle.or(needs(is_accepted, export::NOT_ACCEPTED));
+            let button = unless(ui, unwanted, Button::new("Write the file"));
+            if button.on_hover_text("Enter").clicked() || unwanted.is_none() && is_entered(ui) && !self.is_writing() {
                 actions.push(Action::Share(Box::new(next.clone())));
             }
             let preview = unless(ui, obstacle, Button::new("Preview"));

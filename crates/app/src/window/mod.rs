@@ -433,8 +433,8 @@ impl Window {
                 if let Some(session) = &self.state.session {
                     let is_drawing = self.work.running.lines().iter().any(|line| line.place == Place::Dialogue);
                     let loaded = self.rocks.as_ref().and_then(|(rocks, _)| rocks.try_read().ok());
-                    let sparse = loaded.as_ref().map_or(&[][..], |loaded| &loaded.sparse);
-                    let shows = export::Shows { form, is_drawing, sparse };
+                    let sparse = loaded.as_ref().map_or_else(Vec::new, |loaded| loaded.sparse());
+                    let shows = export::Shows { form, is_drawing, sparse: &sparse };
                     let asks = export::show(ctx, &self.state, session, shows, &mut self.preview, actions);
                     // Where the file lies changes nothing on the page.
                     let form = ExportForm { path: String::new(), ..form.clone() };

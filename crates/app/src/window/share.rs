@@ -37,7 +37,9 @@ impl Window {
     pub(super) fn share_dialogue(&mut self, ctx: &Context, actions: &mut Vec<Action>) {
         let (Some(Dialogue::Share(form)), Some(session)) = (&self.state.dialogue, &self.state.session) else { return };
         let running = self.work.running.lines().into_iter().find(|line| line.place == Place::Dialogue);
-        let asks = self.share.show(ctx, &self.state, session, form, running.as_ref(), actions);
+        let loaded = self.rocks.as_ref().and_then(|(rocks, _)| rocks.try_read().ok());
+        let sparse = loaded.map_or_else(Vec::new, |loaded| loaded.sparse());
+        let asks = self.share.show(ctx, &self.state, session, (form, &sparse), running.as_ref(), actions);
         if asks || (running.is_none() && self.share.is_outdated(form)) {
             self.look_at_share(form.clone());
         }

@@ -1,5 +1,6 @@
 //! The toolbar, in windows of several widths.
 
+use crate::command::act;
 use crate::driven::{driven, project, state, wait};
 use eframe::egui::vec2;
 use egui_kittest::kittest::Queryable;
@@ -11,6 +12,9 @@ fn the_parts_of_the_toolbar_keep_apart_at_four_widths() {
     std::fs::rename(project(folder.path()), &root).unwrap();
     let mut harness = driven(folder.path(), Some(root));
     wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
+    // The longest number beside the slider.
+    let scene = render::Scene { blend: 1.0, ..state(&harness).session.as_ref().unwrap().view.scene.clone() };
+    act(&mut harness, state::Action::Show(Box::new(scene)));
     for (width, is_folded) in [(860.0, true), (1024.0, true), (1280.0, false), (1920.0, false)] {
         harness.set_size(vec2(width, 600.0));
         harness.run_steps(3);
@@ -30,7 +34,8 @@ fn the_parts_of_the_toolbar_keep_apart_at_four_widths() {
         }
         if !is_folded {
             let number = harness.get_all_by_label("to raw").map(|node| node.rect().right()).fold(0.0, f32::max);
-            assert!(number <= rects[7].left(), "the slider lies under Export at {width}");
+            let next = harness.get_by_label("Share…").rect().left();
+            assert!(number <= next, "the slider lies under Share at {width}: {number} {next}");
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::command::{applied, click_last};
 use super::driven::{Driven, click, document, open, state, wait};
 use super::picking::{act, interpreting, on_a_trough, picking};
-use eframe::egui::{Event, Key};
+use eframe::egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use formats::ImportOptions;
 use glam::DVec3;
@@ -135,6 +135,12 @@ fn a_horizon_is_renamed_filled_and_removed_in_the_panel() {
     click_last(&mut harness, "12 traces");
     let slices = state(&harness).session.as_ref().unwrap().view.slices;
     assert!((8.0..12.0).contains(&slices[0]) && (7.0..10.0).contains(&slices[1]), "{slices:?}");
+    // A smooth surface is no pick: 12 of 480 traces.
+    click_last(&mut harness, "Fill holes");
+    let filled = |harness: &Driven| harness.query_by_label_contains("2.5 % of the nodes filled").is_some();
+    wait(&mut harness, "it is said how much is filled", filled);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    wait(&mut harness, "the hole is back", |harness| harness.query_by_label("1 hole with 12 traces").is_some());
     click_last(&mut harness, "Along the reflection");
     click_last(&mut harness, "Fill holes");
     wait(&mut harness, "it has no hole", |harness| harness.query_by_label("no holes").is_some());

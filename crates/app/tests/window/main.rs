@@ -9,6 +9,7 @@ mod dropped;
 mod hands;
 mod horizon;
 mod keyboard;
+mod layout;
 mod page;
 mod panel;
 mod picking;

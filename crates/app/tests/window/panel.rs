@@ -200,7 +200,9 @@ fn a_volume_is_added_to_the_open_project_under_its_name() {
     let path = survey(folder.path());
     ask(&mut harness, Dialogue::Survey { path, target: Target::OpenProject });
     wait(&mut harness, "the headers are read", |harness| harness.query_by_label("Map of the traces").is_some());
-    for name in ["Sample interval", "First sample", "Square bins, m", "Repeated traces", "Vertical unit"] {
+    for name in
+        ["Sample interval", "First sample", "Coordinate scalar", "Square bins, m", "Repeated traces", "Vertical unit"]
+    {
         if !field_is_there(&harness, name) {
             click_last(&mut harness, "More");
             harness.run_steps(8);

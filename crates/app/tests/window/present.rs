@@ -3,7 +3,7 @@
 use super::command::{act, click_last};
 use super::driven::{Driven, click, open, state, wait};
 use super::picking::{interpreting, on_a_trough};
-use eframe::egui::{Event, Key, Vec2};
+use eframe::egui::{Event, Key, Vec2, ViewportCommand};
 use egui_kittest::kittest::{NodeT, Queryable};
 use project::command::{AddScene, Command};
 use render::Scene;
@@ -11,6 +11,20 @@ use state::Action;
 
 fn shown(harness: &Driven) -> Scene {
     state(harness).session.as_ref().unwrap().view.scene.clone()
+}
+
+/// What the next frames ask for: the whole screen, or not.
+fn full_screen(harness: &mut Driven) -> Vec<bool> {
+    let mut asked = Vec::new();
+    for _ in 0..4 {
+        harness.step();
+        let commands = harness.output().viewport_output.values().flat_map(|viewport| &viewport.commands);
+        asked.extend(commands.filter_map(|command| match command {
+            ViewportCommand::Fullscreen(is_full) => Some(*is_full),
+            _ => None,
+        }));
+    }
+    asked
 }
 
 #[test]
@@ -26,7 +40,7 @@ fn scenes_are_presented_by_keys_and_escape_leads_back() {
         wait(&mut harness, "the scene is kept", |harness| harness.query_by_label(name).is_some());
     }
     harness.key_press(Key::F5);
-    harness.run_steps(3);
+    assert_eq!(full_screen(&mut harness), [true], "the window fills the screen");
     assert_eq!(shown(&harness).exaggeration, 2.0);
     assert!(harness.query_by_label("Layers").is_none(), "nothing but scenes is shown");
     harness.get_by_label("Scene one");
@@ -42,8 +56,13 @@ fn scenes_are_presented_by_keys_and_escape_leads_back() {
     assert_eq!(shown(&harness).exaggeration, 2.0);
     click_last(&mut harness, "Scene two");
     assert_eq!(shown(&harness).exaggeration, 3.0);
+    // By buttons too, which end where the scenes do.
+    assert!(harness.get_by_label("Next").accesskit_node().is_disabled());
+    click(&mut harness, "Previous");
+    assert_eq!(shown(&harness).exaggeration, 2.0);
+    assert!(harness.get_by_label("Previous").accesskit_node().is_disabled());
     harness.key_press(Key::Escape);
-    harness.run_steps(3);
+    assert_eq!(full_screen(&mut harness), [false]);
     assert_eq!(shown(&harness), before);
     harness.get_by_label("Layers");
 }

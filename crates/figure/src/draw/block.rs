@@ -123,7 +123,7 @@ pub struct BlockPanel<'a> {
     pub comparison: Comparison,
     /// Surfaces and sticks in front of it.
     pub interpretation: Option<&'a DrawnInterpretation<'a>>,
-    /// Whether surfaces are laid over the picture; in volume rendering the picture contains them.
+    /// Whether horizons are laid over the picture; in volume rendering the picture contains them.
     pub has_surfaces: bool,
     /// Dots an inch that pictures are drawn at.
     pub dpi: f64,
@@ -235,8 +235,9 @@ impl BlockPanel<'_> {
     /// Surfaces and sticks before the block.
     fn lay_over(&self, group: &mut Group, scene: &Scene, view: &View, shown: &DrawnInterpretation, pane: Rect) {
         let [nx, ny, _] = self.geometry.size();
+        let faults = shown.faults.iter().map(|fault| surfaces::of_fault(fault, self.geometry.size()));
+        let mut cells: Vec<(Cells, ttf::Colour, f32)> = faults.collect();
         if self.has_surfaces {
-            let mut cells: Vec<(Cells, ttf::Colour, f32)> = Vec::new();
             for horizon in &shown.horizons {
                 let opacity = OPACITY[usize::from(shown.picked == Some(horizon.name))];
                 let sheets = horizon.sheets.iter().map(|sheet| Cells::of(sheet, [nx, ny]));
@@ -246,11 +247,11 @@ impl BlockPanel<'_> {
                 let sheets = selection.sheets.iter().map(|sheet| Cells::of(sheet, [nx, ny]));
                 cells.extend(sheets.map(|cells| (cells, selection.colour, OPACITY[2])));
             }
-            let all = cells.iter().map(|(cells, colour, opacity)| (cells, *colour, *opacity));
-            let seen = surfaces::seen(view, scene, self.geometry, all);
-            if !seen.is_empty() {
-                group.push(Picture::in_rect(surfaces::picture(&seen, scene.size_px), pane));
-            }
+        }
+        let all = cells.iter().map(|(cells, colour, opacity)| (cells, *colour, *opacity));
+        let seen = surfaces::seen(view, scene, self.geometry, all);
+        if !seen.is_empty() {
+            group.push(Picture::in_rect(surfaces::picture(&seen, scene.size_px), pane));
         }
         let page = |voxel: &DVec3| pane.min + view.project(*voxel) * POINTS_PER_INCH / self.dpi;
         for stick in &shown.sticks {

@@ -180,7 +180,8 @@ pub fn explained(shown: &HorizonMap, geometry: &SurveyGeometry, column: Rect) ->
 pub fn caption(shown: &HorizonMap, geometry: &SurveyGeometry) -> String {
     let unit = geometry.vertical.unit.symbol();
     let contours = (!shown.contours.is_empty()).then(|| format!("contours every {} {unit}", shown.interval));
-    let hatching = (!shown.hatching.is_empty()).then(|| "hatched: not picked".to_owned());
+    let hatching =
+        (!shown.hatching.is_empty()).then(|| format!("hatched: not picked ({:.0} %)", 100.0 * shown.unpicked));
     contours.into_iter().chain(hatching).collect::<Vec<_>>().join("; ")
 }
 

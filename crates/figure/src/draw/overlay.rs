@@ -264,23 +264,5 @@ pub fn stick(places: Vec<DVec2>, colour: Colour) -> Group {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_was_filled_is_dashed_and_the_rest_is_not() {
-        let (size, z) = ([3, 8], vec![5.0; 24]);
-        let mut quality = vec![Quality::Tracked; 24];
-        (0..3).for_each(|x| quality[x * 8 + 3..x * 8 + 6].fill(Quality::Filled));
-        let sheet = TraceSheet { block: 0, z: &z, quality: &quality };
-        let horizon = PickedSheets { name: "Top", colour: Colour::BLACK, sheets: vec![sheet], holes: Vec::new() };
-        let shown = DrawnInterpretation { horizons: vec![horizon], ..DrawnInterpretation::default() };
-        let lines = OverlayLines::new(&shown, size, SeenOn::Section(SectionKind::Inline, 1.0));
-        let ends = |lines: &[Line]| lines.iter().map(|l| [l[0].x, l[l.len() - 1].x]).collect::<Vec<_>>();
-        assert_eq!(ends(&lines.horizons[0].lines), [[0.0, 2.0], [6.0, 7.0]]);
-        assert_eq!(ends(&lines.filled[0].lines), [[2.0, 6.0]]);
-        let group = &lines.drawn(|st| st)[1];
-        let is_dashed = |item: &crate::list::Item| matches!(item, crate::list::Item::Path(path) if path.stroke.as_ref().is_some_and(|s| !s.dashes.is_empty()));
-        assert!(!is_dashed(&group.items[0]) && is_dashed(&group.items[1]));
-    }
-}
+#[path = "../../tests/unit/overlay.rs"]
+mod tests;

@@ -37,8 +37,8 @@ pub struct SectionContents<'a> {
     pub horizons: &'a [NamedColour],
     /// Names of faults, by index.
     pub faults: &'a [String],
-    /// Their colours; black where there is none.
-    pub fault_colours: &'a [Colour],
+    /// Their colours; as all lines, or black, where there is none.
+    pub fault_colours: &'a [Option<Colour>],
     /// What an interpreter sees over it.
     pub interpretation: Option<(&'a DrawnInterpretation<'a>, &'a OverlayLines, SeenOn<'a>)>,
     /// Where other sections run.
@@ -88,7 +88,7 @@ impl SectionContents<'_> {
 fn model_lines(
     lines: &[CutLine],
     (horizons, ink): (&[NamedColour], Option<&SectionInk>),
-    (faults, fault_colours): (&[String], &[Colour]),
+    (faults, fault_colours): (&[String], &[Option<Colour>]),
     page: impl Fn(DVec2) -> DVec2,
 ) -> Vec<Group> {
     let mut rims = Group::new(GroupKind::Annotation, "rims");
@@ -111,8 +111,9 @@ fn model_lines(
             }
             LineKind::Fault { fault, .. } => {
                 let name = faults.get(fault).map_or("", String::as_str);
-                let own = || fault_colours.get(fault).copied().unwrap_or(Colour::BLACK);
-                (Group::new(GroupKind::Fault, name), ink.map_or_else(own, |ink| ink.colour), FAULT_PT)
+                let own = fault_colours.get(fault).copied().flatten();
+                let colour = own.unwrap_or_else(|| ink.map_or(Colour::BLACK, |ink| ink.colour));
+                (Group::new(GroupKind::Fault, name), colour, FAULT_PT)
             }
         };
         let own = lines.iter().filter(|line| line.kind == kind);

@@ -5,10 +5,11 @@
 //! without gaps or overlaps, which anti-aliased areas side by side would show. Spaces: voxels; pixels of
 //! the picture.
 
-use crate::interpretation::TraceSheet;
+use crate::interpretation::{FaultMesh, TraceSheet};
 use glam::{DVec2, DVec3};
 use image::{Rgba, RgbaImage, imageops};
 use render::{Scene, View};
+use std::collections::HashMap;
 use survey::{Quality, SurveyGeometry};
 use ttf::Colour;
 
@@ -16,6 +17,10 @@ use ttf::Colour;
 pub const CELLS: usize = 56;
 /// Opacity before the block: of horizons, of the one that is picked, and of the selection.
 pub const OPACITY: [f32; 3] = [0.22, 0.6, 0.85];
+/// Opacity of faults, and the colour of black ones, which have no shades.
+const FAULT: (f32, Colour) = (0.34, Colour::new(0x8a, 0x8f, 0x98));
+/// Longest side of a fault's triangle, of the sides that [`CELLS`] have.
+const LONGEST: f64 = 1.6;
 /// Samples a pixel along each axis.
 const SAMPLES: u32 = 2;
 
@@ -78,6 +83,49 @@ impl Cells {
         }
         Self { cells }
     }
+
+    /// Of a fault's triangles in a survey of this size. Long triangles are halved, so that they end where the block does
+    /// and are told by their distance; of very many small ones, neighbours are joined.
+    fn of_fault(triangles: &[[DVec3; 3]], size: [usize; 3]) -> Self {
+        let step = DVec3::from(size.map(|count| count as f64 / CELLS as f64)).max(DVec3::ONE);
+        let mut open = if triangles.len() > CELLS * CELLS { joined(triangles, step) } else { triangles.to_vec() };
+        let most = open.len() + 3 * CELLS * CELLS;
+        let mut cells = Vec::new();
+        let last = DVec3::from(size.map(|count| count.saturating_sub(1) as f64));
+        while let Some([a, b, c]) = open.pop() {
+            if a.min(b).min(c).cmpgt(last).any() || a.max(b).max(c).cmplt(DVec3::ZERO).any() {
+                continue;
+            }
+            let length = |from: DVec3, to: DVec3| ((to - from) / step).length();
+            let sides = [(length(a, b), [a, b, c]), (length(b, c), [b, c, a]), (length(c, a), [c, a, b])];
+            let (longest, [a, b, c]) =
+                sides.into_iter().fold((0.0, [a, b, c]), |most, side| if side.0 > most.0 { side } else { most });
+            if longest > LONGEST && cells.len() + open.len() < most {
+                let middle = (a + b) * 0.5;
+                open.extend([[a, middle, c], [middle, b, c]]);
+            } else {
+                cells.push(Cell { corners: [a, b, c, c], is_filled: false });
+            }
+        }
+        Self { cells }
+    }
+}
+
+/// A fault in a survey of this size: its cells, colour and opacity.
+pub fn of_fault(fault: &FaultMesh, size: [usize; 3]) -> (Cells, Colour, f32) {
+    let colour = if fault.colour == Colour::BLACK { FAULT.1 } else { fault.colour };
+    (Cells::of_fault(fault.triangles, size), colour, FAULT.0)
+}
+
+/// Triangles whose corners are joined within boxes of these sides: the first corner stands for those of its box.
+fn joined(triangles: &[[DVec3; 3]], step: DVec3) -> Vec<[DVec3; 3]> {
+    let mut places: HashMap<[i64; 3], DVec3> = HashMap::new();
+    let own = |place: DVec3, places: &mut HashMap<[i64; 3], DVec3>| {
+        let key = (place / step).floor().to_array().map(|n| n as i64);
+        *places.entry(key).or_insert(place)
+    };
+    let corners = triangles.iter().map(|corners| corners.map(|place| own(place, &mut places)));
+    corners.filter(|[a, b, c]| a != b && b != c && c != a).collect()
 }
 
 /// A cell as it is seen.
@@ -186,55 +234,5 @@ fn fill(image: &mut RgbaImage, [a, mut b, mut c]: [DVec2; 3], colour: [f32; 3], 
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_large_sheet_is_drawn_in_few_cells_up_to_its_far_corner() {
-        let [nx, ny] = [301, 120];
-        let (z, quality) = (vec![7.0; nx * ny], vec![Quality::Tracked; nx * ny]);
-        let cells = Cells::of(&TraceSheet { block: 0, z: &z, quality: &quality }, [nx, ny]).cells;
-        assert!(cells.len() <= CELLS * CELLS);
-        let high = cells.iter().flat_map(|cell| cell.corners).fold(DVec3::ZERO, |high, corner| high.max(corner));
-        assert_eq!(high, DVec3::new(300.0, 119.0, 7.0));
-    }
-
-    #[test]
-    fn a_hole_larger_than_a_cell_stays_open() {
-        let [nx, ny] = [40, 40];
-        let z: Vec<f32> = (0..nx * ny).map(|n| if (10..30).contains(&(n / ny)) { f32::NAN } else { 1.0 }).collect();
-        let quality = vec![Quality::Tracked; nx * ny];
-        let cells = Cells::of(&TraceSheet { block: 0, z: &z, quality: &quality }, [nx, ny]).cells;
-        assert!(cells.iter().flat_map(|cell| cell.corners).all(|corner| corner.x < 10.0 || corner.x >= 30.0));
-        assert!(!cells.is_empty());
-    }
-
-    #[test]
-    fn what_was_filled_is_lighter() {
-        let geometry = SurveyGeometry::regular([9, 9, 9], 25.0, 4.0, survey::VerticalUnit::Milliseconds);
-        let (z, mut quality) = (vec![4.0; 81], vec![Quality::Tracked; 81]);
-        quality[..27].fill(Quality::Filled);
-        quality[27..36].fill(Quality::Extrapolated);
-        let cells = Cells::of(&TraceSheet { block: 0, z: &z, quality: &quality }, [9, 9]);
-        let scene = Scene::default();
-        let drawn =
-            seen(&scene.view(&geometry), &scene, &geometry, [(&cells, Colour::new(0, 100, 200), 0.5)].into_iter());
-        let light = drawn.iter().filter(|cell| cell.colour.rgb[0] > 0).count();
-        // Three rows of cells lie between filled nodes; a fourth has as many picked ones as filled.
-        assert_eq!((light, drawn.len()), (3 * 8, 8 * 8));
-    }
-
-    #[test]
-    fn cells_that_share_an_edge_leave_no_seam() {
-        let cell = |left: f64, right: f64| SeenCell {
-            corners: [[left, 2.3], [right, 2.3], [right, 9.1], [left, 9.1]].map(DVec2::from_array),
-            colour: Colour::new(200, 100, 50),
-            opacity: 0.5,
-        };
-        let image = picture(&[cell(1.0, 5.37), cell(5.37, 11.0)], [12, 12]);
-        for x in 1..11 {
-            let pixel = image.get_pixel(x, 5).0;
-            assert!(pixel[3].abs_diff(128) <= 1 && pixel[0].abs_diff(200) <= 2, "{x}: {pixel:?}");
-        }
-    }
-}
+#[path = "../../tests/unit/surfaces.rs"]
+mod tests;

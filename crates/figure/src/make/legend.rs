@@ -186,7 +186,6 @@ impl Maker<'_> {
         let is_inked = section.blend <= 0.0;
         let pen = |width: f64, colour: Colour| Stroke::new(width, colour);
         let [contact, unconformity] = [false, true].map(|is_heavy| pen(contact_pt(is_heavy), INK));
-        let fault = pen(FAULT_PT, Colour::BLACK);
         if is_inked {
             listed.add_lines(self.contacts(&seen, &contact, &unconformity));
         } else {
@@ -195,9 +194,7 @@ impl Maker<'_> {
         if self.wants(Annotation::Quality) {
             listed.add_lines(qualities(&seen, &contact));
         }
-        if !seen.faults.is_empty() {
-            listed.add_lines(vec![LegendLine::new("Fault", GroupKind::Fault, fault)]);
-        }
+        listed.add_lines(self.faults(&seen, |own| pen(FAULT_PT, own.unwrap_or(Colour::BLACK))));
         if section.has_wells() {
             listed.add_lines(vec![LegendLine::new("Well", GroupKind::Well, pen(HORIZON_PT, INK))]);
         }
@@ -244,6 +241,16 @@ impl Maker<'_> {
         lines
     }
 
+    /// The faults that are seen; those with a colour of their own by their names.
+    fn faults(&self, seen: &Seen, pen: impl Fn(Option<Colour>) -> Stroke) -> Vec<LegendLine> {
+        let line = |fault: &usize| {
+            let own = self.inputs.fault_colours.get(*fault).copied().flatten();
+            let name = own.and_then(|_| self.inputs.faults.get(*fault)).map_or("Fault", String::as_str);
+            LegendLine::new(name, GroupKind::Fault, pen(own))
+        };
+        seen.faults.iter().map(line).collect()
+    }
+
     /// The contacts, faults and wells that are seen of a block, drawn as they are on it.
     fn lines_of(&self, scene: &Scene, seen: &Seen, points_per_px: f64) -> Vec<LegendLine> {
         let outlines = scene.outlines;
@@ -258,8 +265,8 @@ impl Maker<'_> {
                 lines.extend(qualities(seen, &plain));
             }
         }
-        if outlines.faults.width_px > 0.0 && !seen.faults.is_empty() {
-            lines.push(LegendLine::new("Fault", GroupKind::Fault, pen(outlines.faults)));
+        if outlines.faults.width_px > 0.0 {
+            lines.extend(self.faults(seen, |own| pen(outlines.of_fault(own.map(|own| scene.preset.line(own))))));
         }
         let well = Stroke::new(2.0 * HORIZON_PT, scene.wells.colour);
         if self.wants(Annotation::Wells) && !seen.wells.is_empty() {

@@ -52,8 +52,8 @@ pub struct FigureInputs<'a> {
     pub strata: &'a [StratigraphicHorizon],
     /// Names of the faults.
     pub faults: &'a [String],
-    /// Their colours on sections; black where there is none.
-    pub fault_colours: &'a [Colour],
+    /// The colours that they were given.
+    pub fault_colours: &'a [Option<Colour>],
     /// The layers as they are drawn, youngest first.
     pub layers: &'a [LayerStyle],
     /// Patterns of the layers.

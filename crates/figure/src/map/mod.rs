@@ -70,6 +70,8 @@ pub struct HorizonMap {
     pub contours: Vec<Contour>,
     /// Outline and hatching of what was not picked, voxel x and y.
     pub hatching: Vec<[DVec2; 2]>,
+    /// Share of its places that was not picked.
+    pub unpicked: f64,
     /// Smallest and largest value, in the survey's unit.
     pub range: [f64; 2],
     /// Distance between contours.
@@ -105,7 +107,9 @@ impl HorizonMap {
         });
         let interval = contours::interval(spread);
         let contours = contours::contours(&smooth::smoothed(&grid, interval), range, interval);
-        Some(Self { mapped, image, contours, hatching: hatch::hatching(&grid), range, interval })
+        let open = grid.nodes().iter().filter(|node| node.is_open && node.value.is_finite()).count();
+        let unpicked = open as f64 / finite().count() as f64;
+        Some(Self { mapped, image, contours, hatching: hatch::hatching(&grid), unpicked, range, interval })
     }
 
     /// The values at the light and at the dark end of the colours.

@@ -188,6 +188,27 @@ fn each_polygon_of_a_table_is_a_fault_of_its_own() {
             [f64::min, f64::max].map(|pick| fault.mesh.vertices.iter().map(|v| v.x).reduce(pick).unwrap());
         assert!(low >= 60.0 + 120.0 * id as f64 - 1.0 && high <= 105.0 + 120.0 * id as f64, "{low} to {high}");
     }
+    // Ids may be words.
+    let words: String = text.lines().skip(1).map(|row| format!("{row}-east\n")).collect();
+    let read = faults("polygons.csv", &format!("X_UTME,Y_UTMN,Z_TVDSS,POLY_ID\n{words}"));
+    assert_eq!(read.iter().map(|fault| fault.name.as_str()).collect::<Vec<_>>(), ["0-east", "1-east", "2-east"]);
+}
+
+#[test]
+fn lines_of_one_name_and_several_ids_are_sticks_of_one_fault() {
+    let mut text = "X_UTME,Y_UTMN,Z_TVDSS,POLY_ID,NAME\n".to_owned();
+    for (name, west) in [("A", 60.0), ("B", 300.0)] {
+        for id in 0..3 {
+            let z = 100.0 + 80.0 * f64::from(id);
+            (0..6).for_each(|n| text += &format!("{},{},{z},{id},{name}\n", west + 0.2 * z, 60.0 * f64::from(n)));
+        }
+    }
+    let read = faults("lines.csv", &text);
+    assert_eq!(read.iter().map(|fault| fault.name.as_str()).collect::<Vec<_>>(), ["A", "B"]);
+    for (fault, west) in read.iter().zip([60.0, 300.0]) {
+        assert_eq!(fault.mesh.vertices.len(), 18);
+        assert!(fault.mesh.vertices.iter().all(|v| (v.x - west - 0.2 * v.z).abs() < 1e-6));
+    }
 }
 
 #[test]

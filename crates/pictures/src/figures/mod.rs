@@ -29,7 +29,7 @@ use interpreter::InterpreterPicks;
 use model::StructuralModel;
 use project::Project;
 use project::content;
-use project::document::{Document, FaultEntry, WellEntry};
+use project::document::{Document, WellEntry};
 use project::error::ProjectError;
 use project::styles;
 use render::vector::{VectorBlock, vectors};
@@ -123,7 +123,7 @@ fn lettered(
         strata: &document.stratigraphy().horizons,
         wells: &if has_wells || names_wells { wells_of(project)? } else { Vec::new() },
         faults: &document.faults.iter().map(|entry| entry.name.clone()).collect::<Vec<_>>(),
-        fault_colours: &document.faults.iter().map(FaultEntry::ink).collect::<Vec<_>>(),
+        fault_colours: &document.faults.iter().map(|entry| entry.colour).collect::<Vec<_>>(),
         layers: &layers,
         library: library.as_ref(),
         interpretation: shown.as_ref(),

@@ -65,7 +65,7 @@ pub struct RenameFault {
 pub struct SetFaultColour {
     /// Name of the fault.
     pub fault: String,
-    /// Colour of its lines on sections and of its sticks.
+    /// Colour of its lines, on sections and on the block, and of its sticks.
     pub colour: Colour,
 }
 

@@ -10,6 +10,7 @@ use crate::folder::Draft;
 use crate::interpretation::order;
 use formats::{Gridding, ImportOptions, ImportReport};
 use model::ContactRules;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use survey::{Contact, Horizon, Note, Progress, SurveyGeometry};
@@ -308,7 +309,7 @@ pub(super) fn reading(report: &ImportReport) -> String {
 
 pub(super) fn load_all(draft: &Draft, progress: &Progress) -> Result<Vec<Horizon>, ProjectError> {
     let load = |entry: &HorizonEntry| content::read_horizon(draft.root(), entry, progress);
-    draft.document.horizons.iter().map(load).collect()
+    draft.document.horizons.par_iter().map(load).collect()
 }
 
 impl RenameHorizon {

@@ -134,7 +134,7 @@ pub struct FaultEntry {
     pub hash: String,
     /// Where it came from.
     pub source: Source,
-    /// Its colour on sections, if it was given one.
+    /// Its colour, if it was given one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colour: Option<Colour>,
 }
@@ -224,6 +224,7 @@ impl Style {
             raw: self.raw.clone(),
             layers: self.layers.clone(),
             scalars: self.scalars.clone(),
+            faults: Vec::new(),
         }
     }
 }

@@ -33,5 +33,6 @@ pub fn transfer_functions(document: &Document) -> TransferFunctions {
     if functions.raw.is_none() {
         functions.raw = raw_colour(document, None, ColourMap::Seismics, None).ok();
     }
+    functions.faults = document.faults.iter().map(|entry| entry.colour).collect();
     functions
 }

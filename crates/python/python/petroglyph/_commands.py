@@ -368,7 +368,7 @@ class Commands:
         return self.apply({"set-fault-extent": {"fault": fault, "grown_m": grown_m}})
 
     def set_fault_colour(self, fault: str, colour: str) -> Effect:
-        """Gives a fault another colour on sections."""
+        """Gives a fault another colour, on sections and on the block."""
         return self.apply({"set-fault-colour": {"fault": fault, "colour": colour}})
 
     def rename_fault(self, from_: str, to: str) -> Effect:

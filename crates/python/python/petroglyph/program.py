@@ -1484,7 +1484,7 @@ def fault_colour(
     *,
     progress: Progress | None = None,
 ) -> Answer:
-    """Give a fault another colour on sections.
+    """Give a fault another colour, on sections and on the block.
 
     Parameters
     ----------

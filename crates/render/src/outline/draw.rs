@@ -186,12 +186,17 @@ pub(crate) fn draw_lines(resolved: &ResolvedScene, lines: &OutlineLines, image: 
     if resolved.scene.has_back_edges() {
         underlay(resolved, image);
     }
-    let points = |lines: &[OutlineLine]| lines.iter().map(|line| line.points.clone()).collect::<Vec<_>>();
+    let points = |lines: &[&OutlineLine]| lines.iter().map(|line| line.points.clone()).collect::<Vec<_>>();
     for is_unconformity in [false, true] {
         let own = lines.horizons.iter().filter(|line| resolved.is_unconformity(line.of) == is_unconformity);
-        let own: Vec<Vec<DVec2>> = own.map(|line| line.points.clone()).collect();
-        stroke_lines(image, &outlines.of_horizon(is_unconformity), &own);
+        stroke_lines(image, &outlines.of_horizon(is_unconformity), &points(&own.collect::<Vec<_>>()));
     }
-    stroke_lines(image, &outlines.faults, &points(&lines.faults));
+    // Lines of one colour are stroked as one, so that they join without seams.
+    let mut faults: Vec<&OutlineLine> = lines.faults.iter().collect();
+    let colour = |line: &OutlineLine| resolved.tables.fault_colour(line.of).map(|colour| colour.rgb);
+    faults.sort_by_key(|line| colour(line));
+    for own in faults.chunk_by(|a, b| colour(a) == colour(b)) {
+        stroke_lines(image, &outlines.of_fault(resolved.tables.fault_colour(own[0].of)), &points(own));
+    }
     stroke_lines(image, &outlines.edges, &lines.edges);
 }

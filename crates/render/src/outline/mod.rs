@@ -89,6 +89,11 @@ impl Outlines {
         Stroke { width_px: factor * self.horizons.width_px, ..self.horizons }
     }
 
+    /// How a fault is drawn that may have a colour of its own.
+    pub fn of_fault(&self, own: Option<Colour>) -> Stroke {
+        Stroke { colour: own.unwrap_or(self.faults.colour), ..self.faults }
+    }
+
     /// No lines at all.
     pub fn none() -> Self {
         let off = Stroke { width_px: 0.0, colour: INK };

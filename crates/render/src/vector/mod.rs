@@ -213,7 +213,8 @@ fn lines(resolved: &ResolvedScene) -> Vec<VectorLine> {
         add(VectorLineKind::Horizon(line.of), outlines.of_horizon(resolved.is_unconformity(line.of)), line.points);
     }
     for line in drawn.faults {
-        add(line.of.map_or(VectorLineKind::Horizon(None), VectorLineKind::Fault), outlines.faults, line.points);
+        let stroke = outlines.of_fault(resolved.tables.fault_colour(line.of));
+        add(line.of.map_or(VectorLineKind::Horizon(None), VectorLineKind::Fault), stroke, line.points);
     }
     for points in drawn.edges {
         add(VectorLineKind::Edge, outlines.edges, points);

@@ -165,9 +165,33 @@ fn lines_have_the_names_of_horizons_and_faults() {
     let kinds: Vec<VectorLineKind> = traced.lines.iter().map(|line| line.kind).collect();
     use VectorLineKind::{Edge, Fault, Horizon};
     assert_eq!(kinds, [Horizon(Some(0)), Horizon(Some(1)), Fault(0), Edge]);
+    assert_eq!(traced.lines[2].colour, Outlines::default().faults.colour);
     // Each horizon is one line on each side of the fault.
     assert_eq!(traced.lines[0].parts.len(), 2);
     assert_eq!(traced.lines[2].parts.len(), 1);
+}
+
+/// A fault that was given a colour is drawn in it, as paths and as pixels, and printed as the preset says.
+#[test]
+fn a_fault_has_the_colour_that_it_was_given() {
+    let geometry = SurveyGeometry::regular([41, 31, 41], 10.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::flat(&geometry, &[10.0, 24.0]).with_fault(60.0, 5.0);
+    let red = Colour::new(0xe0, 0x10, 0x20);
+    let scene = Scene { outlines: Outlines::default(), samples: 2, ..head_on([400, 300]) };
+    let reds = |faults: Vec<Option<Colour>>| {
+        let block = Block::of(&closed, &TransferFunctions { faults, ..TransferFunctions::default() }, &library());
+        let line = traced(&scene, &block).lines.into_iter().find(|line| line.kind == VectorLineKind::Fault(0));
+        let picture = render::reference::render(&scene, &block.inputs(&[]), &Progress::silent()).unwrap();
+        let is_red = |pixel: &&image::Rgba<u8>| pixel.0[0] > 200 && pixel.0[1] < 60 && pixel.0[2] < 70;
+        (line.unwrap().colour, picture.pixels().filter(is_red).count())
+    };
+    assert_eq!(reds(vec![None]), (Outlines::default().faults.colour, 0));
+    let (colour, pixels) = reds(vec![Some(red)]);
+    assert!(colour == red && pixels > 60, "{colour}: {pixels}");
+    let settings = ttf::TtfSettings { preset: ttf::Preset::BlackAndWhite, ..Default::default() };
+    let printed = TransferFunctions { faults: vec![Some(red)], settings, ..TransferFunctions::default() };
+    let line = traced(&scene, &Block::of(&closed, &printed, &library())).lines.swap_remove(2);
+    assert_eq!((line.kind, line.colour), (VectorLineKind::Fault(0), Colour::BLACK));
 }
 
 #[test]

@@ -150,9 +150,7 @@ impl BlockView {
         }
         self.paint(ui, session, compare, &rects, rect);
         // In volume rendering the picture contains the horizons, once it is final.
-        if !is_clear(session) || !self.is_settled() {
-            overlay.surfaces_on_block(ui, session, pane);
-        }
+        overlay.surfaces_on_block(ui, session, pane, is_clear(session) && self.is_settled());
         overlay.sticks_on_block(ui, session, pane);
         if let Some(line) = self.lasso.draw(ui, &ui.painter_at(rect), &response, has_lasso) {
             let corners = line.into_iter().map(|at| dvec(at - pane.min)).collect();

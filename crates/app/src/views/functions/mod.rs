@@ -8,13 +8,14 @@ mod volume_rendering;
 
 use crate::state::{Action, Session};
 use crate::work::{Rocks, Swatches};
-use eframe::egui::{Color32, ComboBox, DragValue, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{Button, Color32, ComboBox, DragValue, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 use project::command::{Command, RemoveScalar, SetRaw, SetScalar};
 use project::document::Document;
 use project::styles;
 use scalars::{intervals, ranges};
 use std::collections::HashMap;
 use ttf::{ColourMap, RawColour, ScalarInterval, ScalarTtf};
+use widgets::form;
 use widgets::histogram::Histogram;
 use widgets::opacity_curve::OpacityCurve;
 use widgets::theme;
@@ -148,8 +149,8 @@ impl Functions {
         }
         ui.horizontal(|ui| {
             let speed = f64::from((high - low).abs()) * 0.005;
-            for (end, name) in ["from", "to"].into_iter().enumerate() {
-                let label = ui.label(name);
+            for end in 0..2 {
+                let label = if end == 0 { form::label(ui, "Values from") } else { ui.label("to") };
                 let mut value = raw.function.domain[end];
                 if ui.add(DragValue::new(&mut value).speed(speed)).labelled_by(label.id).changed() {
                     pull(&mut raw.function.domain, end, value);
@@ -172,8 +173,9 @@ impl Functions {
                 _ => present.clone(),
             };
             ui.horizontal(|ui| {
-                ui.strong(&present.volume);
-                if ui.button("Remove").on_hover_text(format!("No textures of {}", present.volume)).clicked() {
+                let hint = format!("No textures of {}", present.volume);
+                let row = crate::views::data::named(ui, &present.volume, None, &hint);
+                if row.is_removed {
                     let command = RemoveScalar { volume: present.volume.clone() };
                     actions.push(Action::Apply(Box::new(Command::RemoveScalar(command))));
                 }
@@ -193,7 +195,8 @@ impl Functions {
         }
         for entry in &document.volumes {
             let is_new = document.style.scalars.iter().all(|function| function.volume != entry.name);
-            if is_new && ui.button(format!("Textures by {}", entry.name)).clicked() {
+            let textures = || Button::new(format!("Textures by {}", entry.name)).truncate();
+            if is_new && ui.add(textures()).on_hover_text(&entry.name).clicked() {
                 let middle = 0.5 * (entry.lowest.max(-entry.clip) + entry.clip);
                 let texture = swatches.patterns().first().map(|pattern| pattern.name.clone()).unwrap_or_default();
                 let range = [middle, f32::INFINITY];
@@ -209,7 +212,7 @@ impl Functions {
 /// The choice of a colour map, by name.
 fn map(ui: &mut Ui, document: &Document, raw: &mut RawColour) {
     ui.horizontal(|ui| {
-        let label = ui.label("Colours");
+        let label = form::label(ui, "Colours");
         let present = ColourMap::ALL.into_iter().find(|map| {
             let stops = map.stops();
             let same =

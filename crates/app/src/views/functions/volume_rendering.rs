@@ -5,11 +5,12 @@ use crate::state::volume_rendering::{self, Extent, Light};
 use crate::state::{Action, Notice, Place, Session};
 use crate::views::controls;
 use crate::views::sections::entry_colour;
-use eframe::egui::{ComboBox, DragValue, Grid, Slider, Ui};
+use eframe::egui::{ComboBox, DragValue, Grid, Slider, TextWrapMode, Ui};
 use render::media::{LayerOpacity, MediumColour};
 use render::{PickedHorizon, Scene, Scope, Shading};
 use ttf::Colour;
 use widgets::colour_well;
+use widgets::form::{self, LABELS};
 use widgets::histogram::Histogram;
 use widgets::opacity_curve::OpacityCurve;
 use widgets::percent;
@@ -69,12 +70,14 @@ fn place(ui: &mut Ui, session: &Session, volume: &str, next: &mut Scene, actions
         }
     });
     if present != Extent::Nowhere {
-        let label = ui.label("Rendered volume");
-        ui.label_inputs_by(label.id, |ui| {
-            ComboBox::from_id_salt("medium").selected_text(&name).show_ui(ui, |ui| {
-                for entry in &session.document.volumes {
-                    ui.selectable_value(&mut name, entry.name.clone(), &entry.name);
-                }
+        ui.horizontal(|ui| {
+            let label = form::label(ui, "Rendered");
+            ui.label_inputs_by(label.id, |ui| {
+                ComboBox::from_id_salt("medium").selected_text(&name).truncate().show_ui(ui, |ui| {
+                    for entry in &session.document.volumes {
+                        ui.selectable_value(&mut name, entry.name.clone(), &entry.name);
+                    }
+                });
             });
         });
     }
@@ -99,7 +102,11 @@ fn horizons(ui: &mut Ui, session: &Session, next: &mut Scene) {
     for (index, entry) in entries.iter().enumerate() {
         let is_this = |horizon: &PickedHorizon| horizon.name.as_deref() == Some(entry.name.as_str());
         let mut is_shown = next.media.horizons.iter().any(is_this);
-        if ui.checkbox(&mut is_shown, &entry.name).changed() {
+        let shown = ui.scope(|ui| {
+            ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
+            ui.checkbox(&mut is_shown, &entry.name).on_hover_text(&entry.name)
+        });
+        if shown.inner.changed() {
             let [r, g, b, _] = entry_colour(entry, index).to_array();
             volume_rendering::show_horizon(next, &entry.name, Colour::new(r, g, b), is_shown);
         }
@@ -151,25 +158,27 @@ fn numbers(ui: &mut Ui, name: &str, horizon: &mut PickedHorizon) {
 fn light(ui: &mut Ui, next: &mut Scene) {
     let present = Light::of(next);
     let mut chosen = present;
-    let label = ui.label("Light");
-    ui.label_inputs_by(label.id, |ui| {
-        let names = [
-            (Light::None, "none"),
-            (Light::Gradients, "gradients"),
-            (Light::Occlusion, "occlusion"),
-            (Light::Stripes, "both, in stripes"),
-        ];
-        let shown = names.iter().find(|(light, _)| *light == present).map_or("", |(_, name)| name);
-        ComboBox::from_id_salt("light").selected_text(shown).show_ui(ui, |ui| {
-            for (light, name) in names {
-                ui.selectable_value(&mut chosen, light, name);
-            }
+    ui.horizontal(|ui| {
+        let label = form::label(ui, "Light");
+        ui.label_inputs_by(label.id, |ui| {
+            let names = [
+                (Light::None, "none"),
+                (Light::Gradients, "gradients"),
+                (Light::Occlusion, "occlusion"),
+                (Light::Stripes, "both, in stripes"),
+            ];
+            let shown = names.iter().find(|(light, _)| *light == present).map_or("", |(_, name)| name);
+            ComboBox::from_id_salt("light").selected_text(shown).show_ui(ui, |ui| {
+                for (light, name) in names {
+                    ui.selectable_value(&mut chosen, light, name);
+                }
+            });
         });
     });
     if chosen != present {
         next.media.shading = chosen.shading();
     }
-    Grid::new("light terms").num_columns(2).show(ui, |ui| {
+    Grid::new("light terms").num_columns(2).min_col_width(LABELS).show(ui, |ui| {
         let mut row = |name: &str, value: &mut f32, range| {
             let label = ui.label(name);
             ui.add(Slider::new(value, range).max_decimals(2)).labelled_by(label.id);

@@ -12,10 +12,11 @@ use super::tiles::Tiles;
 use crate::state::{Action, Choice, Dialogue, Panel, Place, Session, State};
 use crate::work::{Rocks, Swatches};
 use eframe::egui::{
-    Button, ComboBox, Frame, Grid, Key, Label, Response, RichText, Role, ScrollArea, Sense, Stroke, TextEdit, Ui,
-    WidgetInfo, vec2,
+    Align, Button, ComboBox, Frame, Grid, Key, Label, Layout, Response, RichText, Role, ScrollArea, Sense, Stroke,
+    TextEdit, Ui, WidgetInfo, vec2,
 };
 use legibility::Legibility;
+use pictures::PickedShare;
 use project::command::{Command, ResetLayer, SetContact, SetLayer};
 use project::document::Document;
 use project::document::HorizonEntry;
@@ -23,6 +24,7 @@ use render::Unpicked;
 use style::{colours, definition, frequencies, intervals};
 use survey::Contact;
 use ttf::{Colour, LayerStyle, LayerTtf, TextureLibrary};
+use widgets::form::{self, LABELS};
 use widgets::obstacle::{needs, unless};
 use widgets::percent;
 
@@ -39,6 +41,8 @@ pub struct Layers {
     /// The layer whose style was shown last.
     editing: Option<String>,
     legibility: Legibility,
+    /// How much of each horizon was picked, as far as it is known.
+    picked: Vec<PickedShare>,
 }
 
 impl Layers {
@@ -85,13 +89,17 @@ impl Layers {
             });
             return;
         }
+        if let Some(loaded) = rocks.and_then(|(rocks, _)| rocks.try_read().ok()) {
+            self.picked.clone_from(&loaded.picked);
+        }
         ScrollArea::vertical().show(ui, |ui| {
             let layers = document.layers();
             for (index, name) in layers.iter().enumerate() {
                 let style = self.style_of(document, index, name);
                 row(ui, session, name, &style, swatches, tiles, actions);
                 if let Some(horizon) = document.horizons.get(index) {
-                    boundary(ui, index, horizon, actions);
+                    let share = self.picked.iter().find(|known| known.name == horizon.name).map(|known| known.share);
+                    boundary(ui, (index, share), horizon, actions);
                 }
             }
             unpicked(ui, session, actions);
@@ -135,7 +143,7 @@ impl Layers {
         let present = self.style_of(document, index, layer);
         let mut style = present.clone();
         self.rename(ui, layer, actions);
-        Grid::new("style").num_columns(2).show(ui, |ui| {
+        Grid::new("style").num_columns(2).min_col_width(LABELS).show(ui, |ui| {
             colours(ui, &mut style);
             frequencies(ui, &mut style);
             let label = ui.label("In cut-outs").on_hover_text(
@@ -186,8 +194,8 @@ impl Layers {
         let (_, mut text) =
             self.name.take().filter(|(of, _)| of == layer).unwrap_or((layer.to_owned(), layer.to_owned()));
         ui.horizontal(|ui| {
-            let label = ui.strong("Name");
-            let edit = ui.add(TextEdit::singleline(&mut text).desired_width(180.0)).labelled_by(label.id);
+            let label = form::label(ui, "Name");
+            let edit = ui.add(TextEdit::singleline(&mut text).desired_width(170.0)).labelled_by(label.id);
             let name = text.trim().to_owned();
             let is_meant = edit.lost_focus() && !ui.input(|input| input.key_pressed(Key::Escape));
             if is_meant && !name.is_empty() && name != layer {
@@ -249,26 +257,41 @@ fn row(
     }
 }
 
-/// Width that the contact beside the name of a horizon takes, points.
-const BESIDE_HORIZON: f32 = 130.0;
+/// Share from which a horizon counts as picked everywhere.
+const WHOLE: f64 = 0.995;
 
-/// The horizon between two layers, and its contact.
-fn boundary(ui: &mut Ui, index: usize, horizon: &HorizonEntry, actions: &mut Vec<Action>) {
+/// The horizon between two layers, how much of it was picked where that is not all, and its contact.
+fn boundary(ui: &mut Ui, (index, picked): (usize, Option<f64>), horizon: &HorizonEntry, actions: &mut Vec<Action>) {
     let (name, contact) = (horizon.name.as_str(), horizon.contact);
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(SWATCH[0] + 8.0, 16.0), Sense::hover());
         ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(2.5, entry_colour(horizon, index)));
-        let room = (ui.available_width() - BESIDE_HORIZON).max(40.0);
-        ui.scope(|ui| {
-            ui.set_max_width(room);
-            ui.add(Label::new(RichText::new(name).small()).truncate());
-        });
         let mut chosen = contact;
-        let combo = ComboBox::from_id_salt(("contact", name)).selected_text(contact_name(contact)).width(96.0);
-        ui.name_inputs(format!("Contact of {name}"), |ui| {
-            combo.show_ui(ui, |ui| {
-                for contact in Contact::ALL {
-                    ui.selectable_value(&mut chosen, contact, contact_name(contact));
+        // From the right, so that contacts stand in a column whatever the names are.
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let combo = ComboBox::from_id_salt(("contact", name)).selected_text(contact_name(contact)).width(96.0);
+            ui.name_inputs(format!("Contact of {name}"), |ui| {
+                combo.truncate().show_ui(ui, |ui| {
+                    for contact in Contact::ALL {
+                        ui.selectable_value(&mut chosen, contact, contact_name(contact));
+                    }
+                });
+            });
+            ui.with_layout(Layout::top_down(Align::Min), |ui| {
+                ui.spacing_mut().item_spacing.y = 1.0;
+                let share = picked.filter(|share| *share < WHOLE);
+                if share.is_none() {
+                    // In the middle of its row.
+                    ui.add_space(5.0);
+                }
+                ui.add(Label::new(RichText::new(name).small()).truncate());
+                if let Some(share) = share {
+                    let percent = format!("{:.0} %", 100.0 * share);
+                    let hint = format!(
+                        "{name} was picked on {percent} of its traces or within four traces of them; the rest is filled or \
+                         extrapolated"
+                    );
+                    ui.label(RichText::new(format!("{percent} picked")).small().weak()).on_hover_text(hint);
                 }
             });
         });

@@ -65,7 +65,7 @@ pub(super) fn definition(ui: &mut Ui, document: &Document, layer: &str, actions:
     ui.label("Beds");
     let mut chosen = present;
     ui.name_inputs("Beds", |ui| {
-        ComboBox::from_id_salt("beds").selected_text(name_of(present)).width(160.0).show_ui(ui, |ui| {
+        ComboBox::from_id_salt("beds").selected_text(name_of(present)).width(160.0).truncate().show_ui(ui, |ui| {
             for (k, name) in definitions {
                 ui.selectable_value(&mut chosen, k, name);
             }

@@ -130,8 +130,12 @@ impl HorizonList {
         let Some(facts) = facts else { return };
         let report = &facts.report;
         let plural = |count: usize| if count == 1 { "" } else { "s" };
+        let filled = match facts.filled {
+            0.0 => String::new(),
+            share => format!(", {:.1} % of the nodes filled", 100.0 * share),
+        };
         ui.label(format!(
-            "{} nodes on {:.1} % of the traces, {} sheet{}",
+            "{} nodes on {:.1} % of the traces, {} sheet{}{filled}",
             report.nodes,
             100.0 * report.share,
             report.sheets,

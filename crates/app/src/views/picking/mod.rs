@@ -13,7 +13,7 @@ use super::{notices, overlay::Overlay};
 use crate::state::picking::voxel_of;
 use crate::state::{Action, Look, PickingStep, Place, Session, State, Tool};
 use crate::work::RunningLine;
-use eframe::egui::{Button, ScrollArea, Ui};
+use eframe::egui::{Align, Button, Layout, ScrollArea, Ui, vec2};
 use faults::FaultsPanel;
 use horizons::HorizonList;
 use project::interpretation::times::has_time;
@@ -80,10 +80,24 @@ pub(super) fn go(geometry: &SurveyGeometry, place: [f64; 3], actions: &mut Vec<A
     actions.push(Action::Slices(voxel_of(geometry, place).to_array()));
 }
 
+/// Width of the column of labels in front of tools, points.
+const TOOLS: f32 = 52.0;
+
+/// Tools behind a label, in one column on all their lines.
+fn tools(ui: &mut Ui, name: &str, content: impl FnOnce(&mut Ui)) {
+    ui.horizontal_top(|ui| {
+        let size = vec2(TOOLS, ui.spacing().interact_size.y);
+        ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+            ui.set_min_width(TOOLS);
+            ui.label(name);
+        });
+        ui.horizontal_wrapped(content);
+    });
+}
+
 fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let picking = &session.view.picking;
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Pointer");
+    tools(ui, "Pointer", |ui| {
         for (tool, name, hint) in [
             (Tool::Pick, "Pick", "Click a reflection: its leaf is selected"),
             (Tool::Lasso, "Lasso", "Drag around what is to be erased (or hold A and drag)"),
@@ -108,8 +122,7 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         }
     });
     drawing::show(ui, session, actions);
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Block");
+    tools(ui, "Block", |ui| {
         for (look, name, hint) in [
             (Look::Faces, "Faces", "The faces of the block, with the horizons in front of them"),
             (Look::VolumeRendering, "Volume rendering", "Strong reflections in white, shaded by occlusion (O)"),
@@ -119,8 +132,7 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             }
         }
     });
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Show");
+    tools(ui, "Show", |ui| {
         for (show, name, hint) in [
             (FaceData::Rock, "Amplitudes", "The volume as it is"),
             (FaceData::Leaves, "Candidate pieces", "Each piece (leaf) of the candidates in a colour of its own"),

@@ -30,7 +30,6 @@ use figure::draw::section::{SectionContents, Zoom};
 use freehand::Freehand;
 use glam::DVec2;
 use image::RgbaImage;
-use project::document::FaultEntry;
 use project::styles;
 use render::FaceData;
 use std::borrow::Cow;
@@ -239,7 +238,7 @@ impl Pane {
         if let (Some((pixels, lines)), Some(texture)) = (&self.shown, &self.texture) {
             let lines = if is_interpreting { Cow::Borrowed(&[][..]) } else { lines::visible(session, lines) };
             let horizons = pictures::figures::horizons(&session.document);
-            let faults: Vec<_> = session.document.faults.iter().map(FaultEntry::ink).collect();
+            let faults: Vec<_> = session.document.faults.iter().map(|entry| entry.colour).collect();
             let contents = contents(pixels, &lines, (&horizons, &faults), extent, session, kind);
             canvas::paint(&painter, &contents.drawn(seen, on_page), Some(texture.id()));
         }
@@ -345,7 +344,7 @@ impl Pane {
 fn contents<'a>(
     image: &'a Arc<RgbaImage>,
     lines: &'a [CutLine],
-    (horizons, fault_colours): (&'a [NamedColour], &'a [ttf::Colour]),
+    (horizons, fault_colours): (&'a [NamedColour], &'a [Option<ttf::Colour>]),
     extent: DVec2,
     session: &Session,
     kind: SectionKind,

@@ -50,6 +50,8 @@ pub struct InterpretedHorizon {
     pub leaves: Vec<u32>,
     /// Coverage and overlap; places in line numbers.
     pub report: AssemblyReport,
+    /// Share of its nodes that were filled, not picked.
+    pub filled: f64,
     /// Its holes, largest first.
     pub holes: Vec<Hole>,
     /// Its conflicts with other horizons, in words.
@@ -121,7 +123,8 @@ impl Interpreted {
 }
 
 impl ShownFault {
-    fn mesh(&self) -> FaultMesh<'_> {
+    /// In the form that figures take.
+    pub fn mesh(&self) -> FaultMesh<'_> {
         FaultMesh { name: &self.name, colour: self.colour, triangles: &self.triangles }
     }
 }
@@ -427,6 +430,7 @@ impl Keeper {
                     .zip(candidates)
                     .map_or_else(Vec::new, |(chosen, candidates)| selected_leaves(&candidates.forest, chosen)),
                 report: AssemblyReport { overlap, ..report_on(sheets, geometry) },
+                filled: filled(sheets),
                 holes: find_holes(sheets, [nx, ny]),
                 conflicts: mine.map(sentence).collect(),
                 outdated: log.is_some_and(|log| !log.picks.is_empty()) && chosen.is_none(),
@@ -444,6 +448,14 @@ impl Keeper {
         let key = candidates.map(|candidates| candidates.key.clone());
         Ok(Interpreted { root, step, number: self.number, horizons, faults, extraction, key, proposals, unit })
     }
+}
+
+/// The share of the nodes of these sheets that do not lie on data.
+fn filled(sheets: &[VoxelSheet]) -> f64 {
+    let nodes = sheets.iter().flat_map(|sheet| sheet.z.iter().zip(&sheet.quality)).filter(|(z, _)| z.is_finite());
+    let (all, filled) =
+        nodes.fold((0, 0), |(all, filled), (_, quality)| (all + 1, filled + usize::from(!quality.is_on_data())));
+    filled as f64 / all.max(1) as f64
 }
 
 /// The triangles that reassembly starts from.
