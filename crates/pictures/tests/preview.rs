@@ -1,11 +1,11 @@
 //! A page that is looked at before it is written is the page that is written, but for the pixels of its pictures.
 
 use figure::draw::moved::{changed, movable};
-use figure::list::{DisplayList, Group, Item};
 use figure::{Annotation, BlockPart, Figure, MapPart, PageSize, Part};
 use formats::ImportOptions;
 use glam::DVec2;
 use image::RgbaImage;
+use page::list::{DisplayList, Group, Item};
 use pictures::Device;
 use pictures::figures::{FigureSettings, InterpreterView, make};
 use project::Project;

@@ -2,12 +2,12 @@
 //! colour bar, a north arrow.
 
 use super::scale;
-use crate::Rect;
-use crate::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Stroke, Text, Upright};
 use crate::map::{self, HorizonMap, Mapped, Room};
 use crate::style::{ACCENT, FRAME_PT, INK, NUMBER_PT, QUIET_INK, RULE_INK, TEXT_PT, TITLE_PT};
 use glam::DVec2;
 use image::{Rgba, RgbaImage};
+use page::Rect;
+use page::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Stroke, Text, Upright};
 use survey::{SurveyGeometry, VerticalUnit};
 use ttf::{Colour, ColourMap, RgbaFunction};
 
@@ -54,7 +54,8 @@ impl MapFrame {
     /// The place of voxel x, y on the page.
     ///
     /// ```
-    /// use figure::{Rect, draw::map::MapFrame};
+    /// use figure::draw::map::MapFrame;
+    /// use page::Rect;
     /// use glam::DVec2;
     /// use survey::{SurveyGeometry, VerticalUnit};
     ///

@@ -1,9 +1,9 @@
 //! Scale bars, and what a reader must know to read lengths.
 
-use crate::list::{Across, Group, GroupKind, Path, PathItem, Text, Upright, width_of};
 use crate::style::{INK, NUMBER_PT, QUIET_INK, TEXT_PT};
-use crate::{Rect, list::Stroke};
 use glam::DVec2;
+use page::list::{Across, Group, GroupKind, Path, PathItem, Text, Upright, width_of};
+use page::{Rect, list::Stroke};
 use render::{Projection, Scene};
 use survey::{SurveyGeometry, VerticalUnit};
 

@@ -1,11 +1,11 @@
 //! A piece of a layer as it is drawn: colour and pattern, for legends and wells ([`shown`]) and lists ([`draw`]).
 
-use crate::Rect;
-use crate::list::{
-    Cap, Group, GroupKind, Ink, Item, POINTS_PER_INCH, POINTS_PER_MM, Path, PathItem, Picture, Rule, Segment, Stroke,
-};
 use glam::DVec2;
 use image::{Rgba, RgbaImage};
+use page::Rect;
+use page::list::{
+    Cap, Group, GroupKind, Ink, Item, POINTS_PER_INCH, POINTS_PER_MM, Path, PathItem, Picture, Rule, Segment, Stroke,
+};
 use ttf::drawing::{TileDrawing, TilePaint, TileSegment, TileShape};
 use ttf::{Colour, LayerStyle, TextureLibrary};
 
@@ -155,7 +155,7 @@ pub fn draw(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::DisplayList;
+    use page::DisplayList;
 
     /// The same swatch as paths and as texels, in a lattice of blocks of pixels.
     #[test]
@@ -167,7 +167,7 @@ mod tests {
             style.intervals[0].k = [0.25, 1.0];
             let mut page = DisplayList::new(rect.size());
             page.items = items(&style, &library, rect).unwrap().expect("a pattern with a drawing");
-            let paths = crate::raster(&page, 288.0).unwrap();
+            let paths = page::raster(&page, 288.0).unwrap();
             let texels = draw(&style, &library, [240, 144], (4.0 * POINTS_PER_MM) as f32).unwrap();
             let mean = |image: &RgbaImage, left: u32, top: u32| {
                 let pixels = (0..144).map(|n| f32::from(image.get_pixel(left + n % 12, top + n / 12).0[0]));

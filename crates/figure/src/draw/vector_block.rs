@@ -1,10 +1,10 @@
 //! The paths of a block on a page: a group for each layer, horizon and fault.
 
 use super::NamedColour;
-use crate::Rect;
-use crate::list::{Cap, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Rule, Segment, Stroke};
 use glam::DVec2;
 use image::RgbaImage;
+use page::Rect;
+use page::list::{Cap, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Rule, Segment, Stroke};
 use render::vector::{AreaFill, PatternPaint, PatternPart, Polyline, VectorArea, VectorBlock, VectorLineKind};
 use std::sync::Arc;
 use ttf::LayerStyle;

@@ -4,10 +4,10 @@
 //! none over another, none where there is no room. Space: points of the page.
 
 use super::Contour;
-use crate::Rect;
-use crate::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright, width_of};
 use crate::style::{INK, NUMBER_PT};
 use glam::DVec2;
+use page::Rect;
+use page::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright, width_of};
 use ttf::Colour;
 
 /// Room before and behind a label, and between labels, points.

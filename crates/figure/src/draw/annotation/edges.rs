@@ -5,12 +5,12 @@
 //! not. Of those along inlines and crosslines the lowest on the page is chosen, of the upright ones the leftmost.
 
 use super::room::LabelRoom;
-use crate::Rect;
 use crate::cut::value_at;
 use crate::draw::axes::round_step;
-use crate::list::{Across, Group, GroupKind, Path, PathItem, Stroke, Text, Upright, width_of};
 use crate::style::{FRAME_PT, NUMBER_PT, QUIET_INK, TEXT_PT, TICK_PT};
 use glam::{DVec2, DVec3};
+use page::Rect;
+use page::list::{Across, Group, GroupKind, Path, PathItem, Stroke, Text, Upright, width_of};
 use render::{View, VoxelBox};
 use survey::{SurveyGeometry, VerticalUnit};
 

@@ -7,11 +7,11 @@
 use super::room::{LabelRoom, outlines};
 use crate::convex::{holds, meet};
 use crate::cut::value_at;
-use crate::list::{Across, Group, GroupKind, Ink, Path, PathItem, Segment, Stroke, Text, Upright};
 use crate::style::{INK, NUMBER_PT};
 use glam::{DVec2, DVec3};
 use model::StructuralModel;
 use model::section::LineKind;
+use page::list::{Across, Group, GroupKind, Ink, Path, PathItem, Segment, Stroke, Text, Upright};
 use render::vector::SeenSection;
 use survey::SurveyGeometry;
 use ttf::Colour;

@@ -7,9 +7,9 @@
 
 use super::room::LabelRoom;
 use crate::convex::{holds, meet};
-use crate::list::{Halo, Text};
 use crate::style::LEAST_TEXT_PT;
 use glam::DVec2;
+use page::list::{Halo, Text};
 use render::vector::SeenSection;
 
 /// Sizes that are tried, points: the first one that fits is taken.

@@ -15,7 +15,7 @@ mod tiff;
 
 pub use tiff::tiff;
 
-use crate::error::FigureError;
+use crate::error::PageError;
 use crate::list::{DisplayList, Group, Item, POINTS_PER_INCH, Picture};
 use glyphs::Lettering;
 use image::RgbaImage;
@@ -33,8 +33,8 @@ pub const MOST_SIDE_PX: u32 = 32_768;
 /// transparent where nothing is drawn.
 ///
 /// # Errors
-/// [`FigureError::PageSize`] where that is nothing or more than [`MOST_SIDE_PX`].
-pub fn raster(list: &DisplayList, dpi: f64) -> Result<RgbaImage, FigureError> {
+/// [`PageError::PageSize`] where that is nothing or more than [`MOST_SIDE_PX`].
+pub fn raster(list: &DisplayList, dpi: f64) -> Result<RgbaImage, PageError> {
     let scale = dpi / POINTS_PER_INCH;
     let [width, height] = size_px(list, dpi)?;
     let mut page = Prepared { ops: Vec::new(), clips: Vec::new(), scale };
@@ -59,11 +59,11 @@ pub fn raster(list: &DisplayList, dpi: f64) -> Result<RgbaImage, FigureError> {
 ///
 /// # Errors
 /// As [`raster`].
-pub fn size_px(list: &DisplayList, dpi: f64) -> Result<[u32; 2], FigureError> {
+pub fn size_px(list: &DisplayList, dpi: f64) -> Result<[u32; 2], PageError> {
     let size = (list.size * dpi / POINTS_PER_INCH).round();
     let most = f64::from(MOST_SIDE_PX);
     if !(size.min_element() >= 1.0 && size.max_element() <= most) {
-        return Err(FigureError::PageSize { size_px: size.to_array(), most: MOST_SIDE_PX });
+        return Err(PageError::PageSize { size_px: size.to_array(), most: MOST_SIDE_PX });
     }
     Ok([size.x as u32, size.y as u32])
 }

@@ -142,13 +142,13 @@ impl Text {
     }
 
     /// Moves it.
-    pub(crate) fn shift(&mut self, by: DVec2) {
+    pub fn shift(&mut self, by: DVec2) {
         self.at += by;
         self.letters.iter_mut().for_each(|letter| letter.at += by);
     }
 
     /// Gives it another size; a bent line grows about its middle.
-    pub(crate) fn resize(&mut self, size: f64) {
+    pub fn resize(&mut self, size: f64) {
         let (share, bounds) = (size / self.size, self.bounds());
         for letter in &mut self.letters {
             letter.at = bounds.centre() + (letter.at - bounds.centre()) * share;
@@ -221,7 +221,7 @@ impl Text {
     /// Its length along the line, points.
     ///
     /// ```
-    /// use figure::list::Text;
+    /// use page::list::Text;
     /// let text = Text::new(glam::DVec2::ZERO, "Top Chalk");
     /// let twice = text.clone().sized(2.0 * text.size);
     /// assert!((twice.width() - 2.0 * text.width()).abs() < 1e-3);

@@ -160,9 +160,9 @@ fn the_same_page_is_the_same_bytes_on_one_thread_and_four_and_sizes_are_printed_
     let one = on(1);
     assert_eq!(one.dimensions(), (600, 400));
     assert!(one == on(4));
-    assert!(matches!(raster(&list, 0.1), Err(FigureError::PageSize { .. })));
-    assert!(matches!(raster(&list, f64::NAN), Err(FigureError::PageSize { .. })));
-    assert!(matches!(raster(&list, 1e6), Err(FigureError::PageSize { .. })));
+    assert!(matches!(raster(&list, 0.1), Err(PageError::PageSize { .. })));
+    assert!(matches!(raster(&list, f64::NAN), Err(PageError::PageSize { .. })));
+    assert!(matches!(raster(&list, 1e6), Err(PageError::PageSize { .. })));
 }
 
 #[test]
