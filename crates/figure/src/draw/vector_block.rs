@@ -2,10 +2,11 @@
 
 use super::NamedColour;
 use glam::DVec2;
-use image::RgbaImage;
+use image::{GrayImage, RgbaImage, imageops};
 use page::Rect;
 use page::list::{Cap, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Rule, Segment, Stroke};
 use render::vector::{AreaFill, PatternPaint, PatternPart, Polyline, VectorArea, VectorBlock, VectorLineKind};
+use std::borrow::Cow;
 use std::sync::Arc;
 use ttf::LayerStyle;
 
@@ -77,6 +78,8 @@ pub(super) fn items(
     items.extend(layers.into_iter().map(|(_, group)| Item::from(group)));
     if let (Some(covered), Some(picture)) = (&block.covered, picture) {
         let mut ground = RgbaImage::clone(picture);
+        // A page that is looked at soon has a coarser picture.
+        let covered = resized(covered, ground.dimensions());
         for (pixel, share) in ground.pixels_mut().zip(covered.pixels()) {
             pixel.0[3] = (u16::from(pixel.0[3]) * u16::from(share.0[0]) / 255) as u8;
         }
@@ -106,6 +109,14 @@ pub(super) fn items(
         items.push(group.into());
     }
     items
+}
+
+/// An image in another size; the same where it has that size.
+fn resized(image: &GrayImage, (width, height): (u32, u32)) -> Cow<'_, GrayImage> {
+    match image.dimensions() == (width, height) {
+        true => Cow::Borrowed(image),
+        false => Cow::Owned(imageops::resize(image, width, height, imageops::FilterType::Triangle)),
+    }
 }
 
 /// An area, within the part of its face that is seen.

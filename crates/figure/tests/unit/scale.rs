@@ -14,10 +14,10 @@ fn bars_have_round_lengths() {
 fn a_bar_is_as_long_on_paper_as_it_says() {
     let strip = Rect::sized(DVec2::ZERO, DVec2::new(400.0, STRIP_PT));
     let group = drawn(strip, Some(0.1), None, "");
-    let crate::list::Item::Path(bar) = &group.items[0] else { panic!("no bar") };
+    let page::list::Item::Path(bar) = &group.items[0] else { panic!("no bar") };
     // 120 points are 1200 m: 1 km is 100 points.
     assert!((bar.path.bounds().unwrap().width() - 100.0).abs() < 1e-9);
-    let texts: Vec<_> = group.items.iter().filter(|item| matches!(item, crate::list::Item::Text(_))).collect();
+    let texts: Vec<_> = group.items.iter().filter(|item| matches!(item, page::list::Item::Text(_))).collect();
     assert_eq!(texts.len(), 2);
     // Of 21 points, 20 are 200 ms at a tenth of a point each.
     let both = drawn(strip, Some(0.1), Some((0.1, "ms")), "vertical exaggeration 2");
@@ -25,13 +25,13 @@ fn a_bar_is_as_long_on_paper_as_it_says() {
         .items
         .iter()
         .filter_map(|item| match item {
-            crate::list::Item::Path(bar) => bar.path.bounds(),
+            page::list::Item::Path(bar) => bar.path.bounds(),
             _ => None,
         })
         .collect();
     assert!(bars.len() == 4 && (bars[2].height() - 20.0).abs() < 1e-9 && strip.contains(bars[2].max));
     let said =
-        |text: &str| both.items.iter().any(|item| matches!(item, crate::list::Item::Text(own) if own.text == text));
+        |text: &str| both.items.iter().any(|item| matches!(item, page::list::Item::Text(own) if own.text == text));
     assert!(said("200 ms") && said("1 km"));
     // Seen from straight above a block has no height.
     assert_eq!(drawn(strip, Some(0.1), Some((0.0, "m")), "").items.len(), group.items.len());

@@ -38,11 +38,6 @@ impl FigureFormat {
             _ => None,
         }
     }
-
-    /// Whether a figure in this format is made of paths.
-    pub fn has_vectors(self) -> bool {
-        matches!(self, Self::Svg | Self::Pdf)
-    }
 }
 
 /// What readers of a vector figure announce: the project's name.

@@ -75,11 +75,16 @@ impl FaceWriter<'_> {
     /// Everything that is written on faces.
     pub(crate) fn written(&self, faces: &[SeenSection], wanted: FaceLabels, room: &mut LabelRoom) -> Vec<Item> {
         let (mut written, mut beside) = (Vec::new(), Vec::new());
+        let mut faults = Vec::new();
         if wanted.faults {
-            self.faults(faces, room, &mut written, &mut beside);
+            faults = self.faults(faces, room, &mut written, &mut beside);
         }
         if wanted.layers {
             self.layers(faces, room, &mut written, &mut beside);
+        }
+        // Leaders cross no fault where they can help it.
+        for pair in faults.iter().flat_map(|line| line.windows(2)) {
+            room.take_line(pair[0], pair[1]);
         }
         for (anchors, name) in beside {
             written.extend(leader(&anchors, &name, &self.covered, room).map(Item::from));
@@ -91,7 +96,14 @@ impl FaceWriter<'_> {
         written
     }
 
-    fn faults(&self, faces: &[SeenSection], room: &mut LabelRoom, written: &mut Vec<Item>, beside: &mut Vec<Beside>) {
+    /// Writes what is said of faults, and returns their lines on the page.
+    fn faults(
+        &self,
+        faces: &[SeenSection],
+        room: &mut LabelRoom,
+        written: &mut Vec<Item>,
+        beside: &mut Vec<Beside>,
+    ) -> Vec<Vec<DVec2>> {
         let runs = faults::runs(self.model, faces, self.page_from_voxel, self.page, self.air);
         let lines: Vec<Vec<DVec2>> = runs.iter().map(faults::FaultRun::line).collect();
         let mut named = Vec::new();
@@ -110,12 +122,13 @@ impl FaceWriter<'_> {
                     room.take(&text);
                     group.push(text);
                 }
-                None => beside.push((run.anchors(), said)),
+                None => beside.push((run.anchors(&lines), said)),
             }
             if !group.items.is_empty() {
                 written.push(group.into());
             }
         }
+        lines
     }
 
     fn layers(&self, faces: &[SeenSection], room: &mut LabelRoom, written: &mut Vec<Item>, beside: &mut Vec<Beside>) {

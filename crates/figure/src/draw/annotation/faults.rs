@@ -25,6 +25,8 @@ const RIM_PT: f64 = 1.3;
 const RIM_OPACITY: f32 = 0.85;
 /// Lines that are seen shorter than this carry neither arrows nor a name, points.
 const SHORTEST_PT: f64 = 16.0;
+/// A leader ends at least so far from other faults where it can, points.
+const APART_PT: f64 = 6.0;
 /// How far beside a fault its blocks are looked up, voxels.
 const BESIDE: f64 = 0.75;
 /// Throws below this are not stated, samples.
@@ -242,9 +244,14 @@ impl FaultRun<'_> {
         self.places.iter().map(|(_, at)| *at).collect()
     }
 
-    /// Places on the page where a leader may end, the best one first.
-    pub(super) fn anchors(&self) -> Vec<DVec2> {
-        [0.93, 0.07, 0.8, 0.2, 0.65, 0.35, 0.5].map(|share| self.at(share).0).to_vec()
+    /// Places on the page where a leader may end, the best one first; those near another fault's line come last. `lines` are
+    /// all faults that are seen.
+    pub(super) fn anchors(&self, lines: &[Vec<DVec2>]) -> Vec<DVec2> {
+        let own = self.line();
+        let others = || lines.iter().filter(|line| **line != own).flatten();
+        let mut anchors = [0.93, 0.07, 0.8, 0.2, 0.65, 0.35, 0.5].map(|share| self.at(share).0).to_vec();
+        anchors.sort_by_key(|anchor| others().any(|place| place.distance(*anchor) < APART_PT));
+        anchors
     }
 }
 
