@@ -15,6 +15,7 @@ use page::list::{Across, Group, GroupKind, Ink, Path, PathItem, Segment, Stroke,
 use render::vector::SeenSection;
 use survey::SurveyGeometry;
 use ttf::Colour;
+use ttf::text::measured;
 
 /// Half the length of an arrow, its distance from the fault, and its barb along and across, points.
 const ARROW_PT: [f64; 4] = [7.0, 3.0, 3.6, 2.2];
@@ -259,8 +260,8 @@ impl FaultRun<'_> {
 pub(super) fn said(name: &str, throw: Option<Throw>, geometry: &SurveyGeometry) -> String {
     let unit = geometry.vertical.unit.symbol();
     match throw {
-        Some(throw) if throw.size >= 10.0 => format!("{name}, {:.0} {unit}", throw.size),
-        Some(throw) => format!("{name}, {:.1} {unit}", throw.size),
+        Some(throw) if throw.size >= 10.0 => measured(name, &format!("{:.0} {unit}", throw.size)),
+        Some(throw) => measured(name, &format!("{:.1} {unit}", throw.size)),
         None => name.to_owned(),
     }
 }
