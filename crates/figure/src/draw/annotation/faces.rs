@@ -29,6 +29,8 @@ const MOST_LEADERS: usize = 8;
 /// The rim of names on faces, points, and its opacity.
 const RIM_PT: f64 = 1.2;
 const RIM_OPACITY: f32 = 0.9;
+/// The rim of names that stand on a pattern hides it whole: what is left of it between letters looks like dirt.
+const ON_PATTERN_RIM_PT: f64 = 1.7;
 /// Radius of the dot at the end of a leader, points.
 const DOT_PT: f64 = 1.3;
 
@@ -141,7 +143,7 @@ impl FaceWriter<'_> {
                 style.interval_at(0.5).and_then(|interval| interval.colour).unwrap_or(style.colour)
             });
             let rim = if ground.luminance() < 0.3 { Colour::WHITE } else { ground };
-            let text = Text::new(DVec2::ZERO, name.clone()).inked(INK).haloed(RIM_PT, Ink::glass(rim, RIM_OPACITY));
+            let text = Text::new(DVec2::ZERO, name.clone()).inked(INK).haloed(ON_PATTERN_RIM_PT, rim);
             let own = || pieces.iter().filter(|piece| piece.layer == layer);
             let best = own().filter_map(|piece| piece.named(&text, room)).max_by(|a, b| a.1.total_cmp(&b.1));
             if let Some((text, _)) = best {
