@@ -113,7 +113,11 @@ pub fn contents(shown: &HorizonMap, frame: &MapFrame, room: Rect) -> Group {
         group.push(hatched.with([PathItem::stroked(path, stroke).into()]));
     }
     let room = Room { within: room, taken: Vec::new() };
-    group.push(map::drawn(&shown.contours, |place| frame.page(place), &room));
+    let [faults, contours] = map::drawn(shown, |place| frame.page(place), &room);
+    group.push(contours);
+    if !faults.items.is_empty() {
+        group.push(faults);
+    }
     group
 }
 
@@ -182,7 +186,8 @@ pub fn caption(shown: &HorizonMap, geometry: &SurveyGeometry) -> String {
     let unit = geometry.vertical.unit.symbol();
     let contours = (!shown.contours.is_empty()).then(|| format!("contours every {} {unit}", shown.interval));
     let hatching = (!shown.hatching.is_empty()).then(|| "hatched: not picked".to_owned());
-    contours.into_iter().chain(hatching).collect::<Vec<_>>().join("; ")
+    let faults = (!shown.faults.is_empty()).then(|| "heaviest lines: faults".to_owned());
+    contours.into_iter().chain(faults).chain(hatching).collect::<Vec<_>>().join("; ")
 }
 
 /// An arrow to the north, its tip below `top`.

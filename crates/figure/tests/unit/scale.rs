@@ -43,3 +43,18 @@ fn the_caption_says_what_time_was_turned_into_depth_with() {
     let scene = Scene { exaggeration: 2.5, ..Scene::default() };
     assert_eq!(block_caption(&scene, &geometry), "vertical exaggeration 2.5 at 2000 m/s");
 }
+
+#[test]
+fn a_caption_without_room_is_abbreviated_and_then_left_out() {
+    let said = |width: f64| {
+        let strip = Rect::sized(DVec2::ZERO, DVec2::new(width, STRIP_PT));
+        let group = drawn(strip, None, None, "vertical exaggeration 2.5");
+        group.items.into_iter().find_map(|item| match item {
+            page::list::Item::Text(text) => Some(text.text),
+            _ => None,
+        })
+    };
+    assert_eq!(said(200.0).as_deref(), Some("vertical exaggeration 2.5"));
+    assert_eq!(said(40.0).as_deref(), Some("V.E. 2.5"));
+    assert_eq!(said(4.0), None);
+}
