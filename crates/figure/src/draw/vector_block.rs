@@ -13,6 +13,10 @@ use ttf::LayerStyle;
 /// A line of its own colour around an area, so that no ground shows between neighbours, points.
 const BLEED_PT: f64 = 0.12;
 
+/// Contacts of very many layers are drawn finer, at most this share of what a layer has of the height on average: they would
+/// be all that is seen.
+const LAYER_SHARE: f64 = 0.25;
+
 /// What the parts of a block are called, youngest first.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct BlockNames<'a> {
@@ -87,6 +91,8 @@ pub(super) fn items(
         group.push(Picture::in_rect(ground, pane));
         items.push(group.into());
     }
+    let contacts = block.lines.iter().filter(|line| matches!(line.kind, VectorLineKind::Horizon(Some(_)))).count();
+    let widest = LAYER_SHARE * pane.height() / contacts.max(1) as f64;
     for line in &block.lines {
         let (kind, name) = match line.kind {
             VectorLineKind::Horizon(Some(index)) => {
@@ -103,7 +109,9 @@ pub(super) fn items(
             let points = if is_ring { &part[..part.len() - 1] } else { &part[..] };
             append(&mut path, points, is_ring, page);
         }
-        let stroke = Stroke::new(line.width_px * points_per_px, line.colour).round();
+        let width = line.width_px * points_per_px;
+        let width = if kind == GroupKind::Horizon { width.min(widest) } else { width };
+        let stroke = Stroke::new(width, line.colour).round();
         let mut group = Group::new(kind, name);
         group.push(PathItem::stroked(path, stroke));
         items.push(group.into());

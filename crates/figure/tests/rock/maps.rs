@@ -3,6 +3,8 @@
 use super::fold::Fold;
 use figure::map::{FaultCut, HorizonMap, MapSource, Mapped};
 use glam::{DVec2, DVec3};
+use survey::{SurveyGeometry, VerticalUnit};
+use synth::closed_form::ClosedForm;
 
 #[test]
 fn a_map_has_the_lines_at_which_a_fault_cuts_the_horizon_off() {
@@ -40,4 +42,17 @@ fn a_map_has_the_lines_at_which_a_fault_cuts_the_horizon_off() {
             !is_there(*place + 0.5 * across) && is_there(*place - 0.3 * across) && is_there(*nearest + 0.3 * across)
         );
     }
+}
+
+#[test]
+fn the_lower_line_of_a_reverse_fault_is_covered() {
+    let geometry = SurveyGeometry::regular([61, 41, 51], 12.5, 12.5, VerticalUnit::Metres);
+    let closed = ClosedForm::dome(&geometry, &[10.0, 22.0, 34.0], 30.0).with_fault(65.0, -6.0);
+    let fold = Fold::of(geometry, &closed, &["limestone", "shale", "dolostone", "limestone"]);
+    let map = HorizonMap::new(&fold.geometry, MapSource::Model(&fold.model), Mapped::Structure(1)).unwrap();
+    let long =
+        |is_covered: bool| map.faults.iter().filter(|cut| cut.line.len() > 30 && cut.is_covered == is_covered).count();
+    assert_eq!([long(false), long(true)], [1, 1]);
+    // No gap: there is a value everywhere.
+    assert!(map.image.pixels().all(|pixel| pixel.0[3] > 0));
 }
