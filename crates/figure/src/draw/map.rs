@@ -168,7 +168,10 @@ impl MapPanel<'_> {
         let column =
             Rect::sized(DVec2::new(body.max.x + 14.0, body.min.y), DVec2::new(COLUMN_PT - 14.0, body.height()));
         explained(self.map, self.geometry, column).into_iter().for_each(|part| group.push(part));
-        let strip = Rect::new(DVec2::new(room.min.x + 2.0, body.max.y + 6.0), room.max);
+        // Beside a low map the arrow reaches down to the strip.
+        let top = body.max.y + 6.0;
+        let right = if top < column.min.y + NORTH_PT + 6.0 { column.min.x - 4.0 } else { room.max.x };
+        let strip = Rect::new(DVec2::new(room.min.x + 2.0, top), DVec2::new(right, room.max.y));
         let scale = self.has_scale_bar.then(|| frame.points_per_m());
         group.push(scale::drawn(strip, scale, None, &caption(self.map, self.geometry)));
         group
