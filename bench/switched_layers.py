@@ -3,8 +3,8 @@
 
     venv/bin/python bench/switched_layers.py FILE.pdf
 
-needs qpdf (with fix-qdf), mutool, numpy and pillow. A line for each layer: its name and the pixels that changed at 100
-dots an inch.
+needs qpdf (with fix-qdf), mutool, numpy, pillow and pypdfium2. A line for each layer: its name and the pixels that changed
+at 100 dots an inch as mutool draws the page, and as PDFium does, which is what Chrome shows PDFs with.
 """
 import os
 import re
@@ -13,16 +13,19 @@ import sys
 import tempfile
 
 import numpy
+import pypdfium2
 from PIL import Image
 
 
 def drawn(folder, pdf):
+    """The page as mutool and as PDFium draw it."""
     path = os.path.join(folder, "page.pdf")
     picture = os.path.join(folder, "page.png")
     with open(path, "wb") as file:
         file.write(subprocess.run(["fix-qdf"], input=pdf, capture_output=True, check=True).stdout)
     subprocess.run(["mutool", "draw", "-q", "-r", "100", "-o", picture, path, "1"], check=True, capture_output=True)
-    return numpy.asarray(Image.open(picture).convert("RGB")).astype(int)
+    pictures = Image.open(picture), pypdfium2.PdfDocument(path)[0].render(scale=100 / 72).to_pil()
+    return [numpy.asarray(drawn.convert("RGB")).astype(int) for drawn in pictures]
 
 
 def name_of(written):
@@ -45,8 +48,9 @@ def main():
         before = drawn(folder, pdf)
         for number, name in layers:
             off = re.sub(rb"/OCProperties <<\s*/D <<", rb"\g<0>\n/OFF [ " + number + b" 0 R ]", pdf, count=1)
-            changed = (numpy.abs(drawn(folder, off) - before).max(axis=2) > 8).sum()
-            print(f"{name}: {changed}")
+            pairs = zip(drawn(folder, off), before)
+            changed = [(numpy.abs(after - before).max(axis=2) > 8).sum() for after, before in pairs]
+            print(f"{name}: {changed[0]}, {changed[1]}")
 
 
 main()

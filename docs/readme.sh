@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws README's first picture, a section of the same rock, and the block in black and white, from the project of
+# Draws README's first picture, a section of the same rock, a page of four, a map, and the block in black and white, from the project of
 # `petroglyph demo` (`make demo`), and the blocks with salt and with an overturned limb from synthetic surveys that it makes in a temporary folder:
 #   docs/readme.sh out/demo/demo.petro [FOLDER]
 set -euo pipefail
@@ -14,6 +14,10 @@ fold of sandstone, limestone and shale. Half-arrows show which side of each faul
 on the face on which they stand; where a contact is in short dashes and queried it was continued beyond the data."
 "$petroglyph" render "$project" "$folder/section-rock.png" --crossline 560 --section-blend 0 --annotate all \
     --size-cm 17x9 --dpi 150 --credit "synthetic survey"
+"$petroglyph" render "$project" "$folder/figure-four.png" --block --inline 130 --crossline 560 --slice 500 \
+    --cut nearest,0.45,0.45 --blend 0 --size-cm 17x12 --dpi 150
+"$petroglyph" render "$project" "$folder/figure-map.png" --map Bravo --annotate all --size-cm 14x12 --dpi 150 \
+    --credit "synthetic survey"
 
 "$petroglyph" render "$project" "$folder/cut-fence.png" --size 1080x720 --samples 4 --azimuth 335 --zoom 1.05 \
     --cut-fence 101,545 150,585 205,560 260,600 --cut-smooth

@@ -14,6 +14,9 @@ use render::{FaceData, Scene};
 use std::path::{Path, PathBuf};
 use survey::{Progress, VerticalUnit, memory};
 
+/// Most layers that are named where a list of them is told.
+const MOST_NAMED: usize = 12;
+
 /// Memory that is needed for each pixel: its colour as floats and as bytes, and once more in the file.
 const PIXEL_BYTES: usize = 24;
 
@@ -155,7 +158,10 @@ pub(super) fn assumptions(project: &Project, scene: &Scene) -> Vec<String> {
     let styled = |name: &String| document.style.layers.style(name).is_some();
     let by_default: Vec<String> = document.layers().into_iter().filter(|name| !styled(name)).collect();
     if !document.horizons.is_empty() && !by_default.is_empty() {
-        lines.push(format!("patterns chosen by default: {}", by_default.join(", ")));
+        let named = by_default.iter().take(MOST_NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let more = by_default.len().saturating_sub(MOST_NAMED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        lines.push(format!("patterns chosen by default: {named}{more}"));
     }
     lines
 }

@@ -164,7 +164,9 @@ fn very_many_layers_and_very_small_faces_make_valid_files() {
         fs::write(at.join("h.csv"), format!("x,y,z\n{points}")).unwrap();
         run_in(at, &format!("horizon add many.petro h.csv --name H{horizon}")).done();
     }
-    run_in(at, "render many.petro a.svg --size-cm 12x9 --dpi 60 --annotate all --device cpu").done();
+    let said = run_in(at, "render many.petro a.svg --size-cm 12x9 --dpi 60 --annotate all --device cpu").done();
+    let told = said.stdout;
+    assert!(told.contains("patterns chosen by default: above H0, ") && told.contains(" and 55 more"), "{told}");
     let svg = fs::read_to_string(at.join("a.svg")).unwrap();
     assert!(svg.contains("inkscape:label=\"below H65\"") && svg.contains(" more</text>"));
 }

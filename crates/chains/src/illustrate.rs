@@ -122,7 +122,6 @@ pub fn run(
     let drawing = FigureSettings {
         device: settings.device,
         volume_bytes: settings.volume_bytes,
-        has_vectors: format.has_vectors(),
         fonts: Vec::new(),
         picture_dpi: None,
     };

@@ -1,24 +1,14 @@
 //! Why there is no figure.
 
+use page::PageError;
 use render::RenderError;
 
 /// Why there is no figure.
 #[derive(Debug, thiserror::Error)]
 pub enum FigureError {
-    /// A page of no size, or of too many pixels.
-    #[error(
-        "a page of {:.0} x {:.0} pixels cannot be drawn: each side must have 1 to {most}; change the size or the resolution",
-        size_px[0], size_px[1]
-    )]
-    PageSize {
-        /// Its width and height, pixels.
-        size_px: [f64; 2],
-        /// Most pixels a side.
-        most: u32,
-    },
-    /// A TIFF file that its own numbers cannot address.
-    #[error("this picture is too large for a TIFF file, which holds 4 GiB; make it smaller or write a PNG")]
-    TiffSize,
+    /// The page could not be drawn or written.
+    #[error(transparent)]
+    Page(#[from] PageError),
     /// A page with no room for what is to be on it.
     #[error(
         "there is no room for {what} on a page of {:.1} x {:.1} cm; make the page larger, or leave legend and scale bar out",
@@ -109,9 +99,6 @@ pub enum FigureError {
     /// The block could not be drawn.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// A picture on the page could not be encoded.
-    #[error("a picture on the page could not be encoded")]
-    Encode(#[source] image::ImageError),
     /// A pattern could not be drawn.
     #[error(transparent)]
     Pattern(#[from] ttf::TtfError),

@@ -139,7 +139,7 @@ impl Figure {
     /// Its size in points: whole pixels at its resolution.
     pub fn size_pt(&self) -> DVec2 {
         let [width, height] = self.size_px().map(f64::from);
-        DVec2::new(width, height) * crate::list::POINTS_PER_INCH / self.dpi
+        DVec2::new(width, height) * page::list::POINTS_PER_INCH / self.dpi
     }
 }
 

@@ -2,19 +2,14 @@
 //!
 //! Type is 7 to 11 points, lines are 0.4 to 1.6 points, ink is a warm black, and what merely frames is grey.
 
+pub use page::style::{INK, LEAST_TEXT_PT, TEXT_PT};
 use ttf::Colour;
 
 /// Font size of titles, points.
 pub const TITLE_PT: f64 = 9.5;
-/// Font size of text, points.
-pub const TEXT_PT: f64 = 8.0;
 /// Font size of numbers along axes, points.
 pub const NUMBER_PT: f64 = 7.0;
-/// No text is smaller on paper, whatever the page's size, points: what has no room is shortened or left out.
-pub const LEAST_TEXT_PT: f64 = 7.0;
 
-/// Letters and the lines that belong to them.
-pub const INK: Colour = Colour::new(0x23, 0x1f, 0x1b);
 /// Numbers along axes and captions.
 pub const QUIET_INK: Colour = Colour::new(0x57, 0x51, 0x4a);
 /// Thin frames and rules between panels.

@@ -3,11 +3,11 @@
 use figure::cut::SectionSource;
 use figure::draw::NamedColour;
 use figure::draw::moved::movable;
-use figure::list::{DisplayList, Group, Item, Segment, Text};
 use figure::{Annotation, BlockPart, Figure, FigureInputs, PageSize, make};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use model::{ModelSettings, StructuralModel};
+use page::list::{DisplayList, Group, Item, Segment, Text};
 use render::{DrawnWell, Ground, Inputs, LabelChange, NamedVolume, Projection, Scene, VoxelBox, Water, pick};
 use survey::well::{Survey as Station, Top, WellPath};
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume, Well};

@@ -3,14 +3,15 @@
 use figure::cut::SectionSource;
 use figure::draw::NamedColour;
 use figure::draw::block::Comparison;
-use figure::list::{DisplayList, Text};
 use figure::{
     Annotation, BlockPart, CorrelationPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part,
-    Rect, SectionKind, SectionPart, make,
+    SectionKind, SectionPart, make,
 };
 use glam::DVec2;
 use image::RgbaImage;
 use model::{ModelSettings, StructuralModel};
+use page::Rect;
+use page::list::{DisplayList, Text};
 use render::{Corner, DrawnWell, FaceData, Ground, Inputs, NamedVolume, Projection, Scene, VoxelBox, Water};
 use survey::well::{Survey as Station, Top, WellPath};
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume, Well};

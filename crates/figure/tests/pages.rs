@@ -4,14 +4,14 @@ use figure::cut::SectionSource;
 use figure::draw::NamedColour;
 use figure::draw::block::Comparison;
 use figure::draw::moved::{LabelChange, changed, movable};
-use figure::list::{DisplayList, Text};
 use figure::{
-    BlockPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part, Rect, SectionKind, SectionPart,
-    make, raster,
+    BlockPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part, SectionKind, SectionPart, make,
 };
 use glam::DVec2;
 use image::{Rgba, RgbaImage};
 use model::{ModelSettings, StructuralModel};
+use page::list::{DisplayList, Text};
+use page::{Rect, raster};
 use render::{FaceData, Inputs, NamedVolume, Scene};
 use survey::{
     Contact, Horizon, NodeGrid, Progress, Quality, Sheet, StratigraphicHorizon, Stratigraphy, SurveyGeometry,
@@ -136,7 +136,7 @@ fn a_section_has_the_proportions_that_were_asked_for() {
         let picture = |part: SectionPart| {
             let page = made(&figure(vec![Part::Section(part)])).unwrap();
             let pictures = page.leaves().into_iter().filter_map(|item| match item {
-                figure::list::Item::Picture(picture) => Some(picture.down.y / picture.right.x),
+                page::list::Item::Picture(picture) => Some(picture.down.y / picture.right.x),
                 _ => None,
             });
             pictures.into_iter().next().unwrap()

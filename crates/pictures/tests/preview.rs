@@ -1,16 +1,16 @@
 //! A page that is looked at before it is written is the page that is written, but for the pixels of its pictures.
 
 use figure::draw::moved::{changed, movable};
-use figure::list::{DisplayList, Group, Item};
 use figure::{Annotation, BlockPart, Figure, MapPart, PageSize, Part};
 use formats::ImportOptions;
 use glam::DVec2;
 use image::RgbaImage;
+use page::list::{DisplayList, Group, Item};
 use pictures::Device;
 use pictures::figures::{FigureSettings, InterpreterView, make};
 use project::Project;
 use project::command::{AddHorizon, Age, Command};
-use render::{LabelChange, Scene, VoxelBox};
+use render::{Ground, LabelChange, Scene, VoxelBox};
 use std::path::Path;
 use std::sync::Arc;
 use survey::{Contact, Progress, SurveyGeometry, VerticalUnit};
@@ -55,7 +55,8 @@ fn the_preview_is_the_page_that_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let project = project(folder.path());
     let cut_out = VoxelBox { min: [18.0, 14.0, 0.0], max: [30.0, 25.0, 40.0] };
-    let scene = Scene { cut_outs: vec![cut_out], ..Scene::default() };
+    // Its faces are paths; its ground is a picture.
+    let scene = Scene { cut_outs: vec![cut_out], ground: Some(Ground::default()), ..Scene::default() };
     let map = MapPart { horizon: "Top".into(), thickness_to: None };
     let figure = Figure {
         size: PageSize::Cm([17.3, 8.9]),
@@ -69,13 +70,7 @@ fn the_preview_is_the_page_that_is_written() {
         ..Figure::default()
     };
     let page = |figure: &Figure, picture_dpi: Option<f64>| {
-        let settings = FigureSettings {
-            device: Device::Cpu,
-            volume_bytes: 1 << 28,
-            has_vectors: false,
-            fonts: Vec::new(),
-            picture_dpi,
-        };
+        let settings = FigureSettings { device: Device::Cpu, volume_bytes: 1 << 28, fonts: Vec::new(), picture_dpi };
         make(&project, figure, &InterpreterView::default(), &settings, &Progress::silent()).unwrap().page
     };
     let (written, seen) = (page(&figure, None), page(&figure, Some(60.0)));

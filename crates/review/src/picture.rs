@@ -1,10 +1,10 @@
 //! Pictures as files. Patterns are PNG of 256 colours, a third of what PNG of all colours takes; what has no drawn lines
 //! is JPEG; numbers that are read back are PNG of all their bits.
 
-use figure::animation::reduced;
 use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, ExtendedColorType, ImageEncoder, RgbImage, imageops};
+use page::animation::reduced;
 use project::error::ProjectError;
 use std::io;
 use std::path::Path;

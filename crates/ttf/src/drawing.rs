@@ -176,9 +176,19 @@ impl TileShape {
     pub fn bounds(&self) -> [[f64; 2]; 2] {
         bounds(&self.path)
     }
+
+    /// Its lines one by one, such as the dashes of a row; an area is whole, since it may have holes.
+    pub fn lines(&self) -> Vec<&[TileSegment]> {
+        let begins = |segment: &&TileSegment| matches!(segment, TileSegment::Move(_));
+        match self.paint {
+            TilePaint::Area { .. } => vec![&self.path[..]],
+            TilePaint::Line { .. } => self.path.chunk_by(|_, next| !begins(&next)).collect(),
+        }
+    }
 }
 
-fn bounds(path: &[TileSegment]) -> [[f64; 2]; 2] {
+/// Smallest and largest corner of a path's points, control points included.
+pub fn bounds(path: &[TileSegment]) -> [[f64; 2]; 2] {
     let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for p in path.iter().flat_map(points) {
         for axis in 0..2 {

@@ -12,7 +12,7 @@ mod line;
 mod pieces;
 
 pub use face::{Face, Faces};
-pub use line::{Glyph, Line, set};
+pub use line::{Glyph, Line, measured, set};
 pub use pieces::{Piece, pieces};
 
 pub(crate) use face::OpenFace;
@@ -94,14 +94,14 @@ pub fn draw_text(image: &mut RgbaImage, at_px: [f32; 2], size_px: f32, colour: C
     });
 }
 
-/// Whether a face of this thread has a glyph for a character; one that all lack is drawn as a box.
+/// Whether a face of this thread has a glyph for a character, or it needs none; one that all lack is drawn as a box.
 ///
 /// ```
 /// use ttf::text::is_known;
 /// assert!(is_known('ø') && is_known('Ж') && !is_known('石') && !is_known('ح'));
 /// ```
 pub fn is_known(character: char) -> bool {
-    Faces::current().holder(character).is_some()
+    line::is_invisible(character) || Faces::current().holder(character).is_some()
 }
 
 /// A piece of a glyph's contour; contours are closed and follow one another.

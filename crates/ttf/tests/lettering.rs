@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use ttf::subset::used;
-use ttf::text::{Face, Faces, Line, TextCurve, is_known, measure_text, outline_text, set};
+use ttf::text::{Face, Faces, Line, TextCurve, is_known, measure_text, measured, outline_text, set};
 
 /// "Limestone" in Arabic: two words; and with a figure.
 const ARABIC: &str = "حجر جيري";
@@ -51,6 +51,21 @@ fn a_line_of_both_directions_keeps_words_and_figures_in_order() {
         let line = set(&text);
         assert!(line.is_right_to_left);
         assert_eq!(said(&text, &line).concat(), format!("12 {arabic}"));
+    });
+}
+
+#[test]
+fn what_is_measured_stands_in_order_behind_a_name_of_any_script() {
+    faces().scope(|| {
+        let seen = |text: &str| said(text, &set(text)).concat().replace('\u{200e}', "");
+        let arabic: String = ARABIC.chars().rev().collect();
+        assert_eq!(seen(&measured(ARABIC, "97 m")), format!("97 m ,{arabic}"));
+        assert_eq!(seen(&measured(&format!("Top {ARABIC}"), "97 m")), format!("Top {arabic}, 97 m"));
+        assert_eq!(measured(HAN, "97 m"), format!("{HAN}, 97 m"));
+        // The mark takes no room and is no box.
+        assert!(is_known('\u{200e}'));
+        let [with, without] = ["a\u{200e}b", "ab"].map(|text| measure_text(10.0, text).width_px);
+        assert!((with - without).abs() < 1e-4, "{with} {without}");
     });
 }
 

@@ -9,8 +9,8 @@ use eframe::egui::{
     epaint::{TextShape, Vertex},
     pos2, vec2,
 };
-use figure::list::{Across, Cap, Group, Ink, Item, Path, PathItem, Picture, Segment, Stroke, Text, Upright};
 use glam::DVec2;
+use page::list::{Across, Cap, Group, Ink, Item, Path, PathItem, Picture, Segment, Stroke, Text, Upright};
 use std::f32::consts::PI;
 use ttf::Colour;
 
@@ -35,8 +35,8 @@ pub fn screen(at: DVec2) -> Pos2 {
 }
 
 /// Converts a rectangle of the screen to one of the page.
-pub fn page_rect(rect: Rect) -> figure::Rect {
-    figure::Rect::new(page(rect.min), page(rect.max))
+pub fn page_rect(rect: Rect) -> page::Rect {
+    page::Rect::new(page(rect.min), page(rect.max))
 }
 
 /// Paints a group; `texture` stands for its images.
@@ -52,7 +52,6 @@ pub fn paint(painter: &Painter, group: &Group, texture: Option<TextureId>) {
             Item::Path(path) => paint_path(painter, path),
             Item::Text(text) => text.straight().iter().for_each(|line| paint_text(painter, line)),
             Item::Picture(picture) => paint_picture(painter, picture, texture),
-            _ => {}
         }
     }
 }
@@ -186,7 +185,7 @@ fn paint_picture(painter: &Painter, picture: &Picture, texture: Option<TextureId
 #[cfg(test)]
 mod tests {
     use super::*;
-    use figure::list::GroupKind;
+    use page::list::GroupKind;
 
     #[test]
     fn places_go_to_the_page_and_back() {

@@ -7,10 +7,10 @@ use eframe::egui::{
     Color32, ColorImage, CursorIcon, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind,
     TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo,
 };
-use figure::DisplayList;
 use figure::draw::moved::{LabelChange, Movable, changed, movable};
-use figure::list::POINTS_PER_MM;
 use glam::DVec2;
+use page::DisplayList;
+use page::list::POINTS_PER_MM;
 use std::sync::Arc;
 use ttf::Preset;
 
@@ -47,7 +47,7 @@ impl PagePreview {
         let (page, preset) = self.page.as_ref()?;
         if self.drawn.as_ref().is_none_or(|(known, ..)| known != changes) {
             let list = changed(page, changes, *preset);
-            let image = figure::raster(&list, PREVIEW_DPI).ok()?;
+            let image = page::raster(&list, PREVIEW_DPI).ok()?;
             let pixels = ColorImage::from_rgba_unmultiplied([image.width() as usize, image.height() as usize], &image);
             let texture = ui.ctx().load_texture("page", pixels, TextureOptions::LINEAR);
             self.drawn = Some((changes.to_vec(), texture, movable(&list)));

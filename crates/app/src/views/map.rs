@@ -155,10 +155,10 @@ impl MapView {
         let explained = drawing::explained(shown, geometry, canvas::page_rect(column));
         explained.iter().for_each(|group| canvas::paint(&painter, group, None));
         let below = rect.right_bottom() - vec2(10.0, 8.0);
-        let text = figure::list::Text::new(canvas::page(below), drawing::caption(shown, geometry));
+        let text = page::list::Text::new(canvas::page(below), drawing::caption(shown, geometry));
         let text = text.sized(figure::style::NUMBER_PT).haloed(1.0, ttf::Colour::WHITE);
-        let text = text.anchored(figure::list::Across::End, figure::list::Upright::Baseline);
-        let caption = figure::list::Group::new(figure::list::GroupKind::Annotation, "caption").with([text.into()]);
+        let text = text.anchored(page::list::Across::End, page::list::Upright::Baseline);
+        let caption = page::list::Group::new(page::list::GroupKind::Annotation, "caption").with([text.into()]);
         canvas::paint(&painter, &caption, None);
     }
 }

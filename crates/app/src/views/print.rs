@@ -8,12 +8,12 @@ use super::sections::Sections;
 use crate::state::picking::place_of;
 use crate::state::{Compare, ExportForm, Layout, Panel, SectionFill, SectionKind, Session, Shown, State, showing};
 use crate::work::compute;
-use figure::DisplayList;
 use figure::cut::value_at;
 use figure::draw::block::Comparison;
 use figure::map::Mapped;
 use figure::{BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionPart};
 use glam::DVec3;
+use page::DisplayList;
 use pictures::Device;
 use pictures::figures::{self, FigureFormat, FigureSettings, InterpreterView};
 use project::{Project, ProjectError, memory_budget};
@@ -88,13 +88,8 @@ impl Page {
             }
         }
         let volume_bytes = memory_budget::half_of_available();
-        let settings = FigureSettings {
-            device: Device::Auto,
-            volume_bytes,
-            has_vectors: false,
-            fonts: Vec::new(),
-            picture_dpi: Some(PREVIEW_DPI),
-        };
+        let settings =
+            FigureSettings { device: Device::Auto, volume_bytes, fonts: Vec::new(), picture_dpi: Some(PREVIEW_DPI) };
         let made = compute(|| figures::make(&project, &figure, &self.view, &settings, progress))?;
         Ok((made.page, figure.printed_in()))
     }
@@ -110,7 +105,6 @@ impl Page {
         let settings = FigureSettings {
             device: Device::Auto,
             volume_bytes: memory_budget::half_of_available(),
-            has_vectors: format.has_vectors(),
             fonts: Vec::new(),
             picture_dpi: None,
         };

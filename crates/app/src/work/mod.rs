@@ -33,10 +33,10 @@ pub use slice::{CutOf, SliceRequest, Slices};
 pub use swatches::Swatches;
 
 use super::state::{Notice, PickingStep, Place, Snapshot, Task};
-use figure::DisplayList;
 use figure::cut::{FenceCut, SectionCut};
 use figure::map::HorizonMap;
 use image::RgbaImage;
+use page::DisplayList;
 use project::command::PickNode;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};

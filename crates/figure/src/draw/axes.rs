@@ -1,10 +1,10 @@
 //! Numbers along the upper and the left edge of a section: round values, none over another, none beyond the
 //! room.
 
-use crate::Rect;
-use crate::list::{Across, Group, GroupKind, Path, PathItem, Stroke, Text, Upright, width_of};
 use crate::style::{FRAME_PT, NUMBER_PT, QUIET_INK, RULE_INK, TICK_PT};
 use glam::DVec2;
+use page::Rect;
+use page::list::{Across, Group, GroupKind, Path, PathItem, Stroke, Text, Upright, width_of};
 
 /// Least distance between numbers along the upper and the left edge, points.
 const EVERY_PT: [f64; 2] = [44.0, 26.0];

@@ -1,10 +1,10 @@
 //! The bar that says which value a colour of measured data stands for.
 
-use crate::Rect;
-use crate::list::{Across, Group, GroupKind, Path, PathItem, Picture, Stroke, Text, Upright, width_of};
 use crate::style::{INK, NUMBER_PT, QUIET_INK, TEXT_PT};
 use glam::DVec2;
 use image::{Rgba, RgbaImage};
+use page::Rect;
+use page::list::{Across, Group, GroupKind, Path, PathItem, Picture, Stroke, Text, Upright, width_of};
 use ttf::RawColour;
 
 /// Height of the strip that holds a bar, points.
@@ -75,7 +75,7 @@ fn number(value: f32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::list::Item;
+    use page::list::Item;
     use ttf::{ColourMap, RgbaFunction};
 
     #[test]

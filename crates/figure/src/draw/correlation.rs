@@ -5,14 +5,14 @@
 
 use super::axes::{self, Axis};
 use super::{NamedColour, swatch};
-use crate::Rect;
 use crate::correlation::{Column, LogCurve, Marker, place_of_layer, place_of_surface};
 use crate::error::FigureError;
-use crate::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright};
 use crate::style::{
     FRAME_PT, HORIZON_PT, INK, NUMBER_PT, QUIET_INK, RIM_OPACITY, RULE_INK, TEXT_PT, TITLE_PT, horizon_colour,
 };
 use glam::DVec2;
+use page::Rect;
+use page::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright};
 use ttf::{Colour, LayerStyle, TextureLibrary};
 
 /// Least and largest width of a column of layers, and of a curve beside it, points.

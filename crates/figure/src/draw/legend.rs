@@ -1,11 +1,11 @@
 //! The legend: layers with their patterns, or horizons with their colours, youngest on top.
 
 use super::{NamedColour, swatch};
-use crate::Rect;
 use crate::error::FigureError;
-use crate::list::{Across, Group, GroupKind, Path, PathItem, Stroke, Text, Upright, width_of};
 use crate::style::{FRAME_PT, HORIZON_PT, INK, LEAST_TEXT_PT, TEXT_PT};
 use glam::DVec2;
+use page::Rect;
+use page::list::{Across, Group, GroupKind, Path, PathItem, Stroke, Text, Upright, width_of};
 use ttf::{LayerStyle, TextureLibrary};
 
 /// Width and height of a swatch, points.

@@ -2,12 +2,12 @@
 //! colour bar, a north arrow.
 
 use super::scale;
-use crate::Rect;
-use crate::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Stroke, Text, Upright};
 use crate::map::{self, HorizonMap, Mapped, Room};
 use crate::style::{ACCENT, FRAME_PT, INK, NUMBER_PT, QUIET_INK, RULE_INK, TEXT_PT, TITLE_PT};
 use glam::DVec2;
 use image::{Rgba, RgbaImage};
+use page::Rect;
+use page::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Stroke, Text, Upright};
 use survey::{SurveyGeometry, VerticalUnit};
 use ttf::{Colour, ColourMap, RgbaFunction};
 
@@ -54,7 +54,8 @@ impl MapFrame {
     /// The place of voxel x, y on the page.
     ///
     /// ```
-    /// use figure::{Rect, draw::map::MapFrame};
+    /// use figure::draw::map::MapFrame;
+    /// use page::Rect;
     /// use glam::DVec2;
     /// use survey::{SurveyGeometry, VerticalUnit};
     ///
@@ -112,7 +113,11 @@ pub fn contents(shown: &HorizonMap, frame: &MapFrame, room: Rect) -> Group {
         group.push(hatched.with([PathItem::stroked(path, stroke).into()]));
     }
     let room = Room { within: room, taken: Vec::new() };
-    group.push(map::drawn(&shown.contours, |place| frame.page(place), &room));
+    let [faults, contours] = map::drawn(shown, |place| frame.page(place), &room);
+    group.push(contours);
+    if !faults.items.is_empty() {
+        group.push(faults);
+    }
     group
 }
 
@@ -163,7 +168,10 @@ impl MapPanel<'_> {
         let column =
             Rect::sized(DVec2::new(body.max.x + 14.0, body.min.y), DVec2::new(COLUMN_PT - 14.0, body.height()));
         explained(self.map, self.geometry, column).into_iter().for_each(|part| group.push(part));
-        let strip = Rect::new(DVec2::new(room.min.x + 2.0, body.max.y + 6.0), room.max);
+        // Beside a low map the arrow reaches down to the strip.
+        let top = body.max.y + 6.0;
+        let right = if top < column.min.y + NORTH_PT + 6.0 { column.min.x - 4.0 } else { room.max.x };
+        let strip = Rect::new(DVec2::new(room.min.x + 2.0, top), DVec2::new(right, room.max.y));
         let scale = self.has_scale_bar.then(|| frame.points_per_m());
         group.push(scale::drawn(strip, scale, None, &caption(self.map, self.geometry)));
         group
@@ -182,7 +190,8 @@ pub fn caption(shown: &HorizonMap, geometry: &SurveyGeometry) -> String {
     let contours = (!shown.contours.is_empty()).then(|| format!("contours every {} {unit}", shown.interval));
     let hatching =
         (!shown.hatching.is_empty()).then(|| format!("hatched: not picked ({:.0} %)", 100.0 * shown.unpicked));
-    contours.into_iter().chain(hatching).collect::<Vec<_>>().join("; ")
+    let faults = (!shown.faults.is_empty()).then(|| "heaviest lines: faults".to_owned());
+    contours.into_iter().chain(faults).chain(hatching).collect::<Vec<_>>().join("; ")
 }
 
 /// An arrow to the north, its tip below `top`.

@@ -3,9 +3,9 @@
 //! A change is made to the finished page, so whoever drags a label sees at once what will be printed. What marks a place
 //! stays where it is: the sign of a well, the half-arrows of a fault, the foot of a leader.
 
-use crate::Rect;
-use crate::list::{DisplayList, Group, GroupKind, Item, POINTS_PER_MM, Path, Segment, Text};
 use glam::DVec2;
+use page::Rect;
+use page::list::{DisplayList, Group, GroupKind, Item, POINTS_PER_MM, Path, Segment, Text};
 pub use render::LabelChange;
 use ttf::Preset;
 

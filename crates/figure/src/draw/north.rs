@@ -1,9 +1,9 @@
 //! The north arrow of a block: a needle that lies flat in the block's middle and is drawn as the block is.
 
-use crate::Rect;
-use crate::list::{Across, Group, GroupKind, Path, PathItem, Stroke, Text, Upright};
 use crate::style::{INK, TEXT_PT};
 use glam::{DVec2, DVec3};
+use page::Rect;
+use page::list::{Across, Group, GroupKind, Path, PathItem, Stroke, Text, Upright};
 use render::View;
 use survey::SurveyGeometry;
 use ttf::Colour;
@@ -56,7 +56,7 @@ pub fn drawn(room: Rect, [east, north]: [DVec2; 2]) -> Group {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::list::Item;
+    use page::list::Item;
     use render::{Projection, Scene};
     use survey::VerticalUnit;
 

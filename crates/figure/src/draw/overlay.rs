@@ -7,9 +7,9 @@
 use crate::cut::traces::{self, Line};
 use crate::cut::{SectionKind, station_of};
 use crate::interpretation::{DrawnInterpretation, PickedSheets, SheetHole, TraceSheet};
-use crate::list::{Group, GroupKind, Ink, Path, PathItem, Stroke};
 use crate::style::{FAULT_PT, HORIZON_PT, PROPOSAL, RIM_OPACITY, RIM_PT};
 use glam::{DVec2, DVec3};
+use page::list::{Group, GroupKind, Ink, Path, PathItem, Stroke};
 use survey::Quality;
 use ttf::Colour;
 
@@ -230,8 +230,8 @@ impl OverlayLines {
     }
 }
 
-fn is_empty(item: &crate::list::Item) -> bool {
-    matches!(item, crate::list::Item::Path(path) if path.path.segments.is_empty())
+fn is_empty(item: &page::list::Item) -> bool {
+    matches!(item, page::list::Item::Path(path) if path.path.segments.is_empty())
 }
 
 /// The sticks that lie near a section or a fence.

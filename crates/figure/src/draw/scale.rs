@@ -1,9 +1,9 @@
 //! Scale bars, and what a reader must know to read lengths.
 
-use crate::list::{Across, Group, GroupKind, Path, PathItem, Text, Upright, width_of};
-use crate::style::{INK, NUMBER_PT, QUIET_INK, TEXT_PT};
-use crate::{Rect, list::Stroke};
+use crate::style::{INK, LEAST_TEXT_PT, NUMBER_PT, QUIET_INK, TEXT_PT};
 use glam::DVec2;
+use page::list::{Across, Group, GroupKind, Path, PathItem, Text, Upright, width_of};
+use page::{Rect, list::Stroke};
 use render::{Projection, Scene};
 use survey::{SurveyGeometry, VerticalUnit};
 
@@ -13,6 +13,9 @@ pub const STRIP_PT: f64 = 24.0;
 const SHARE: f64 = 0.3;
 /// Height of a bar, points.
 const BAR_PT: f64 = 2.2;
+
+/// What exaggeration is called, and in little room.
+const EXAGGERATION: [&str; 2] = ["vertical exaggeration", "V.E."];
 
 /// The largest of 1, 2, 5 × 10ⁿ that is not larger.
 pub fn round_length(longest: f64) -> f64 {
@@ -61,8 +64,14 @@ pub fn drawn(strip: Rect, points_per_m: Option<f64>, down: Option<(f64, &str)>, 
         group.push(text);
     }
     if !caption.is_empty() {
-        let text = Text::new(DVec2::new(left, y), caption).sized(TEXT_PT - 0.5).inked(QUIET_INK);
-        group.push(text.anchored(Across::Start, Upright::Middle).fitted(strip.max.x - left));
+        let room = strip.max.x - left;
+        let is_long = width_of(caption, LEAST_TEXT_PT) > room;
+        let words = if is_long { caption.replacen(EXAGGERATION[0], EXAGGERATION[1], 1) } else { caption.to_owned() };
+        let text = Text::new(DVec2::new(left, y), words).sized(TEXT_PT - 0.5).inked(QUIET_INK);
+        let text = text.anchored(Across::Start, Upright::Middle).fitted(room);
+        if !text.text.is_empty() {
+            group.push(text);
+        }
     }
     group
 }
@@ -81,7 +90,7 @@ fn upright(at: DVec2, strip: Rect, (points, symbol): (f64, &str)) -> Option<(Rec
 /// "vertical exaggeration 2.5 at 2000 m/s": the velocity where time stands for depth.
 pub fn exaggeration(factor: f64, geometry: &SurveyGeometry) -> String {
     let rounded = (factor * 100.0).round() / 100.0;
-    let mut text = format!("vertical exaggeration {rounded}");
+    let mut text = format!("{} {rounded}", EXAGGERATION[0]);
     if geometry.vertical.unit == VerticalUnit::Milliseconds {
         text += &format!(" at {} m/s", geometry.velocity_m_s);
     }

@@ -8,15 +8,15 @@ use super::axes::{self, Axis};
 use super::overlay::{self, OverlayLines, SeenOn};
 use super::section_wells::WellOnSection;
 use super::{NamedColour, scale};
-use crate::Rect;
 use crate::cut::CutLine;
 use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
-use crate::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Stroke, Text, Upright};
 use crate::style::{ACCENT, FAULT_PT, HORIZON_PT, INK, NUMBER_PT, QUIET_INK, RIM_OPACITY, RIM_PT, TITLE_PT};
 use glam::DVec2;
 use image::RgbaImage;
 use model::section::{LineKind, LineQuality};
+use page::Rect;
+use page::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Stroke, Text, Upright};
 use std::sync::Arc;
 use ttf::Colour;
 

@@ -2,11 +2,11 @@
 //! pass through it.
 
 use super::annotation::room::LabelRoom;
-use crate::Rect;
 use crate::cut::{SectionKind, station_of};
-use crate::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright};
 use crate::style::{HORIZON_PT, INK, NUMBER_PT, RIM_OPACITY, RIM_PT, TEXT_PT};
 use glam::{DVec2, DVec3};
+use page::Rect;
+use page::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright};
 use survey::{SurveyGeometry, Well};
 use ttf::Colour;
 

@@ -1,13 +1,22 @@
 //! A piece of a layer as it is drawn: colour and pattern, for legends and wells ([`shown`]) and lists ([`draw`]).
 
-use crate::Rect;
-use crate::list::{
-    Cap, Group, GroupKind, Ink, Item, POINTS_PER_INCH, POINTS_PER_MM, Path, PathItem, Picture, Rule, Segment, Stroke,
-};
 use glam::DVec2;
 use image::{Rgba, RgbaImage};
-use ttf::drawing::{TileDrawing, TilePaint, TileSegment, TileShape};
+use page::list::{
+    Cap, Group, GroupKind, Ink, Item, POINTS_PER_INCH, POINTS_PER_MM, Path, PathItem, Picture, Rule, Segment, Stroke,
+};
+use page::{DisplayList, Rect};
+use ttf::drawing::{TileDrawing, TilePaint, TileSegment, TileShape, bounds};
 use ttf::{Colour, LayerStyle, TextureLibrary};
+
+/// Where a swatch's sides show what they cut, from and to this far within them, points; the frame lies over what is nearer.
+const EDGE_PT: [f64; 2] = [0.25, 1.75];
+/// Dashes and dots of which less than this share would be seen are left out, unless they are longer than the second share of a
+/// tile: a line goes on in the next tile.
+const LEAST_SHOWN: f64 = 0.4;
+const LONG: f64 = 0.5;
+/// Pixels a point at which that is looked at.
+const EDGE_PX_PER_PT: f64 = 4.0;
 
 /// Tiles that are printed smaller than this have no lines of their own, points.
 const LEAST_TILE_PT: f64 = 2.0;
@@ -18,6 +27,18 @@ const LEAST_TILE_PT: f64 = 2.0;
 /// # Errors
 /// A pattern that the library does not have, or a drawing that cannot be read.
 pub fn items(style: &LayerStyle, library: &TextureLibrary, rect: Rect) -> Result<Option<Vec<Item>>, ttf::TtfError> {
+    tiled_from(style, library, rect, 0.0, |_, _, _| DVec2::new(rect.min.x, rect.max.y))
+}
+
+/// The same with the corner of a tile where `origin` says for a tile's drawing, its size and the band that it fills, and
+/// without what is cut off to less than a share of it.
+fn tiled_from(
+    style: &LayerStyle,
+    library: &TextureLibrary,
+    rect: Rect,
+    least_shown: f64,
+    origin: impl Fn(&TileDrawing, DVec2, Rect) -> DVec2,
+) -> Result<Option<Vec<Item>>, ttf::TtfError> {
     let mut items: Vec<Item> = vec![PathItem::filled(Path::rect(rect), style.colour).into()];
     for interval in &style.intervals {
         let index = library.index_of(&interval.texture, &format!("layer `{}`", style.layer))?;
@@ -27,20 +48,23 @@ pub fn items(style: &LayerStyle, library: &TextureLibrary, rect: Rect) -> Result
         let [low, high] = interval.k.map(|k| rect.max.y - f64::from(k) * rect.height());
         let band = Rect::new(DVec2::new(rect.min.x, high), DVec2::new(rect.max.x, low));
         let ground = interval.colour.map(|colour| PathItem::filled(Path::rect(band), colour).into());
-        let origin = DVec2::new(rect.min.x, rect.max.y);
-        let pattern = tiled(&drawing, DVec2::from_array(tile_pt), origin, band, style.ink, interval.opacity);
+        let tile_pt = DVec2::from_array(tile_pt);
+        let origin = origin(&drawing, tile_pt, band);
+        let tiles = Tiles { drawing: &drawing, tile_pt, origin, least_shown };
+        let pattern = tiles.over(band, style.ink, interval.opacity);
         let group = Group::new(GroupKind::Part, "pattern").clipped(Path::rect(band));
         items.push(group.with(ground.into_iter().chain(pattern)).into());
     }
     Ok(Some(items))
 }
 
-/// A layer's style over a rectangle, as paths where its patterns have drawings and as an image at `dpi` where not.
+/// A layer's style over a rectangle, as paths where its patterns have drawings and as an image at `dpi` where not. Paths
+/// lie so that the rectangle's sides cut off as little as can be.
 ///
 /// # Errors
 /// A pattern that does not draw.
 pub fn shown(style: &LayerStyle, library: &TextureLibrary, rect: Rect, dpi: f64) -> Result<Vec<Item>, ttf::TtfError> {
-    if let Some(items) = items(style, library, rect)? {
+    if let Some(items) = tiled_from(style, library, rect, LEAST_SHOWN, least_cut)? {
         return Ok(items);
     }
     let px_per_pt = dpi / POINTS_PER_INCH;
@@ -49,35 +73,54 @@ pub fn shown(style: &LayerStyle, library: &TextureLibrary, rect: Rect, dpi: f64)
     Ok(vec![Picture::in_rect(drawn, rect).into()])
 }
 
-/// A tile over a band, repeated from an origin to the right and upwards: an item for each of its shapes.
-fn tiled(
-    drawing: &TileDrawing,
+/// A tile repeated from an origin to the right and upwards.
+struct Tiles<'a> {
+    drawing: &'a TileDrawing,
     tile_pt: DVec2,
     origin: DVec2,
-    band: Rect,
-    ink: Option<Colour>,
-    opacity: f32,
-) -> Vec<Item> {
-    let item = |shape: &TileShape| {
-        let place = |[u, v]: [f64; 2]| origin + DVec2::new(u, -v) * tile_pt;
+    /// Dashes and dots are left out of which less than this share would be seen.
+    least_shown: f64,
+}
+
+impl Tiles<'_> {
+    /// What lies over a band: an item for each shape of the tile.
+    fn over(&self, band: Rect, ink: Option<Colour>, opacity: f32) -> Vec<Item> {
+        self.drawing.shapes.iter().map(|shape| self.copies(shape, band, ink, opacity)).collect()
+    }
+
+    fn copies(&self, shape: &TileShape, band: Rect, ink: Option<Colour>, opacity: f32) -> Item {
+        let place = |[u, v]: [f64; 2]| self.origin + DVec2::new(u, -v) * self.tile_pt;
         let reach = match &shape.paint {
             TilePaint::Line { width, .. } => 0.5 * width,
             TilePaint::Area { .. } => 0.0,
         };
-        // Copies that touch the band, from tile to tile.
-        let [low, high] = shape.bounds().map(DVec2::from_array);
-        let first = DVec2::new(band.min.x - origin.x, origin.y - band.max.y) / tile_pt - high - reach;
-        let last = DVec2::new(band.max.x - origin.x, origin.y - band.min.y) / tile_pt - low + reach;
+        // In tiles, from the left and upwards.
+        let within = [
+            DVec2::new(band.min.x - self.origin.x, self.origin.y - band.max.y) / self.tile_pt,
+            DVec2::new(band.max.x - self.origin.x, self.origin.y - band.min.y) / self.tile_pt,
+        ];
         let mut path = Path::default();
-        for n in first.y.ceil() as i64..=last.y.floor() as i64 {
-            for m in first.x.ceil() as i64..=last.x.floor() as i64 {
-                let at = |[u, v]: [f64; 2]| place([u + m as f64, v + n as f64]);
-                path.segments.extend(shape.path.iter().map(|segment| match *segment {
-                    TileSegment::Move(p) => Segment::Move(at(p)),
-                    TileSegment::Line(p) => Segment::Line(at(p)),
-                    TileSegment::Cubic(a, b, p) => Segment::Cubic(at(a), at(b), at(p)),
-                    TileSegment::Close => Segment::Close,
-                }));
+        for line in shape.lines() {
+            let [low, high] = bounds(line).map(DVec2::from_array);
+            let (low, high) = (low - reach, high + reach);
+            // Copies that touch the band, from tile to tile.
+            let (first, last) = (within[0] - high, within[1] - low);
+            for n in first.y.ceil() as i64..=last.y.floor() as i64 {
+                for m in first.x.ceil() as i64..=last.x.floor() as i64 {
+                    let by = DVec2::new(m as f64, n as f64);
+                    let seen = ((high + by).min(within[1]) - (low + by).max(within[0])) / (high - low);
+                    let is_cut = seen.cmplt(DVec2::splat(self.least_shown)) & (high - low).cmplt(DVec2::splat(LONG));
+                    if is_cut.any() {
+                        continue;
+                    }
+                    let at = |p: [f64; 2]| place((DVec2::from_array(p) + by).to_array());
+                    path.segments.extend(line.iter().map(|segment| match *segment {
+                        TileSegment::Move(p) => Segment::Move(at(p)),
+                        TileSegment::Line(p) => Segment::Line(at(p)),
+                        TileSegment::Cubic(a, b, p) => Segment::Cubic(at(a), at(b), at(p)),
+                        TileSegment::Close => Segment::Close,
+                    }));
+                }
             }
         }
         let colour = ink.unwrap_or_else(|| Colour::from_unit(shape.colour));
@@ -88,14 +131,43 @@ fn tiled(
                 PathItem { rule, ..PathItem::filled(path, ink) }
             }
             TilePaint::Line { width, dashes, round } => {
-                let dashes = dashes.iter().map(|dash| dash * tile_pt.x).collect();
+                let dashes = dashes.iter().map(|dash| dash * self.tile_pt.x).collect();
                 let cap = if *round { Cap::Round } else { Cap::Butt };
-                PathItem::stroked(path, Stroke { dashes, cap, ..Stroke::new(width * tile_pt.x, ink) })
+                PathItem::stroked(path, Stroke { dashes, cap, ..Stroke::new(width * self.tile_pt.x, ink) })
             }
         };
         Item::from(drawn)
+    }
+}
+
+/// Where the corner of a tile lies so that the least ink is just within a band's sides: dashes that are cut there look like
+/// specks, and lines along them like a heavier frame. All places of the tile are tried, in steps of half a point.
+fn least_cut(drawing: &TileDrawing, tile_pt: DVec2, band: Rect) -> DVec2 {
+    let corner = DVec2::new(band.min.x, band.max.y);
+    let tile = Rect::sized(DVec2::ZERO, tile_pt);
+    let mut page = DisplayList::new(tile.size());
+    let tiles = Tiles { drawing, tile_pt, origin: DVec2::new(0.0, tile_pt.y), least_shown: 0.0 };
+    page.items = tiles.over(tile, Some(Colour::BLACK), 1.0);
+    let Ok(inked) = page::raster(&page, EDGE_PX_PER_PT * POINTS_PER_INCH) else { return corner };
+    let (width, height) = (inked.width() as i64, inked.height() as i64);
+    let px = |pt: f64| (pt * EDGE_PX_PER_PT).round() as i64;
+    let (columns, rows) = (px(band.width()), px(band.height()));
+    let edge = px(EDGE_PT[0])..px(EDGE_PT[1]);
+    // Pixels just within the four sides, right and down of the band's upper left corner.
+    let along_rows = edge.clone().flat_map(|n| (0..columns).flat_map(move |x| [(x, n), (x, rows - 1 - n)]));
+    let along_columns = edge.flat_map(|n| (0..rows).flat_map(move |y| [(n, y), (columns - 1 - n, y)]));
+    let sides: Vec<(i64, i64)> = along_rows.chain(along_columns).collect();
+    let ink = |(right, down): (i64, i64)| -> u64 {
+        let dark = |(x, y): &(i64, i64)| {
+            let [x, y] = [(x - right).rem_euclid(width), (y - (rows - height) - down).rem_euclid(height)];
+            255 - u64::from(inked.get_pixel(x as u32, y as u32).0[0])
+        };
+        sides.iter().map(dark).sum()
     };
-    drawing.shapes.iter().map(item).collect()
+    let step = px(0.5).max(1) as usize;
+    let places = (0..height).step_by(step).flat_map(|down| (0..width).step_by(step).map(move |right| (right, down)));
+    let (right, down) = places.min_by_key(|place| ink(*place)).unwrap_or_default();
+    corner + DVec2::new(right as f64, down as f64) / EDGE_PX_PER_PT
 }
 
 /// Samples a pixel along each axis.
@@ -155,7 +227,6 @@ pub fn draw(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::DisplayList;
 
     /// The same swatch as paths and as texels, in a lattice of blocks of pixels.
     #[test]
@@ -167,7 +238,7 @@ mod tests {
             style.intervals[0].k = [0.25, 1.0];
             let mut page = DisplayList::new(rect.size());
             page.items = items(&style, &library, rect).unwrap().expect("a pattern with a drawing");
-            let paths = crate::raster(&page, 288.0).unwrap();
+            let paths = page::raster(&page, 288.0).unwrap();
             let texels = draw(&style, &library, [240, 144], (4.0 * POINTS_PER_MM) as f32).unwrap();
             let mean = |image: &RgbaImage, left: u32, top: u32| {
                 let pixels = (0..144).map(|n| f32::from(image.get_pixel(left + n % 12, top + n / 12).0[0]));
@@ -181,6 +252,35 @@ mod tests {
             let mean_off = off.iter().sum::<f32>() / off.len() as f32;
             assert!(mean_off < 3.0, "{}: {mean_off} grey levels apart", pattern.name);
         }
+    }
+
+    /// Dashes, dots and beds end within a legend's swatch or go through its frame; no scraps of them lie along it.
+    #[test]
+    fn sides_of_a_swatch_cut_off_little() {
+        let library = TextureLibrary::builtin().unwrap();
+        let rect = Rect::sized(DVec2::ZERO, DVec2::new(30.0, 17.0));
+        let ink = |items: Vec<Item>| {
+            let mut page = DisplayList::new(rect.size());
+            page.items = items;
+            let drawn = page::raster(&page, 288.0).unwrap();
+            let rows = (1..7).chain(61..67).flat_map(|y| (0..120).map(move |x| (x, y)));
+            rows.map(|(x, y)| 255.0 - f64::from(drawn.get_pixel(x, y).0[0])).sum::<f64>() / 255.0
+        };
+        let black_on_white =
+            |name: &str| LayerStyle { ink: Some(Colour::BLACK), ..LayerStyle::textured("a", Colour::WHITE, name) };
+        let (mut before, mut after) = (0.0, 0.0);
+        for name in ["shale", "marl", "limestone", "sandstone-bedded", "siltstone", "shale-sandy"] {
+            let style = black_on_white(name);
+            let [from_corner, placed] = [
+                ink(items(&style, &library, rect).unwrap().unwrap()),
+                ink(shown(&style, &library, rect, 288.0).unwrap()),
+            ];
+            assert!(placed <= from_corner + 12.0, "{name}: {placed} of {from_corner} pixels of ink");
+            (before, after) = (before + from_corner, after + placed);
+        }
+        assert!(after < 0.5 * before, "{after} of {before}");
+        // The tile's height leaves no row of beds without ink, but dashes lie clear of the upper and the lower side.
+        assert!(ink(shown(&black_on_white("marl"), &library, rect, 288.0).unwrap()) < 100.0);
     }
 
     #[test]

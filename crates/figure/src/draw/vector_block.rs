@@ -1,16 +1,21 @@
 //! The paths of a block on a page: a group for each layer, horizon and fault.
 
 use super::NamedColour;
-use crate::Rect;
-use crate::list::{Cap, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Rule, Segment, Stroke};
 use glam::DVec2;
-use image::RgbaImage;
+use image::{GrayImage, RgbaImage, imageops};
+use page::Rect;
+use page::list::{Cap, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Rule, Segment, Stroke};
 use render::vector::{AreaFill, PatternPaint, PatternPart, Polyline, VectorArea, VectorBlock, VectorLineKind};
+use std::borrow::Cow;
 use std::sync::Arc;
 use ttf::LayerStyle;
 
 /// A line of its own colour around an area, so that no ground shows between neighbours, points.
 const BLEED_PT: f64 = 0.12;
+
+/// Contacts of very many layers are drawn finer, at most this share of what a layer has of the height on average: they would
+/// be all that is seen.
+const LAYER_SHARE: f64 = 0.25;
 
 /// What the parts of a block are called, youngest first.
 #[derive(Debug, Clone, Copy, Default)]
@@ -77,6 +82,8 @@ pub(super) fn items(
     items.extend(layers.into_iter().map(|(_, group)| Item::from(group)));
     if let (Some(covered), Some(picture)) = (&block.covered, picture) {
         let mut ground = RgbaImage::clone(picture);
+        // A page that is looked at soon has a coarser picture.
+        let covered = resized(covered, ground.dimensions());
         for (pixel, share) in ground.pixels_mut().zip(covered.pixels()) {
             pixel.0[3] = (u16::from(pixel.0[3]) * u16::from(share.0[0]) / 255) as u8;
         }
@@ -84,6 +91,8 @@ pub(super) fn items(
         group.push(Picture::in_rect(ground, pane));
         items.push(group.into());
     }
+    let contacts = block.lines.iter().filter(|line| matches!(line.kind, VectorLineKind::Horizon(Some(_)))).count();
+    let widest = LAYER_SHARE * pane.height() / contacts.max(1) as f64;
     for line in &block.lines {
         let (kind, name) = match line.kind {
             VectorLineKind::Horizon(Some(index)) => {
@@ -100,12 +109,22 @@ pub(super) fn items(
             let points = if is_ring { &part[..part.len() - 1] } else { &part[..] };
             append(&mut path, points, is_ring, page);
         }
-        let stroke = Stroke::new(line.width_px * points_per_px, line.colour).round();
+        let width = line.width_px * points_per_px;
+        let width = if kind == GroupKind::Horizon { width.min(widest) } else { width };
+        let stroke = Stroke::new(width, line.colour).round();
         let mut group = Group::new(kind, name);
         group.push(PathItem::stroked(path, stroke));
         items.push(group.into());
     }
     items
+}
+
+/// An image in another size; the same where it has that size.
+fn resized(image: &GrayImage, (width, height): (u32, u32)) -> Cow<'_, GrayImage> {
+    match image.dimensions() == (width, height) {
+        true => Cow::Borrowed(image),
+        false => Cow::Owned(imageops::resize(image, width, height, imageops::FilterType::Triangle)),
+    }
 }
 
 /// An area, within the part of its face that is seen.

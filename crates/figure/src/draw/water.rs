@@ -8,14 +8,15 @@
 
 use super::block::pixels_per_metre;
 use super::seen::Sight;
-use crate::list::{
-    DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH, Path, PathItem, Picture, Rule, Segment, Stroke,
-};
-use crate::{FigureError, Rect};
+use crate::FigureError;
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use model::StructuralModel;
 use model::section::band;
+use page::Rect;
+use page::list::{
+    DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH, Path, PathItem, Picture, Rule, Segment, Stroke,
+};
 use rayon::prelude::*;
 use render::vector::{SeenSection, sections_of};
 use render::visible::Solid;
@@ -62,7 +63,7 @@ pub fn over(picture: RgbaImage, scene: &Scene, inputs: &Inputs) -> Result<RgbaIm
     list.items.push(water.into());
     let wells = wells_before(scene, inputs.geometry, model, inputs.wells, &page);
     list.items.extend(wells.map(|outline| again(&picture, pane, outline).into()));
-    crate::raster(&list, POINTS_PER_INCH)
+    Ok(page::raster(&list, POINTS_PER_INCH)?)
 }
 
 /// What of a picture lies within an outline, once more.

@@ -1,9 +1,9 @@
 //! A page's title and caption: lines of words above and below everything else.
 
-use crate::Rect;
-use crate::list::{Across, Group, GroupKind, Text, Upright, width_of};
 use crate::style::{INK, LEAST_TEXT_PT, QUIET_INK, TEXT_PT};
 use glam::DVec2;
+use page::Rect;
+use page::list::{Across, Group, GroupKind, Text, Upright, width_of};
 
 /// Size of a title, points.
 const TITLE_PT: f64 = 11.0;
@@ -64,7 +64,7 @@ fn broken(words: &str, room: f64) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::list::Item;
+    use page::list::Item;
 
     #[test]
     fn lines_hold_all_words_and_stay_in_the_room() {

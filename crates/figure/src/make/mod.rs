@@ -4,7 +4,6 @@ mod legend;
 mod prepared;
 mod rock;
 
-use crate::Rect;
 use crate::annotation::Annotation;
 use crate::correlation::{self, Column};
 use crate::cut::{SectionKind, SectionSource, value_at};
@@ -17,10 +16,11 @@ use crate::draw::section::Marks;
 use crate::draw::{NamedColour, colour_bar, moved, north, scale, words};
 use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
-use crate::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH};
 use crate::map::{HorizonMap, MapSource, Mapped};
 use crate::spec::{BlockPart, CorrelationPart, FencePart, Figure, MapPart, Part, SectionPart};
 use glam::DVec2;
+use page::Rect;
+use page::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH};
 use prepared::Prepared;
 use render::{Background, FaceData, Faces, Scene, Unpicked};
 use survey::{StratigraphicHorizon, SurveyGeometry, VerticalUnit, Well};
@@ -81,7 +81,7 @@ pub fn make(
         return Err(FigureError::Parts { found: figure.parts.len() });
     }
     let mut list = DisplayList::new(figure.size_pt());
-    crate::raster::size_px(&list, figure.dpi)?;
+    page::raster::size_px(&list, figure.dpi)?;
     list.paper = paper(figure);
     let maker = Maker { figure, inputs, geometry: inputs.source.data.geometry };
     let prepared = figure.parts.iter().map(|part| maker.prepared(part)).collect::<Result<Vec<_>, _>>()?;

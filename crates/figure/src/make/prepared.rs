@@ -2,7 +2,6 @@
 
 use super::Maker;
 use super::rock::RockOnSection;
-use crate::Rect;
 use crate::annotation::Annotation;
 use crate::correlation::{self, Column, ColumnSource};
 use crate::cut::{CutLine, FenceCut, SectionCut, SectionKind, legs, length_m, stations};
@@ -13,12 +12,13 @@ use crate::draw::scale;
 use crate::draw::section::{Marks, SectionContents, SectionInk, SectionPanel, Zoom};
 use crate::draw::section_wells::WellOnSection;
 use crate::error::FigureError;
-use crate::list::Group;
 use crate::spec::{FencePart, Part, SectionPart};
 use crate::style::INK;
 use glam::DVec2;
 use image::RgbaImage;
 use model::section::{LineKind, SectionPlane};
+use page::Rect;
+use page::list::Group;
 use std::sync::Arc;
 use survey::Contact;
 

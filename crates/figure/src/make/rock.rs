@@ -2,7 +2,6 @@
 
 use super::Maker;
 use super::prepared::{Place, PreparedSection};
-use crate::Rect;
 use crate::annotation::Annotation;
 use crate::cut::station_of;
 use crate::draw::annotation::room::LabelRoom;
@@ -12,10 +11,11 @@ use crate::draw::rock_section::{SectionRange, scene};
 use crate::draw::section::SectionPainter;
 use crate::draw::vector_block::BlockNames;
 use crate::error::FigureError;
-use crate::list::{Group, GroupKind, Item, POINTS_PER_INCH, Path};
 use crate::spec::Part;
 use glam::{DVec2, DVec3};
 use model::section::{Section, SectionPlane};
+use page::Rect;
+use page::list::{Group, GroupKind, Item, POINTS_PER_INCH, Path};
 use render::Scene;
 use render::vector::SeenSection;
 

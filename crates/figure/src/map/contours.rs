@@ -13,8 +13,8 @@ use std::collections::{BTreeMap, HashMap};
 const CONTOURS: f64 = 14.0;
 /// Shortest contour that goes around, traces: a ring of radius 2, no more than smoothing averages over.
 const SPECK: f64 = 12.0;
-/// Every so manyeth contour is an index contour: heavier, with its value.
-const INDEX_EVERY: i64 = 5;
+/// Every so manyeth contour is an index contour: heavier, with its value; of the second where there would be one or none.
+const INDEX_EVERY: [i64; 2] = [5, 2];
 
 /// A round distance between contours.
 pub(super) fn interval(spread: f64) -> f64 {
@@ -29,7 +29,7 @@ const SIDES: [[usize; 2]; 4] = [[0, 1], [1, 2], [3, 2], [0, 3]];
 
 /// Where a contour crosses a side between two neighbouring traces: the first of them, and whether the other
 /// is the next inline.
-type Crossing = (usize, bool);
+pub(super) type Crossing = (usize, bool);
 
 /// All contours, each in one piece from rim to rim or around.
 pub(super) fn contours(grid: &Grid, range: [f64; 2], interval: f64) -> Vec<Contour> {
@@ -38,7 +38,6 @@ pub(super) fn contours(grid: &Grid, range: [f64; 2], interval: f64) -> Vec<Conto
     for x in 0..nx.saturating_sub(1) {
         for y in 0..ny.saturating_sub(1) {
             let corners = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)];
-            let sides = [(x * ny + y, true), ((x + 1) * ny + y, false), (x * ny + y + 1, true), (x * ny + y, false)];
             let found = corners.map(|(x, y)| grid.at(x, y));
             let is_whole = found.iter().all(|node| node.value.is_finite() && node.block == found[0].block);
             if !is_whole {
@@ -50,26 +49,31 @@ pub(super) fn contours(grid: &Grid, range: [f64; 2], interval: f64) -> Vec<Conto
             let mut level = (low.max(range[0]) / interval).ceil() as i64;
             while level as f64 * interval <= high {
                 let value = level as f64 * interval;
-                let mut places = Vec::with_capacity(4);
-                for (side, [from, to]) in SIDES.into_iter().enumerate() {
-                    let (a, b) = (values[from], values[to]);
-                    if (a < value) != (b < value) {
-                        let share = (value - a) / (b - a);
-                        let place = |(x, y): (usize, usize)| DVec2::new(x as f64, y as f64);
-                        let at = place(corners[from]).lerp(place(corners[to]), share);
-                        places.push((sides[side], at));
-                    }
-                }
+                let places = crossings([x, y], ny, values, value);
                 levels.entry(level).or_default().extend(places.chunks_exact(2).map(|pair| [pair[0], pair[1]]));
                 level += 1;
             }
         }
     }
+    let of_every = |every: i64| levels.keys().filter(|level| *level % every == 0).count();
+    let every = if of_every(INDEX_EVERY[0]) > 1 { INDEX_EVERY[0] } else { INDEX_EVERY[1] };
     let of_level = |(level, pieces): (i64, Vec<[(Crossing, DVec2); 2]>)| {
-        let contour = move |line| Contour { line, value: level as f64 * interval, is_index: level % INDEX_EVERY == 0 };
+        let contour = move |line| Contour { line, value: level as f64 * interval, is_index: level % every == 0 };
         joined(&pieces).into_iter().filter(|line| !is_speck(line)).map(contour)
     };
     levels.into_iter().flat_map(of_level).collect()
+}
+
+/// Where the contour of a value crosses the sides of the cell whose first trace is `[x, y]`, two or four times; `ny` traces
+/// lie along an inline, and the corners' values go around the cell.
+pub(super) fn crossings([x, y]: [usize; 2], ny: usize, values: [f64; 4], value: f64) -> Vec<(Crossing, DVec2)> {
+    let corners = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)].map(|(x, y)| DVec2::new(x as f64, y as f64));
+    let sides = [(x * ny + y, true), ((x + 1) * ny + y, false), (x * ny + y + 1, true), (x * ny + y, false)];
+    let crossed = SIDES.into_iter().zip(sides).filter_map(|([from, to], side)| {
+        let (a, b) = (values[from], values[to]);
+        ((a < value) != (b < value)).then(|| (side, corners[from].lerp(corners[to], (value - a) / (b - a))))
+    });
+    crossed.collect()
 }
 
 /// Whether a contour only goes around a few traces: picks that stand out, and no shape of the horizon.
@@ -79,7 +83,7 @@ fn is_speck(line: &[DVec2]) -> bool {
 }
 
 /// Pieces that meet at a crossing as lines; one that goes around ends where it began.
-fn joined(pieces: &[[(Crossing, DVec2); 2]]) -> Vec<Vec<DVec2>> {
+pub(super) fn joined(pieces: &[[(Crossing, DVec2); 2]]) -> Vec<Vec<DVec2>> {
     let mut at: HashMap<Crossing, Vec<usize>> = HashMap::new();
     for (n, piece) in pieces.iter().enumerate() {
         piece.iter().for_each(|(crossing, _)| at.entry(*crossing).or_default().push(n));

@@ -47,11 +47,16 @@ impl Grid {
         &self.nodes
     }
 
-    /// Of the model; `None` when it has no such horizon.
-    pub(super) fn of_model(geometry: &SurveyGeometry, model: &StructuralModel, mapped: Mapped) -> Option<Self> {
+    /// Of the model, `fine` nodes from trace to trace; `None` when it has no such horizon.
+    pub(super) fn of_model(
+        geometry: &SurveyGeometry,
+        model: &StructuralModel,
+        mapped: Mapped,
+        fine: usize,
+    ) -> Option<Self> {
         let last = geometry.vertical.count.saturating_sub(1) as f32;
         let place = |horizon: usize, x: usize, y: usize| {
-            let (x, y) = (x as f32, y as f32);
+            let [x, y] = [x, y].map(|n| n as f32 / fine as f32);
             let places = (0..model.block_count() as u16).filter_map(|block| {
                 let z = model.horizon_z(horizon, block, x, y);
                 let p = Vec3::new(x, y, z);
@@ -65,7 +70,7 @@ impl Grid {
             Some(ShallowestPlace { z, block, is_open: !quality.is_on_data() })
         };
         let count = model.stratigraphy().horizons.len();
-        mapped.is_among(count).then(|| Self::of(geometry, mapped, place))
+        mapped.is_among(count).then(|| Self::of(geometry, mapped, fine, place))
     }
 
     /// Of sheets as they were picked; `None` when there is no such horizon.
@@ -80,7 +85,7 @@ impl Grid {
         if !mapped.is_among(shown.horizons.len()) {
             return None;
         }
-        let mut grid = Self::of(geometry, mapped, place);
+        let mut grid = Self::of(geometry, mapped, 1, place);
         let holes = |index: usize| shown.horizons[index].holes.clone();
         let holes: Vec<SheetHole> = match mapped {
             Mapped::Structure(horizon) => holes(horizon),
@@ -96,11 +101,12 @@ impl Grid {
     fn of(
         geometry: &SurveyGeometry,
         mapped: Mapped,
+        fine: usize,
         place: impl Fn(usize, usize, usize) -> Option<ShallowestPlace> + Sync,
     ) -> Self {
         let vertical = &geometry.vertical;
         let nothing = MapNode { value: f64::NAN, block: 0, is_open: false };
-        let [nx, ny, _] = geometry.size();
+        let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1) * fine + 1);
         Self::by([nx, ny], |x, y| match mapped {
             Mapped::Structure(horizon) => place(horizon, x, y).map_or(nothing, |at| MapNode {
                 value: vertical.value_at(f64::from(at.z)),

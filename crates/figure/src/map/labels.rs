@@ -3,11 +3,11 @@
 //! A value stands in its line, which is broken for it, along it, upright, where the line is straightest;
 //! none over another, none where there is no room. Space: points of the page.
 
-use super::Contour;
-use crate::Rect;
-use crate::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright, width_of};
-use crate::style::{INK, NUMBER_PT};
+use super::{FaultCut, HorizonMap};
+use crate::style::{FAULT_PT, INK, NUMBER_PT};
 use glam::DVec2;
+use page::Rect;
+use page::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright, width_of};
 use ttf::Colour;
 
 /// Room before and behind a label, and between labels, points.
@@ -22,6 +22,8 @@ const AGAIN: f64 = 230.0;
 const WIDTH: [f64; 2] = [0.9, 0.4];
 /// Their opacity.
 const OPACITY: [f32; 2] = [0.9, 0.6];
+/// Dashes of faults that are covered, points.
+const COVERED: [f64; 2] = [3.5, 2.0];
 /// Height of a line of figures, font sizes.
 const LINE: f64 = 1.1;
 
@@ -139,16 +141,51 @@ fn off(p: DVec2, [a, b]: [DVec2; 2]) -> f64 {
     p.distance(a + way * share)
 }
 
-/// The contours, and over all of them the values of index contours where there is room.
-pub(crate) fn drawn(contours: &[Contour], page: impl Fn(DVec2) -> DVec2, room: &Room) -> Group {
+/// The lines of faults, each with its name in the longest of them where there is room; covered ones are dashed.
+fn faults_drawn(cuts: &[FaultCut], page: &impl Fn(DVec2) -> DVec2, room: &Room, taken: &mut Vec<Label>) -> Vec<Item> {
+    let mut groups = Vec::new();
+    for cuts in cuts.chunk_by(|a, b| a.fault == b.fault) {
+        let name = &cuts[0].name;
+        let mut group = Group::new(GroupKind::Fault, name);
+        let (mut seen, mut covered) = (Path::default(), Path::default());
+        let mut longest: Option<Measured> = None;
+        for cut in cuts {
+            let line = Measured::of(cut.line.iter().map(|place| page(*place)).collect());
+            if cut.is_covered { &mut covered } else { &mut seen }.add_line(&line.places);
+            if !cut.is_covered && longest.as_ref().is_none_or(|known| known.length() < line.length()) {
+                longest = Some(line);
+            }
+        }
+        let stroke = Stroke::new(FAULT_PT, INK).round();
+        group.push(PathItem::stroked(seen, stroke.clone()));
+        group.push(PathItem::stroked(covered, Stroke { width: 0.6 * FAULT_PT, dashes: COVERED.to_vec(), ..stroke }));
+        let size = DVec2::new(width_of(name, NUMBER_PT), LINE * NUMBER_PT);
+        if let Some(label) = longest.and_then(|line| line.labels(size, room, taken).into_iter().next()) {
+            group.push(in_line(&label, name.clone()).haloed(1.4, Ink::glass(Colour::WHITE, 0.9)));
+        }
+        groups.push(group.into());
+    }
+    groups
+}
+
+/// A text in a line.
+fn in_line(label: &Label, text: String) -> Text {
+    let text = Text::new(label.middle, text).sized(NUMBER_PT).inked(INK);
+    let text = text.anchored(Across::Middle, Upright::Middle).turned(label.half.to_angle().to_degrees());
+    text.haloed(0.9, Ink::glass(Colour::WHITE, 0.75))
+}
+
+/// The faults and contours, and over all of them the names of faults and the values of index contours where there is room.
+pub(crate) fn drawn(shown: &HorizonMap, page: impl Fn(DVec2) -> DVec2, room: &Room) -> [Group; 2] {
     let stroke = |is_index: bool| {
         let n = usize::from(!is_index);
         Stroke::new(WIDTH[n], Ink::glass(Colour::BLACK, OPACITY[n]))
     };
     let mut taken = Vec::new();
+    let faults = faults_drawn(&shown.faults, &page, room, &mut taken);
     let (mut plain, mut index) = (Path::default(), Path::default());
     let mut texts: Vec<Item> = Vec::new();
-    for contour in contours {
+    for contour in &shown.contours {
         let line = Measured::of(contour.line.iter().map(|place| page(*place)).collect());
         if !contour.is_index {
             plain.add_line(&line.places);
@@ -164,16 +201,15 @@ pub(crate) fn drawn(contours: &[Contour], page: impl Fn(DVec2) -> DVec2, room: &
         if line.places.len() > 1 {
             index.add_line(&line.part([from, line.length()]));
         }
-        texts.extend(labels.iter().map(|label| {
-            let value = Text::new(label.middle, text.clone()).sized(NUMBER_PT).inked(INK);
-            let value = value.anchored(Across::Middle, Upright::Middle).turned(label.half.to_angle().to_degrees());
-            Item::from(value.haloed(0.9, Ink::glass(Colour::WHITE, 0.75)))
-        }));
+        texts.extend(labels.iter().map(|label| Item::from(in_line(label, text.clone()))));
     }
     let lines =
         [(plain, false), (index, true)].map(|(path, is_index)| PathItem::stroked(path, stroke(is_index)).into());
     // Values over all lines, on a light rim, so that they are read on any colour.
-    Group::new(GroupKind::Annotation, "contours").with(lines).with(texts)
+    [
+        Group::new(GroupKind::Annotation, "faults").with(faults),
+        Group::new(GroupKind::Annotation, "contours").with(lines).with(texts),
+    ]
 }
 
 #[cfg(test)]

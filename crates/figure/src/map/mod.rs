@@ -2,14 +2,17 @@
 //! values.
 //!
 //! Contours are those of a lightly smoothed surface (`smooth`), colours those of the values themselves.
+//! Where a fault cuts the horizon off there is a line, and between the two lines of a normal fault there is nothing.
 //! What was not picked, but filled or extrapolated, is hatched; where there is no model yet, holes are.
 
 mod contours;
+mod cuts;
 mod grid;
 mod hatch;
 mod labels;
 mod smooth;
 
+pub use cuts::FaultCut;
 pub(crate) use labels::{Room, drawn};
 
 use crate::interpretation::DrawnInterpretation;
@@ -19,6 +22,11 @@ use image::{Rgba, RgbaImage};
 use model::StructuralModel;
 use survey::SurveyGeometry;
 use ttf::{Colour, ColourMap, RgbaFunction};
+
+/// Pixels from trace to trace, so that rims of faults are no stairs: as many as keep the longer side at about this, but no
+/// more than the second.
+const FINE_SIDE: usize = 1200;
+const MOST_FINE: usize = 5;
 
 /// What is mapped, by indices of horizons, youngest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,8 +72,10 @@ pub struct Contour {
 pub struct HorizonMap {
     /// Of what.
     pub mapped: Mapped,
-    /// A pixel a trace, inlines to the right, crosslines down; transparent where there is no value.
+    /// Inlines to the right, crosslines down, a pixel or several a trace; transparent where there is no value.
     pub image: RgbaImage,
+    /// Where faults cut the horizon off, or the upper one of two.
+    pub faults: Vec<FaultCut>,
     /// Contours of the lightly smoothed surface, by value.
     pub contours: Vec<Contour>,
     /// Outline and hatching of what was not picked, voxel x and y.
@@ -82,7 +92,7 @@ impl HorizonMap {
     /// Maps a horizon or a thickness; `None` when there is nothing of it.
     pub fn new(geometry: &SurveyGeometry, source: MapSource, mapped: Mapped) -> Option<Self> {
         let grid = match source {
-            MapSource::Model(model) => Grid::of_model(geometry, model, mapped)?,
+            MapSource::Model(model) => Grid::of_model(geometry, model, mapped, 1)?,
             MapSource::Sheets(shown) => Grid::of_sheets(geometry, shown, mapped)?,
         };
         let finite = || grid.nodes().iter().map(|node| node.value).filter(|value| value.is_finite());
@@ -97,8 +107,16 @@ impl HorizonMap {
             Mapped::Thickness(..) => (value - range[0]) / spread,
         };
         let colours = RgbaFunction::over(ColourMap::Strata, [0.0, 1.0]);
-        let image = RgbaImage::from_fn(grid.size[0] as u32, grid.size[1] as u32, |x, y| {
-            let value = grid.at(x as usize, y as usize).value;
+        let (Mapped::Structure(cut) | Mapped::Thickness(cut, _)) = mapped;
+        let (finer, faults) = match source {
+            MapSource::Model(model) => {
+                let fine = (FINE_SIDE / grid.size.into_iter().max().unwrap_or(1)).clamp(1, MOST_FINE);
+                (Grid::of_model(geometry, model, mapped, fine)?, cuts::cuts(geometry, model, cut))
+            }
+            MapSource::Sheets(shown) => (Grid::of_sheets(geometry, shown, mapped)?, Vec::new()),
+        };
+        let image = RgbaImage::from_fn(finer.size[0] as u32, finer.size[1] as u32, |x, y| {
+            let value = finer.at(x as usize, y as usize).value;
             if value.is_nan() {
                 return Rgba([0; 4]);
             }
@@ -109,7 +127,7 @@ impl HorizonMap {
         let contours = contours::contours(&smooth::smoothed(&grid, interval), range, interval);
         let open = grid.nodes().iter().filter(|node| node.is_open && node.value.is_finite()).count();
         let unpicked = open as f64 / finite().count() as f64;
-        Some(Self { mapped, image, contours, hatching: hatch::hatching(&grid), unpicked, range, interval })
+        Some(Self { mapped, image, faults, contours, hatching: hatch::hatching(&grid), unpicked, range, interval })
     }
 
     /// The values at the light and at the dark end of the colours.

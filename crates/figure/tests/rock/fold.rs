@@ -3,11 +3,11 @@
 use figure::cut::SectionSource;
 use figure::draw::NamedColour;
 use figure::draw::block::BlockPainter;
-use figure::list::DisplayList;
 use figure::{BlockPart, Figure, FigureInputs, PageSize, make};
 use glam::DVec3;
 use image::RgbaImage;
 use model::{ModelSettings, StructuralModel};
+use page::list::DisplayList;
 use param::{ParamSettings, Parameterization};
 use render::vector::{VectorBlock, vectors};
 use render::{Inputs, RenderError, Scene, VoxelBox};

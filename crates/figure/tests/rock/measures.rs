@@ -1,8 +1,8 @@
 //! What is measured in the written SVG: bricks along a fold, and patterns that end at their layers and faults.
 
 use crate::fold::Fold;
-use figure::svg;
 use glam::{DVec2, DVec3};
+use page::svg;
 use render::{Background, Camera, Outlines, Scene, VoxelBox};
 use survey::{SurveyGeometry, VerticalUnit};
 use synth::closed_form::ClosedForm;

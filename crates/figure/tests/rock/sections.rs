@@ -1,9 +1,10 @@
 //! Rock on sections and fences: each place shows the layer that the model has there, on any survey.
 
 use crate::fold::Fold;
-use figure::list::{GroupKind, Item};
-use figure::{Annotation, FencePart, Figure, PageSize, Part, SectionKind, SectionPart, raster, svg};
+use figure::{Annotation, FencePart, Figure, PageSize, Part, SectionKind, SectionPart};
 use glam::{DVec2, DVec3};
+use page::list::{GroupKind, Item};
+use page::{raster, svg};
 use render::FaceData;
 use survey::{SurveyGeometry, VerticalUnit};
 use synth::closed_form::ClosedForm;
@@ -31,7 +32,7 @@ fn section(kind: SectionKind, at: f64, blend: f32) -> Part {
 }
 
 /// The rectangle that a section's rock is clipped to.
-fn pane(items: &[Item]) -> Option<figure::Rect> {
+fn pane(items: &[Item]) -> Option<page::Rect> {
     items.iter().find_map(|item| match item {
         Item::Group(group) if group.name == "section" => group.clip.as_ref().and_then(|clip| clip.bounds()),
         Item::Group(group) => pane(&group.items),

@@ -1,9 +1,9 @@
 //! A page of paths beside the same page of pictures.
 
 use crate::fold::Fold;
-use figure::list::{GroupKind, Item};
-use figure::raster;
 use image::{GrayImage, RgbaImage};
+use page::list::{GroupKind, Item};
+use page::raster;
 use render::{Camera, Ground, Scene, VoxelBox};
 
 fn scene(ground: Option<Ground>) -> Scene {

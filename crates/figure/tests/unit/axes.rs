@@ -35,7 +35,7 @@ fn no_number_leaves_the_room() {
     let down = Axis { name: "two-way time (ms)".into(), ends: [0.0, 2000.0], at: [40.0, 200.0], least_step: 0.0 };
     let group = drawn(whole, body, [&axis([0.0, 2000.0]), &down]);
     for item in &group.items {
-        if let crate::list::Item::Text(text) = item {
+        if let page::list::Item::Text(text) = item {
             let bounds = text.bounds();
             assert!(bounds.min.x >= whole.min.x - 0.01 && bounds.max.x <= whole.max.x + 0.01, "{text:?}");
         }

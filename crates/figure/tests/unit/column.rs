@@ -1,7 +1,7 @@
 //! Names in a column: in order, apart, and as near as they can be to what they name.
 
 use super::*;
-use crate::Rect;
+use page::Rect;
 
 #[test]
 fn places_move_apart_around_their_mean_and_stay_where_they_are_free() {
@@ -47,7 +47,7 @@ fn names_without_room_are_left_out() {
 
 fn named(group: &Group) -> Option<Text> {
     group.items.iter().find_map(|item| match item {
-        crate::list::Item::Text(text) => Some(text.clone()),
+        page::list::Item::Text(text) => Some(text.clone()),
         _ => None,
     })
 }

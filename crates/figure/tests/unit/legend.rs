@@ -1,7 +1,7 @@
 //! Legends of any length.
 
 use super::*;
-use crate::list::Item;
+use page::list::Item;
 use ttf::Colour;
 
 fn texts(group: &Group, into: &mut Vec<Text>) {

@@ -1,7 +1,7 @@
 //! Names along layers: they follow the middle, and stand where there is room.
 
 use super::*;
-use crate::Rect;
+use page::Rect;
 
 fn piece(upper: impl Fn(f64) -> f64, lower: impl Fn(f64) -> f64) -> LayerPiece {
     let xs: Vec<f64> = (0..=60).map(|n| 5.0 * f64::from(n)).collect();

@@ -15,7 +15,7 @@ fn what_was_filled_is_dashed_and_the_rest_is_not() {
     assert_eq!(ends(&lines.horizons[0].lines), [[0.0, 2.0], [6.0, 7.0]]);
     assert_eq!(ends(&lines.filled[0].lines), [[2.0, 6.0]]);
     let group = &lines.drawn(|st| st)[1];
-    let is_dashed = |item: &crate::list::Item| matches!(item, crate::list::Item::Path(path) if path.stroke.as_ref().is_some_and(|s| !s.dashes.is_empty()));
+    let is_dashed = |item: &page::list::Item| matches!(item, page::list::Item::Path(path) if path.stroke.as_ref().is_some_and(|s| !s.dashes.is_empty()));
     assert!(!is_dashed(&group.items[0]) && is_dashed(&group.items[1]));
 }
 
@@ -30,7 +30,7 @@ fn sticks_of_neighbouring_sections_are_light_and_far_ones_are_not_drawn() {
     let (own, beside) = (sticks(&shown, on, |st| st), ghosts(&shown, on, |st| st));
     assert_eq!((own.len(), beside.len()), (1, 1));
     let opacity = |group: &Group| match &group.items[0] {
-        crate::list::Item::Path(path) => path.stroke.as_ref().unwrap().ink.opacity,
+        page::list::Item::Path(path) => path.stroke.as_ref().unwrap().ink.opacity,
         _ => panic!("a stick is a path"),
     };
     assert_eq!(opacity(&own[0]), 1.0);

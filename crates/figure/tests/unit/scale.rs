@@ -14,10 +14,10 @@ fn bars_have_round_lengths() {
 fn a_bar_is_as_long_on_paper_as_it_says() {
     let strip = Rect::sized(DVec2::ZERO, DVec2::new(400.0, STRIP_PT));
     let group = drawn(strip, Some(0.1), None, "");
-    let crate::list::Item::Path(bar) = &group.items[0] else { panic!("no bar") };
+    let page::list::Item::Path(bar) = &group.items[0] else { panic!("no bar") };
     // 120 points are 1200 m: 1 km is 100 points.
     assert!((bar.path.bounds().unwrap().width() - 100.0).abs() < 1e-9);
-    let texts: Vec<_> = group.items.iter().filter(|item| matches!(item, crate::list::Item::Text(_))).collect();
+    let texts: Vec<_> = group.items.iter().filter(|item| matches!(item, page::list::Item::Text(_))).collect();
     assert_eq!(texts.len(), 2);
     // Of 21 points, 20 are 200 ms at a tenth of a point each.
     let both = drawn(strip, Some(0.1), Some((0.1, "ms")), "vertical exaggeration 2");
@@ -25,13 +25,13 @@ fn a_bar_is_as_long_on_paper_as_it_says() {
         .items
         .iter()
         .filter_map(|item| match item {
-            crate::list::Item::Path(bar) => bar.path.bounds(),
+            page::list::Item::Path(bar) => bar.path.bounds(),
             _ => None,
         })
         .collect();
     assert!(bars.len() == 4 && (bars[2].height() - 20.0).abs() < 1e-9 && strip.contains(bars[2].max));
     let said =
-        |text: &str| both.items.iter().any(|item| matches!(item, crate::list::Item::Text(own) if own.text == text));
+        |text: &str| both.items.iter().any(|item| matches!(item, page::list::Item::Text(own) if own.text == text));
     assert!(said("200 ms") && said("1 km"));
     // Seen from straight above a block has no height.
     assert_eq!(drawn(strip, Some(0.1), Some((0.0, "m")), "").items.len(), group.items.len());
@@ -42,4 +42,19 @@ fn the_caption_says_what_time_was_turned_into_depth_with() {
     let geometry = SurveyGeometry::regular([9, 9, 9], 25.0, 4.0, VerticalUnit::Milliseconds);
     let scene = Scene { exaggeration: 2.5, ..Scene::default() };
     assert_eq!(block_caption(&scene, &geometry), "vertical exaggeration 2.5 at 2000 m/s");
+}
+
+#[test]
+fn a_caption_without_room_is_abbreviated_and_then_left_out() {
+    let said = |width: f64| {
+        let strip = Rect::sized(DVec2::ZERO, DVec2::new(width, STRIP_PT));
+        let group = drawn(strip, None, None, "vertical exaggeration 2.5");
+        group.items.into_iter().find_map(|item| match item {
+            page::list::Item::Text(text) => Some(text.text),
+            _ => None,
+        })
+    };
+    assert_eq!(said(200.0).as_deref(), Some("vertical exaggeration 2.5"));
+    assert_eq!(said(40.0).as_deref(), Some("V.E. 2.5"));
+    assert_eq!(said(4.0), None);
 }

@@ -70,8 +70,7 @@ fn stage(
 ) -> Result<Vec<WrittenFigure>, ProjectError> {
     let mut staged = Vec::new();
     for (file, format, figure) in meant {
-        let (has_vectors, fonts) = (format.has_vectors(), fonts.to_vec());
-        let settings = FigureSettings { device, volume_bytes, has_vectors, fonts, picture_dpi: None };
+        let settings = FigureSettings { device, volume_bytes, fonts: fonts.to_vec(), picture_dpi: None };
         let made = make(project, figure, &InterpreterView::default(), &settings, progress).map_err(of_figure(file))?;
         let path = out.join(file);
         let replacement = Replacement::of(&path)?;

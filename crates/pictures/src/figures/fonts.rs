@@ -2,9 +2,19 @@
 
 use project::Project;
 use project::error::ProjectError;
+use std::cmp::Reverse;
 use std::path::{Component, Path, PathBuf};
 use survey::file;
 use ttf::text::{Face, Faces};
+
+/// Where fonts are installed, on Linux, macOS and Windows; the second ones in a person's home.
+const INSTALLED: [&str; 5] =
+    ["/usr/share/fonts", "/usr/local/share/fonts", "/System/Library/Fonts", "/Library/Fonts", "C:\\Windows\\Fonts"];
+const INSTALLED_AT_HOME: [&str; 3] = [".local/share/fonts", ".fonts", "Library/Fonts"];
+/// At most so many files are looked at, in folders at most so deep, and so many are named.
+const MOST_FILES: usize = 5000;
+const DEEPEST: usize = 8;
+const MOST_NAMED: usize = 3;
 
 /// Largest font file that is read: those with all Chinese, Japanese and Korean letters have some 20 MB a weight.
 const MOST_BYTES: u64 = 1 << 28;
@@ -60,11 +70,75 @@ fn face(path: &Path) -> Result<(FontFile, Face), ProjectError> {
     Ok((FontFile { bytes, index }, face))
 }
 
+/// Names installed font files that have these characters, after a semicolon: advice alone, since what a figure looks like
+/// depends on its project and its command only.
+pub(super) fn advice(characters: Vec<char>) -> String {
+    let home = std::env::var_os("HOME").or_else(|| std::env::var_os("USERPROFILE")).map(PathBuf::from);
+    let at_home = home.into_iter().flat_map(|home| INSTALLED_AT_HOME.map(|folder| home.join(folder)));
+    let files = with_characters(INSTALLED.map(PathBuf::from).into_iter().chain(at_home), characters);
+    let named: Vec<String> = files.iter().map(|file| format!("--font \"{}\"", file.display())).collect();
+    if named.is_empty() { String::new() } else { format!("; installed here are {}", named.join(" ")) }
+}
+
+/// Adds the font files in a folder and those in it, in the order of their names.
+fn fonts_below(folder: &Path, deep: usize, fonts: &mut Vec<PathBuf>) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    paths.sort_unstable();
+    for path in paths {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        let is_font = ending.is_some_and(|ending| ["ttf", "otf", "ttc"].contains(&ending.as_str()));
+        if is_font && fonts.len() < MOST_FILES {
+            fonts.push(path);
+        } else if deep > 0 && path.is_dir() {
+            fonts_below(&path, deep - 1, fonts);
+        }
+    }
+}
+
+/// The same for the fonts in these folders.
+fn with_characters(folders: impl Iterator<Item = PathBuf>, mut characters: Vec<char>) -> Vec<PathBuf> {
+    let mut fonts = Vec::new();
+    folders.for_each(|folder| fonts_below(&folder, DEEPEST, &mut fonts));
+    let known = fonts.into_iter().filter_map(|path| {
+        let face = face(&path).ok()?.1;
+        let has: Vec<char> = characters.iter().copied().filter(|character| face.has(*character)).collect();
+        // Plain letters rather than bold ones, and without serifs as the embedded face.
+        let name = path.file_stem()?.to_string_lossy().to_lowercase();
+        let is_odd =
+            ["bold", "italic", "black", "light", "thin", "mono", "serif"].iter().any(|word| name.contains(word));
+        (!has.is_empty()).then_some((is_odd, path, has))
+    });
+    let known: Vec<(bool, PathBuf, Vec<char>)> = known.collect();
+    let mut named = Vec::new();
+    while named.len() < MOST_NAMED {
+        let more = |has: &[char]| has.iter().filter(|character| characters.contains(character)).count();
+        let best = known.iter().filter(|(_, _, has)| more(has) > 0);
+        let Some((_, path, has)) = best.min_by_key(|(is_odd, _, has)| (Reverse(more(has)), *is_odd)) else { break };
+        named.push(path.clone());
+        characters.retain(|character| !has.contains(character));
+    }
+    named
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     const FONTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../ttf/tests/fonts");
+
+    #[test]
+    fn installed_fonts_are_found_by_their_letters() {
+        let folder = || std::iter::once(PathBuf::from(FONTS));
+        let names = |letters: &str| -> Vec<String> {
+            let found = with_characters(folder(), letters.chars().collect());
+            found.iter().map(|path| path.file_name().unwrap().to_string_lossy().into_owned()).collect()
+        };
+        assert_eq!(names("石"), ["han.otf"]);
+        assert_eq!(names("石灰حج岩"), ["han.otf", "arabic.ttf"]);
+        assert!(names("\u{1f30b}").is_empty() && names("").is_empty());
+        assert!(with_characters(std::iter::once(PathBuf::from("/no/such/folder")), vec!['石']).is_empty());
+    }
 
     #[test]
     fn faces_come_from_the_project_and_from_the_command() {

@@ -1,7 +1,8 @@
 //! Figures on pages without room for all that is asked: what is written beside and on them is left out, and said, so that
 //! a page of a centimetre still shows its block.
 
-use figure::{DisplayList, Figure, FigureError};
+use figure::{Figure, FigureError};
+use page::DisplayList;
 use survey::Progress;
 
 /// What takes a part out of a figure.

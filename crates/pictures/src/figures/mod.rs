@@ -22,11 +22,11 @@ use crate::{Device, Painter};
 use figure::cut::SectionSource;
 use figure::draw::NamedColour;
 use figure::draw::block::BlockPainter;
-use figure::list::DisplayList;
 use figure::{Annotation, FencePart, Figure, FigureInputs, Part, SectionPart};
 use image::RgbaImage;
 use interpreter::InterpreterPicks;
 use model::StructuralModel;
+use page::list::DisplayList;
 use project::Project;
 use project::content;
 use project::document::{Document, WellEntry};
@@ -57,8 +57,6 @@ pub struct FigureSettings {
     pub device: Device,
     /// Largest memory for the samples of a volume, bytes.
     pub volume_bytes: u64,
-    /// Whether blocks are drawn as paths where they can be; otherwise they are pictures.
-    pub has_vectors: bool,
     /// Font files for letters that the embedded face and the project's own fonts lack.
     pub fonts: Vec<PathBuf>,
     /// Coarsest resolution that pictures of blocks may have, dots an inch, where a page is looked at soon; absent: the
@@ -105,12 +103,10 @@ fn lettered(
         shown.faults.retain(|fault| !figure.hides(fault.name));
         shown
     });
-    let names_layers = figure.annotate.contains(&Annotation::Layers);
     let has_wells = figure.parts.iter().any(|part| matches!(part, Part::Correlation(_)));
     let names_wells = figure.annotate.contains(&Annotation::Wells);
-    let needs_library = figure.legend || names_layers || settings.has_vectors || has_wells;
-    let library = if needs_library { Some(styles::pattern_library(project.root(), document)?) } else { None };
-    let mut layers = library.as_ref().map(|library| layer_styles(document, library)).unwrap_or_default();
+    let library = &styles::pattern_library(project.root(), document)?;
+    let mut layers = layer_styles(document, library);
     layers.iter_mut().for_each(|style| *style = figure.printed_in().layer(style));
     let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
     let mut data = loaded.inputs(&volumes, &wells);
@@ -125,11 +121,10 @@ fn lettered(
         faults: &document.faults.iter().map(|entry| entry.name.clone()).collect::<Vec<_>>(),
         fault_colours: &document.faults.iter().map(|entry| entry.colour).collect::<Vec<_>>(),
         layers: &layers,
-        library: library.as_ref(),
+        library: Some(library),
         interpretation: shown.as_ref(),
         provenance: &format!("Petroglyph {} · {}", env!("CARGO_PKG_VERSION"), title(project)),
     };
-    let library = library.as_ref().filter(|_| settings.has_vectors);
     let (device, preset) = (settings.device, figure.printed_in());
     let share = settings.picture_dpi.map_or(1.0, |dpi| (dpi / figure.dpi).min(1.0));
     let mut painter =
@@ -165,10 +160,14 @@ fn warn_of_boxes(page: &DisplayList, progress: &Progress) {
     texts.dedup();
     if let Some(first) = texts.first() {
         let more = if texts.len() > 1 { format!(" and {} more", texts.len() - 1) } else { String::new() };
+        let mut lacking: Vec<char> = texts.iter().flat_map(|text| text.chars()).filter(|c| is_box(*c)).collect();
+        lacking.sort_unstable();
+        lacking.dedup();
+        let advice = fonts::advice(lacking);
         progress.warn(format!(
             "\"{first}\"{more} has letters that the figures' face lacks, and they are drawn as boxes; the face has Latin, \
              Greek and Cyrillic letters: name a font file with the others by --font FILE, or by `fonts = [\"FILE\"]` at the \
-             top of project.toml"
+             top of project.toml{advice}"
         ));
     }
 }
@@ -178,8 +177,8 @@ struct FigurePainter<'a> {
     painter: Option<Painter>,
     device: Device,
     loaded: &'a Loaded,
-    /// The patterns, where blocks are drawn as paths.
-    library: Option<&'a TextureLibrary>,
+    /// The patterns.
+    library: &'a TextureLibrary,
     preset: Preset,
     /// Share of the pixels along each side that pictures are painted with.
     share: f64,
@@ -210,12 +209,11 @@ impl BlockPainter for FigurePainter<'_> {
     }
 
     fn trace(&mut self, scene: &Scene, tolerance_px: f64) -> Result<Option<VectorBlock>, RenderError> {
-        let Some(library) = self.library else { return Ok(None) };
         let start = Instant::now();
         let scene = self.loaded.complete(&self.shown(scene));
         let (volumes, wells) = (self.loaded.named_volumes(), self.loaded.well_paths());
         let inputs = self.loaded.inputs(&volumes, &wells);
-        let traced = vectors(&scene, &inputs, library, tolerance_px, self.progress)?;
+        let traced = vectors(&scene, &inputs, self.library, tolerance_px, self.progress)?;
         self.stages.push(Stage::new("paths", start.elapsed()));
         Ok(traced)
     }

@@ -1,7 +1,7 @@
 //! Files that pages are written to.
 
 use crate::write_png;
-use figure::list::DisplayList;
+use page::list::DisplayList;
 use project::Project;
 use project::error::ProjectError;
 use project::folder;
@@ -38,11 +38,6 @@ impl FigureFormat {
             _ => None,
         }
     }
-
-    /// Whether a figure in this format is made of paths.
-    pub fn has_vectors(self) -> bool {
-        matches!(self, Self::Svg | Self::Pdf)
-    }
 }
 
 /// What readers of a vector figure announce: the project's name.
@@ -59,10 +54,10 @@ pub fn title(project: &Project) -> String {
 /// there.
 pub fn write(page: &DisplayList, format: FigureFormat, path: &Path, dpi: f64, title: &str) -> Result<(), ProjectError> {
     match format {
-        FigureFormat::Png => write_png(path, &figure::raster(page, dpi)?, dpi),
-        FigureFormat::Tiff => write_bytes(path, &figure::tiff(&figure::raster(page, dpi)?, dpi)?),
-        FigureFormat::Svg => write_bytes(path, figure::svg(page, title)?.as_bytes()),
-        FigureFormat::Pdf => write_bytes(path, &figure::pdf(page, title)?),
+        FigureFormat::Png => write_png(path, &page::raster(page, dpi)?, dpi),
+        FigureFormat::Tiff => write_bytes(path, &page::tiff(&page::raster(page, dpi)?, dpi)?),
+        FigureFormat::Svg => write_bytes(path, page::svg(page, title)?.as_bytes()),
+        FigureFormat::Pdf => write_bytes(path, &page::pdf(page, title)?),
     }
 }
 

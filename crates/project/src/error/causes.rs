@@ -59,3 +59,9 @@ impl From<figure::FigureError> for ProjectError {
         }
     }
 }
+
+impl From<page::PageError> for ProjectError {
+    fn from(error: page::PageError) -> Self {
+        Self::Figure(error.into())
+    }
+}

@@ -22,6 +22,9 @@ const INTO_BLOCK: f64 = 0.3;
 /// from its chord over one cell.
 const ACROSS: f64 = 0.12;
 
+/// How far before a fault's trace rock hides it, voxels.
+const JUST_BEFORE: f64 = 0.1;
+
 /// How far outside a surface rays test its silhouette, voxels: one just inside meets the surface long before.
 const BESIDE_SURFACE: f64 = 0.25;
 /// Shortest crest that is drawn, in line widths.
@@ -148,7 +151,7 @@ pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
         for fault in 0..interpretation.model.faults().surfaces().len() {
             let side = |p: DVec3| f64::from(interpretation.model.faults().side(fault, p.as_vec3()));
             let segments = resolved.shapes.traces(key(fault), || map.zeros_on_ground(side));
-            let traces = seen(resolved, interpretation, &segments, |p| beside_fault(interpretation, fault, block, p));
+            let traces = seen(resolved, interpretation, &segments, |p| beside_fault(resolved, fault, block, p));
             lines.faults.extend(bridged(traces, widest).into_iter().map(|trace| (fault, trace)));
         }
         let faults = interpretation.model.faults().surfaces().len();
@@ -260,8 +263,10 @@ fn first_of(group: &mut [usize], mut index: usize) -> usize {
 }
 
 /// A point on the ground of the block right beside the interpreted part of a fault; `None` if the fault does
-/// not end that ground.
-fn beside_fault(interpretation: ResolvedInterpretation, fault: usize, block: u16, p: DVec3) -> Option<DVec3> {
+/// not end that ground, or the other side of the fault stands before it: of a scarp that faces away the upper edge alone
+/// is seen, however low the scarp is.
+fn beside_fault(resolved: &ResolvedScene, fault: usize, block: u16, p: DVec3) -> Option<DVec3> {
+    let interpretation = resolved.interpretation?;
     let faults = interpretation.model.faults();
     if !faults.is_real(fault, p.as_vec3()) || interpretation.model.is_pierced_at(p.as_vec3(), block) {
         return None;
@@ -277,6 +282,11 @@ fn beside_fault(interpretation: ResolvedInterpretation, fault: usize, block: u16
         (false, true) => -normal,
         _ => return None,
     };
+    let foot = p.with_z(interpretation.model.horizon_z(0, block, p.x as f32, p.y as f32).into());
+    let before = foot + resolved.view.towards_camera(foot).normalize_or_zero() * JUST_BEFORE;
+    if !is_air(interpretation.model, before.as_vec3()) {
+        return None;
+    }
     let q = p + inwards * INTO_BLOCK;
     Some(q.with_z(interpretation.model.horizon_z(0, block, q.x as f32, q.y as f32).into()))
 }

@@ -88,10 +88,36 @@ pub fn set(text: &str) -> Line {
     line
 }
 
+/// A name with what was measured of it, "F1, 45 m": a mark that is not seen (U+200E) keeps figures and unit in their order
+/// behind a name that is read from right to left.
+///
+/// ```
+/// use ttf::text::{measured, set};
+/// assert_eq!(measured("F1", "45 m"), "F1, 45 m");
+/// let name = measured("אב", "45 m");
+/// let seen: String = set(&name).glyphs.iter().map(|glyph| &name[glyph.said.clone()]).collect();
+/// assert!(seen.trim_start_matches('\u{200e}').starts_with("45 m"));
+/// ```
+pub fn measured(name: &str, figure: &str) -> String {
+    let mark = if name.chars().any(is_right_to_left) { "\u{200e}" } else { "" };
+    format!("{name}, {mark}{figure}")
+}
+
+/// Whether a character is of a script that is read from right to left.
+fn is_right_to_left(character: char) -> bool {
+    matches!(character, '\u{590}'..='\u{8ff}' | '\u{fb1d}'..='\u{fdff}' | '\u{fe70}'..='\u{fefe}'
+        | '\u{10800}'..='\u{10fff}' | '\u{1e800}'..='\u{1efff}')
+}
+
+/// Whether a character has no ink: marks of direction, joiners.
+pub(super) fn is_invisible(character: char) -> bool {
+    matches!(character, '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}')
+}
+
 /// Whether a character stands by itself, from left to right, wherever it stands.
 fn is_simple(character: char) -> bool {
-    !matches!(character, '\u{300}'..='\u{36f}' | '\u{483}'..='\u{489}' | '\u{590}'..='\u{1dff}'
-        | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}')
+    let is_joined = matches!(character, '\u{300}'..='\u{36f}' | '\u{483}'..='\u{489}' | '\u{590}'..='\u{1dff}');
+    !is_joined && !is_invisible(character)
 }
 
 /// Whether a character goes with the one before: marks, joiners, variation selectors.

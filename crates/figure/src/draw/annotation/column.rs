@@ -3,9 +3,9 @@
 
 use super::faces::led;
 use super::room::{self, LabelRoom};
-use crate::list::{Across, Group, Ink, Text, Upright, width_of};
 use crate::style::LEAST_TEXT_PT;
 use glam::DVec2;
+use page::list::{Across, Group, Ink, Text, Upright, width_of};
 use ttf::Colour;
 
 /// Between the block's edge and the names, points: the first distance at which most names are free.

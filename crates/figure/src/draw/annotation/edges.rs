@@ -5,12 +5,12 @@
 //! not. Of those along inlines and crosslines the lowest on the page is chosen, of the upright ones the leftmost.
 
 use super::room::LabelRoom;
-use crate::Rect;
 use crate::cut::value_at;
 use crate::draw::axes::round_step;
-use crate::list::{Across, Group, GroupKind, Path, PathItem, Stroke, Text, Upright, width_of};
 use crate::style::{FRAME_PT, NUMBER_PT, QUIET_INK, TEXT_PT, TICK_PT};
 use glam::{DVec2, DVec3};
+use page::Rect;
+use page::list::{Across, Group, GroupKind, Path, PathItem, Stroke, Text, Upright, width_of};
 use render::{View, VoxelBox};
 use survey::{SurveyGeometry, VerticalUnit};
 
@@ -18,8 +18,10 @@ use survey::{SurveyGeometry, VerticalUnit};
 const SHORTEST_PT: f64 = 30.0;
 /// Between a tick and its number, and between numbers and the title, points.
 const GAP_PT: f64 = 2.0;
-/// Least distance of numbers along an edge, points.
-const EVERY_PT: f64 = 24.0;
+/// Least distance of numbers along an edge, points; the second one where there would be fewer than so many otherwise, if need
+/// be at quarters of a round value.
+const EVERY_PT: [f64; 2] = [24.0, 17.0];
+const FEW: usize = 4;
 /// Height of a number's letters as they stand on a line, as a share of their size.
 const HEIGHT: f64 = 1.15;
 /// Distance of the places at which a line is asked whether an edge of the block lies on it, points.
@@ -100,7 +102,10 @@ pub(super) fn drawn(
                 continue;
             }
             let number = beside(foot + edge.outward * (TICK_PT + GAP_PT), edge.outward, value);
-            if room.try_take(&number) {
+            // Side by side with one of another axis it would be read as one number.
+            let spaced = Text { text: format!("  {}  ", number.text), ..number.clone() };
+            if room.is_free(&spaced) {
+                room.take(&number);
                 marks.add_line(&[foot, foot + edge.outward * TICK_PT]);
                 reach = reach.max(2.0 * support(&number, edge.outward));
                 group.push(number);
@@ -132,6 +137,12 @@ fn support(text: &Text, towards: DVec2) -> f64 {
     0.5 * (text.width() * towards.x.abs() + HEIGHT * text.size * towards.y.abs())
 }
 
+/// The least round value, or quarter of a hundred or more, that is not less.
+fn close_step(least: f64) -> f64 {
+    let (round, quarter) = (round_step(least), 2.5 * 10f64.powf((0.4 * least).log10().ceil()));
+    if quarter >= 25.0 { round.min(quarter) } else { round }
+}
+
 impl OuterEdge {
     /// The parts of its line on which the block has no edge.
     fn bare(&self, middle: DVec3, page: &dyn Fn(DVec3) -> DVec2, is_rock: &dyn Fn(DVec3) -> bool) -> Vec<[DVec2; 2]> {
@@ -159,10 +170,21 @@ impl OuterEdge {
         let width = [from, to].map(|value| width_of(&format!("{value:.0}"), NUMBER_PT)).into_iter().fold(0.0, f64::max);
         let clear = ((width + 6.0) / along.x.max(1e-6)).min((HEIGHT * NUMBER_PT + 4.0) / along.y.max(1e-6));
         let least = if self.axis < 2 { 1.0 } else { 0.0 };
-        let step = round_step((to - from).abs() / start.distance(end) * clear.max(EVERY_PT)).max(least);
+        let per_point = (to - from).abs() / start.distance(end);
+        let step = round_step(per_point * clear.max(EVERY_PT[0])).max(least);
         if !(step.is_finite() && step > 0.0 && from != to) {
             return Vec::new();
         }
+        let ticks = self.multiples(step, [from, to]);
+        if ticks.len() >= FEW {
+            ticks
+        } else {
+            self.multiples(close_step(per_point * clear.max(EVERY_PT[1])).max(least), [from, to])
+        }
+    }
+
+    /// The multiples of a step between the values of the two ends, and where they are.
+    fn multiples(&self, step: f64, [from, to]: [f64; 2]) -> Vec<(String, DVec3)> {
         let slack = 1e-6 * step;
         let (first, last) = ((from.min(to) - slack) / step, (from.max(to) + slack) / step);
         let tick = |n: i64| {

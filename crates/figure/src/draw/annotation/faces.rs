@@ -6,10 +6,10 @@ use super::room::LabelRoom;
 use super::{faults, names, queries, room};
 use crate::convex::meet;
 use crate::draw::vector_block::BlockNames;
-use crate::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright};
 use crate::style::{FRAME_PT, INK, QUIET_INK, TEXT_PT};
 use glam::{DVec2, DVec3};
 use model::StructuralModel;
+use page::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright};
 use render::vector::SeenSection;
 use std::collections::HashSet;
 use survey::SurveyGeometry;
@@ -29,6 +29,8 @@ const MOST_LEADERS: usize = 8;
 /// The rim of names on faces, points, and its opacity.
 const RIM_PT: f64 = 1.2;
 const RIM_OPACITY: f32 = 0.9;
+/// The rim of names that stand on a pattern hides it whole: what is left of it between letters looks like dirt.
+const ON_PATTERN_RIM_PT: f64 = 1.7;
 /// Radius of the dot at the end of a leader, points.
 const DOT_PT: f64 = 1.3;
 
@@ -75,11 +77,16 @@ impl FaceWriter<'_> {
     /// Everything that is written on faces.
     pub(crate) fn written(&self, faces: &[SeenSection], wanted: FaceLabels, room: &mut LabelRoom) -> Vec<Item> {
         let (mut written, mut beside) = (Vec::new(), Vec::new());
+        let mut faults = Vec::new();
         if wanted.faults {
-            self.faults(faces, room, &mut written, &mut beside);
+            faults = self.faults(faces, room, &mut written, &mut beside);
         }
         if wanted.layers {
             self.layers(faces, room, &mut written, &mut beside);
+        }
+        // Leaders cross no fault where they can help it.
+        for pair in faults.iter().flat_map(|line| line.windows(2)) {
+            room.take_line(pair[0], pair[1]);
         }
         for (anchors, name) in beside {
             written.extend(leader(&anchors, &name, &self.covered, room).map(Item::from));
@@ -91,7 +98,14 @@ impl FaceWriter<'_> {
         written
     }
 
-    fn faults(&self, faces: &[SeenSection], room: &mut LabelRoom, written: &mut Vec<Item>, beside: &mut Vec<Beside>) {
+    /// Writes what is said of faults, and returns their lines on the page.
+    fn faults(
+        &self,
+        faces: &[SeenSection],
+        room: &mut LabelRoom,
+        written: &mut Vec<Item>,
+        beside: &mut Vec<Beside>,
+    ) -> Vec<Vec<DVec2>> {
         let runs = faults::runs(self.model, faces, self.page_from_voxel, self.page, self.air);
         let lines: Vec<Vec<DVec2>> = runs.iter().map(faults::FaultRun::line).collect();
         let mut named = Vec::new();
@@ -110,12 +124,13 @@ impl FaceWriter<'_> {
                     room.take(&text);
                     group.push(text);
                 }
-                None => beside.push((run.anchors(), said)),
+                None => beside.push((run.anchors(&lines), said)),
             }
             if !group.items.is_empty() {
                 written.push(group.into());
             }
         }
+        lines
     }
 
     fn layers(&self, faces: &[SeenSection], room: &mut LabelRoom, written: &mut Vec<Item>, beside: &mut Vec<Beside>) {
@@ -128,7 +143,7 @@ impl FaceWriter<'_> {
                 style.interval_at(0.5).and_then(|interval| interval.colour).unwrap_or(style.colour)
             });
             let rim = if ground.luminance() < 0.3 { Colour::WHITE } else { ground };
-            let text = Text::new(DVec2::ZERO, name.clone()).inked(INK).haloed(RIM_PT, Ink::glass(rim, RIM_OPACITY));
+            let text = Text::new(DVec2::ZERO, name.clone()).inked(INK).haloed(ON_PATTERN_RIM_PT, rim);
             let own = || pieces.iter().filter(|piece| piece.layer == layer);
             let best = own().filter_map(|piece| piece.named(&text, room)).max_by(|a, b| a.1.total_cmp(&b.1));
             if let Some((text, _)) = best {

@@ -7,14 +7,15 @@
 use super::room::{LabelRoom, outlines};
 use crate::convex::{holds, meet};
 use crate::cut::value_at;
-use crate::list::{Across, Group, GroupKind, Ink, Path, PathItem, Segment, Stroke, Text, Upright};
 use crate::style::{INK, NUMBER_PT};
 use glam::{DVec2, DVec3};
 use model::StructuralModel;
 use model::section::LineKind;
+use page::list::{Across, Group, GroupKind, Ink, Path, PathItem, Segment, Stroke, Text, Upright};
 use render::vector::SeenSection;
 use survey::SurveyGeometry;
 use ttf::Colour;
+use ttf::text::measured;
 
 /// Half the length of an arrow, its distance from the fault, and its barb along and across, points.
 const ARROW_PT: [f64; 4] = [7.0, 3.0, 3.6, 2.2];
@@ -25,6 +26,8 @@ const RIM_PT: f64 = 1.3;
 const RIM_OPACITY: f32 = 0.85;
 /// Lines that are seen shorter than this carry neither arrows nor a name, points.
 const SHORTEST_PT: f64 = 16.0;
+/// A leader ends at least so far from other faults where it can, points.
+const APART_PT: f64 = 6.0;
 /// How far beside a fault its blocks are looked up, voxels.
 const BESIDE: f64 = 0.75;
 /// Throws below this are not stated, samples.
@@ -242,9 +245,14 @@ impl FaultRun<'_> {
         self.places.iter().map(|(_, at)| *at).collect()
     }
 
-    /// Places on the page where a leader may end, the best one first.
-    pub(super) fn anchors(&self) -> Vec<DVec2> {
-        [0.93, 0.07, 0.8, 0.2, 0.65, 0.35, 0.5].map(|share| self.at(share).0).to_vec()
+    /// Places on the page where a leader may end, the best one first; those near another fault's line come last. `lines` are
+    /// all faults that are seen.
+    pub(super) fn anchors(&self, lines: &[Vec<DVec2>]) -> Vec<DVec2> {
+        let own = self.line();
+        let others = || lines.iter().filter(|line| **line != own).flatten();
+        let mut anchors = [0.93, 0.07, 0.8, 0.2, 0.65, 0.35, 0.5].map(|share| self.at(share).0).to_vec();
+        anchors.sort_by_key(|anchor| others().any(|place| place.distance(*anchor) < APART_PT));
+        anchors
     }
 }
 
@@ -252,8 +260,8 @@ impl FaultRun<'_> {
 pub(super) fn said(name: &str, throw: Option<Throw>, geometry: &SurveyGeometry) -> String {
     let unit = geometry.vertical.unit.symbol();
     match throw {
-        Some(throw) if throw.size >= 10.0 => format!("{name}, {:.0} {unit}", throw.size),
-        Some(throw) => format!("{name}, {:.1} {unit}", throw.size),
+        Some(throw) if throw.size >= 10.0 => measured(name, &format!("{:.0} {unit}", throw.size)),
+        Some(throw) => measured(name, &format!("{:.1} {unit}", throw.size)),
         None => name.to_owned(),
     }
 }

@@ -7,9 +7,9 @@
 
 use super::room::LabelRoom;
 use crate::convex::{holds, meet};
-use crate::list::{Halo, Text};
 use crate::style::LEAST_TEXT_PT;
 use glam::DVec2;
+use page::list::{Halo, Text};
 use render::vector::SeenSection;
 
 /// Sizes that are tried, points: the first one that fits is taken.
@@ -26,7 +26,7 @@ const MOST_TURN_DEG: [f64; 2] = [16.0, 75.0];
 const OVER_CAPITALS: f64 = 0.1;
 /// Shares of a rim's width that are tried, so that it stays within the layer, too; letters cannot be read on a pattern
 /// with less than the last.
-const RIMS: [f64; 3] = [1.0, 0.85, 0.7];
+const RIMS: [f64; 4] = [1.0, 0.85, 0.7, 0.5];
 /// How far before an edge a leader ends in a layer that reaches it, points.
 const BEFORE_PT: [f64; 2] = [2.5, 8.0];
 /// Steeper words are hard to read, degrees.
@@ -205,7 +205,7 @@ impl LayerPiece {
         let Some(halo) = text.halo else { return text };
         let letters: Vec<[DVec2; 4]> = text.straight().iter().map(letter_box).collect();
         let fits = |share: &f64| letters.iter().all(|letter| !self.is_crossed(&grown(letter, share * halo.width)));
-        let share = RIMS.into_iter().find(fits).unwrap_or(RIMS[2]);
+        let share = RIMS.into_iter().find(fits).unwrap_or(RIMS[3]);
         Text { halo: Some(Halo { width: share * halo.width, ..halo }), ..text }
     }
 

@@ -4,10 +4,10 @@
 use super::faces::FaceWriter;
 use super::room::LabelRoom;
 use crate::convex::holds;
-use crate::list::{Across, Group, GroupKind, Ink, Text, Upright};
 use crate::style::{INK, TEXT_PT};
 use glam::{DVec2, DVec3};
 use model::section::{LineKind, LineQuality};
+use page::list::{Across, Group, GroupKind, Ink, Text, Upright};
 use render::vector::SeenSection;
 use survey::StratigraphicHorizon;
 use ttf::Colour;
@@ -94,7 +94,7 @@ fn along(run: &[DVec2], length: f64) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Rect;
+    use page::Rect;
 
     #[test]
     fn long_lines_are_queried_again_and_again_and_short_ones_not_at_all() {

@@ -1,9 +1,9 @@
 //! The room that labels share: who comes first keeps its place.
 
-use crate::Rect;
 use crate::convex::meet;
-use crate::list::Text;
 use glam::DVec2;
+use page::Rect;
+use page::list::Text;
 
 /// Free around every label, points.
 const APART_PT: f64 = 0.8;

@@ -6,9 +6,9 @@
 use super::Placed;
 use super::room::LabelRoom;
 use crate::draw::seen::Sight;
-use crate::list::{Across, Group, GroupKind, Ink, Path, PathItem, Stroke, Text, Upright};
 use crate::style::{FRAME_PT, INK, NUMBER_PT, TEXT_PT};
 use glam::{DVec2, DVec3};
+use page::list::{Across, Group, GroupKind, Ink, Path, PathItem, Stroke, Text, Upright};
 use survey::well::is_same_surface;
 use survey::{StratigraphicHorizon, SurveyGeometry, Well};
 use ttf::Colour;

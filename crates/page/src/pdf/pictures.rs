@@ -1,7 +1,7 @@
 //! Pictures: colours and transparency as two images, compressed as PNG compresses them.
 
 use super::Refs;
-use crate::error::FigureError;
+use crate::error::PageError;
 use crate::list::{Picture, Sampling, png};
 use image::{DynamicImage, GrayImage, RgbImage};
 use pdf_writer::types::Predictor;
@@ -12,7 +12,7 @@ use pdf_writer::{Filter, Finish, Pdf, Ref};
 ///
 /// # Errors
 /// A picture that cannot be encoded.
-pub(super) fn write(picture: &Picture, pdf: &mut Pdf, refs: &mut Refs) -> Result<Ref, FigureError> {
+pub(super) fn write(picture: &Picture, pdf: &mut Pdf, refs: &mut Refs) -> Result<Ref, PageError> {
     let pixels = &picture.pixels;
     let [width, height] = [pixels.width(), pixels.height()];
     let is_smooth = picture.sampling == Sampling::Smooth;
@@ -50,7 +50,7 @@ fn describe(image: &mut ImageXObject, [width, height]: [u32; 2], channels: i32) 
 }
 
 /// The compressed rows of a PNG file, which PDF knows as Flate with PNG's predictors.
-fn idat(image: &DynamicImage) -> Result<Vec<u8>, FigureError> {
+fn idat(image: &DynamicImage) -> Result<Vec<u8>, PageError> {
     let file = png(image)?;
     let mut rows = Vec::new();
     // A signature of eight bytes, then chunks: length, kind, bytes, checksum.

@@ -1,7 +1,7 @@
 //! The one way through a page for back ends that write vectors, and what they all leave out.
 
 use super::{DisplayList, Group, Item, Path, PathItem, Picture, Sampling, Segment, Stroke, Text};
-use crate::error::FigureError;
+use crate::error::PageError;
 use image::DynamicImage;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ pub(crate) trait VectorWriter {
     ///
     /// # Errors
     /// A picture that cannot be encoded.
-    fn picture(&mut self, picture: &Picture) -> Result<(), FigureError>;
+    fn picture(&mut self, picture: &Picture) -> Result<(), PageError>;
 
     /// What follows lies in this group, until it ends.
     fn begin(&mut self, group: &Group);
@@ -32,14 +32,14 @@ pub(crate) trait VectorWriter {
 ///
 /// # Errors
 /// What the writer says.
-pub(crate) fn write_vectors(list: &DisplayList, writer: &mut impl VectorWriter) -> Result<(), FigureError> {
+pub(crate) fn write_vectors(list: &DisplayList, writer: &mut impl VectorWriter) -> Result<(), PageError> {
     if let Some(paper) = list.paper {
         writer.path(&PathItem::filled(Path::rect(list.bounds()), paper));
     }
     write_items(&list.items, writer)
 }
 
-fn write_items(items: &[Item], writer: &mut impl VectorWriter) -> Result<(), FigureError> {
+fn write_items(items: &[Item], writer: &mut impl VectorWriter) -> Result<(), PageError> {
     for item in items {
         match item {
             Item::Group(group) if group.hides_all() => {}
@@ -109,8 +109,8 @@ impl KnownPictures {
 ///
 /// # Errors
 /// An image of no size.
-pub(crate) fn png(image: &DynamicImage) -> Result<Vec<u8>, FigureError> {
+pub(crate) fn png(image: &DynamicImage) -> Result<Vec<u8>, PageError> {
     let mut bytes = std::io::Cursor::new(Vec::new());
-    image.write_to(&mut bytes, image::ImageFormat::Png).map_err(FigureError::Encode)?;
+    image.write_to(&mut bytes, image::ImageFormat::Png).map_err(PageError::Encode)?;
     Ok(bytes.into_inner())
 }

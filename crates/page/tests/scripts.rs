@@ -1,8 +1,8 @@
 //! Names in Arabic and Chinese on a page, in every kind of file.
 
-use figure::list::{DisplayList, Ink, Text};
-use figure::{pdf, raster, svg};
 use glam::DVec2;
+use page::list::{DisplayList, Ink, Text};
+use page::{pdf, raster, svg};
 use ttf::text::{Face, Faces};
 
 fn faces() -> Faces {

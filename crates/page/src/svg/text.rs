@@ -9,16 +9,18 @@ use ttf::subset::used;
 use ttf::text::set;
 
 /// The embedded face by name, and what stands in for it where it is not installed: faces of like width and weight first,
-/// since programs that read no fonts in files often set text at its own length too.
+/// since programs that read no fonts in files often set text at its own length too. They come before given faces, which
+/// often have figures and commas as well; those at the end have other scripts too.
 const FACE: &str = "Ubuntu Light";
-const OTHERS: &str = "Ubuntu, 'Noto Sans Display', 'Noto Sans', 'Open Sans', 'DejaVu Sans', sans-serif";
+const LIKE: &str = "Ubuntu, 'Noto Sans Display', 'Noto Sans', 'Open Sans'";
+const OTHERS: &str = "'DejaVu Sans', sans-serif";
 /// The weight that is asked for. The face is light by its own name; asked for light, fontconfig takes any other light
 /// face before those that stand in.
 const WEIGHT: &str = "400";
 
 /// Adds the faces with what the page needs of them; returns the list of their names.
 pub(super) fn faces(into: &mut String, list: &DisplayList) -> String {
-    let mut names = vec![format!("'{FACE}'")];
+    let mut names = vec![format!("'{FACE}'"), LIKE.to_owned()];
     let lines = list.lines();
     for used in used(lines.iter().map(String::as_str)) {
         let Some(subset) = used.file_to_set_text() else { continue };

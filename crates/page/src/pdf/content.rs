@@ -2,7 +2,7 @@
 
 use super::font::PageFonts;
 use super::{Refs, pictures};
-use crate::error::FigureError;
+use crate::error::PageError;
 use crate::list::{
     Cap, Group, GroupKind, Ink, KnownPictures, Path, PathItem, Picture, Rule, Segment, Stroke, Text, VectorWriter,
 };
@@ -211,7 +211,7 @@ impl VectorWriter for PageContent<'_> {
     }
 
     /// A picture: a square of one unit, laid on its parallelogram.
-    fn picture(&mut self, picture: &Picture) -> Result<(), FigureError> {
+    fn picture(&mut self, picture: &Picture) -> Result<(), PageError> {
         let (number, is_new) = self.known.number(picture);
         if is_new {
             self.pictures.push(pictures::write(picture, self.pdf, self.refs)?);

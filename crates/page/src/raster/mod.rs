@@ -15,15 +15,18 @@ mod tiff;
 
 pub use tiff::tiff;
 
-use crate::error::FigureError;
+use crate::error::PageError;
 use crate::list::{DisplayList, Group, Item, POINTS_PER_INCH, Picture};
 use glyphs::Lettering;
 use image::RgbaImage;
 use rayon::prelude::*;
-use tiny_skia::{FillRule, Mask, Paint, PixmapMut, Stroke, Transform};
+use tiny_skia::{FillRule, Mask, Paint, Pixmap, PixmapMut, Stroke, Transform};
 
 /// Rows that are painted at a time.
 const BAND: usize = 128;
+/// Rows above and below them that are painted as well and left out: lines thinner than a pixel leave specks where they cross
+/// the first row of a picture of `tiny-skia`.
+const BESIDE: usize = 2;
 /// Longest side of a page, pixels.
 pub const MOST_SIDE_PX: u32 = 32_768;
 
@@ -33,23 +36,25 @@ pub const MOST_SIDE_PX: u32 = 32_768;
 /// transparent where nothing is drawn.
 ///
 /// # Errors
-/// [`FigureError::PageSize`] where that is nothing or more than [`MOST_SIDE_PX`].
-pub fn raster(list: &DisplayList, dpi: f64) -> Result<RgbaImage, FigureError> {
+/// [`PageError::PageSize`] where that is nothing or more than [`MOST_SIDE_PX`].
+pub fn raster(list: &DisplayList, dpi: f64) -> Result<RgbaImage, PageError> {
     let scale = dpi / POINTS_PER_INCH;
     let [width, height] = size_px(list, dpi)?;
     let mut page = Prepared { ops: Vec::new(), clips: Vec::new(), scale };
     list.faces.scope(|| list.items.iter().for_each(|item| page.add(item, None)));
     let paper = list.paper.map(paths::colour);
     let mut image = RgbaImage::new(width, height);
-    image.par_chunks_mut(width as usize * 4 * BAND).enumerate().for_each(|(n, rows)| {
-        let size = [width, (rows.len() / (4 * width as usize)) as u32];
-        if let Some(pixmap) = PixmapMut::from_bytes(rows, size[0], size[1]) {
-            let mut band = Band { pixmap, top: (n * BAND) as f32, masks: vec![None; page.clips.len()] };
-            if let Some(paper) = paper {
-                band.pixmap.fill(paper);
-            }
-            page.ops.iter().for_each(|op| band.paint(op, &page));
+    let stride = width as usize * 4;
+    image.par_chunks_mut(stride * BAND).enumerate().for_each(|(n, rows)| {
+        let height = (rows.len() / stride + 2 * BESIDE) as u32;
+        let Some(mut pixmap) = Pixmap::new(width, height) else { return };
+        let top = (n * BAND) as f32 - BESIDE as f32;
+        let mut band = Band { pixmap: pixmap.as_mut(), top, masks: vec![None; page.clips.len()] };
+        if let Some(paper) = paper {
+            band.pixmap.fill(paper);
         }
+        page.ops.iter().for_each(|op| band.paint(op, &page));
+        rows.copy_from_slice(&pixmap.data()[stride * BESIDE..][..rows.len()]);
         rows.chunks_exact_mut(4).for_each(straighten);
     });
     Ok(image)
@@ -59,11 +64,11 @@ pub fn raster(list: &DisplayList, dpi: f64) -> Result<RgbaImage, FigureError> {
 ///
 /// # Errors
 /// As [`raster`].
-pub fn size_px(list: &DisplayList, dpi: f64) -> Result<[u32; 2], FigureError> {
+pub fn size_px(list: &DisplayList, dpi: f64) -> Result<[u32; 2], PageError> {
     let size = (list.size * dpi / POINTS_PER_INCH).round();
     let most = f64::from(MOST_SIDE_PX);
     if !(size.min_element() >= 1.0 && size.max_element() <= most) {
-        return Err(FigureError::PageSize { size_px: size.to_array(), most: MOST_SIDE_PX });
+        return Err(PageError::PageSize { size_px: size.to_array(), most: MOST_SIDE_PX });
     }
     Ok([size.x as u32, size.y as u32])
 }

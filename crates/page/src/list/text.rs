@@ -142,13 +142,13 @@ impl Text {
     }
 
     /// Moves it.
-    pub(crate) fn shift(&mut self, by: DVec2) {
+    pub fn shift(&mut self, by: DVec2) {
         self.at += by;
         self.letters.iter_mut().for_each(|letter| letter.at += by);
     }
 
     /// Gives it another size; a bent line grows about its middle.
-    pub(crate) fn resize(&mut self, size: f64) {
+    pub fn resize(&mut self, size: f64) {
         let (share, bounds) = (size / self.size, self.bounds());
         for letter in &mut self.letters {
             letter.at = bounds.centre() + (letter.at - bounds.centre()) * share;
@@ -198,7 +198,7 @@ impl Text {
     }
 
     /// The same no wider than `room`, in a smaller size where that is enough and shortened to end in "…"
-    /// where it would be smaller than [`crate::style::LEAST_TEXT_PT`].
+    /// where it would be smaller than [`crate::style::LEAST_TEXT_PT`]; empty without room for a letter.
     #[must_use]
     pub fn fitted(mut self, room: f64) -> Self {
         let width = self.width();
@@ -213,7 +213,7 @@ impl Text {
             let whole: Vec<char> = self.text.trim_end().chars().collect();
             let short = |count: usize| whole[..count].iter().collect::<String>().trim_end().to_owned() + "…";
             let fits = |count: &usize| width_of(&short(*count), self.size) <= room;
-            self.text = (0..whole.len()).rev().find(fits).map_or_else(String::new, short);
+            self.text = (1..whole.len()).rev().find(fits).map_or_else(String::new, short);
         }
         self
     }
@@ -221,7 +221,7 @@ impl Text {
     /// Its length along the line, points.
     ///
     /// ```
-    /// use figure::list::Text;
+    /// use page::list::Text;
     /// let text = Text::new(glam::DVec2::ZERO, "Top Chalk");
     /// let twice = text.clone().sized(2.0 * text.size);
     /// assert!((twice.width() - 2.0 * text.width()).abs() < 1e-3);
@@ -374,7 +374,9 @@ mod tests {
         assert_eq!(name.clone().fitted(1000.0), name);
         let little = name.clone().fitted(0.95 * name.width());
         assert!(little.text == name.text && little.size < 8.0);
-        let short = name.fitted(60.0);
+        let short = name.clone().fitted(60.0);
         assert!(short.text.ends_with('…') && short.width() <= 60.0 && short.size >= crate::style::LEAST_TEXT_PT);
+        // Dots alone would say nothing.
+        assert_eq!(name.fitted(8.0).text, "");
     }
 }

@@ -5,7 +5,7 @@
 //! straight alpha.
 
 use crate::compress::deflated;
-use crate::error::FigureError;
+use crate::error::PageError;
 use image::RgbaImage;
 use rayon::prelude::*;
 
@@ -23,13 +23,13 @@ enum Entry {
 ///
 /// ```
 /// let image = image::RgbaImage::from_pixel(3, 2, image::Rgba([10, 20, 30, 255]));
-/// let file = figure::tiff(&image, 300.0).unwrap();
+/// let file = page::tiff(&image, 300.0).unwrap();
 /// assert_eq!(file[..4], *b"II*\0");
 /// ```
 ///
 /// # Errors
-/// [`FigureError::TiffSize`] where the file would have more than 4 GiB.
-pub fn tiff(image: &RgbaImage, dpi: f64) -> Result<Vec<u8>, FigureError> {
+/// [`PageError::TiffSize`] where the file would have more than 4 GiB.
+pub fn tiff(image: &RgbaImage, dpi: f64) -> Result<Vec<u8>, PageError> {
     let channels = if image.pixels().all(|pixel| pixel.0[3] == u8::MAX) { 3 } else { 4 };
     let row_bytes = image.width() as usize * 4;
     let strip =
@@ -83,7 +83,7 @@ fn differences(row: &[u8], channels: usize) -> Vec<u8> {
 }
 
 /// Adds the directory; values of more than four bytes follow it.
-fn write_directory(file: &mut Vec<u8>, entries: &[Entry]) -> Result<(), FigureError> {
+fn write_directory(file: &mut Vec<u8>, entries: &[Entry]) -> Result<(), PageError> {
     let mut behind = Vec::new();
     let end = file.len() + 2 + 12 * entries.len() + 4;
     file.extend((entries.len() as u16).to_le_bytes());
@@ -113,8 +113,8 @@ fn write_directory(file: &mut Vec<u8>, entries: &[Entry]) -> Result<(), FigureEr
 }
 
 /// A place in the file.
-fn offset(place: usize) -> Result<u32, FigureError> {
-    u32::try_from(place).map_err(|_| FigureError::TiffSize)
+fn offset(place: usize) -> Result<u32, PageError> {
+    u32::try_from(place).map_err(|_| PageError::TiffSize)
 }
 
 #[cfg(test)]

@@ -35,6 +35,26 @@ fn a_line_covers_its_width_times_its_length() {
     }
 }
 
+/// The page is painted in bands of rows: a line that crosses from one to the next is the line that crosses none.
+#[test]
+fn thin_lines_pass_from_band_to_band_without_specks() {
+    let drawn = |down: f64| {
+        let mut list = DisplayList::new(DVec2::new(240.0, 240.0));
+        for n in 0..12 {
+            let from = DVec2::new(10.0, 100.3 + 3.7 * f64::from(n) - down);
+            let line: Vec<DVec2> =
+                (0..80).map(|m| from + DVec2::new(2.7, 0.11 * f64::from(n)) * f64::from(m)).collect();
+            list.items.push(PathItem::stroked(Path::line(&line), Stroke::new(0.6, Ink::BLACK).round()).into());
+        }
+        raster(&list, 72.0).unwrap()
+    };
+    let (across, within) = (drawn(0.0), drawn(60.0));
+    for (x, y) in (0..240).flat_map(|x| (120..136).map(move |y| (x, y))) {
+        let [a, b] = [across.get_pixel(x, y).0[0], within.get_pixel(x, y - 60).0[0]];
+        assert!(a.abs_diff(b) < 24, "{a} for {b} at {x}, {y}");
+    }
+}
+
 #[test]
 fn dashes_cover_their_share_and_dots_are_discs() {
     let line = Path::line(&[DVec2::new(6.0, 20.0), DVec2::new(66.0, 20.0)]);
@@ -160,9 +180,9 @@ fn the_same_page_is_the_same_bytes_on_one_thread_and_four_and_sizes_are_printed_
     let one = on(1);
     assert_eq!(one.dimensions(), (600, 400));
     assert!(one == on(4));
-    assert!(matches!(raster(&list, 0.1), Err(FigureError::PageSize { .. })));
-    assert!(matches!(raster(&list, f64::NAN), Err(FigureError::PageSize { .. })));
-    assert!(matches!(raster(&list, 1e6), Err(FigureError::PageSize { .. })));
+    assert!(matches!(raster(&list, 0.1), Err(PageError::PageSize { .. })));
+    assert!(matches!(raster(&list, f64::NAN), Err(PageError::PageSize { .. })));
+    assert!(matches!(raster(&list, 1e6), Err(PageError::PageSize { .. })));
 }
 
 #[test]

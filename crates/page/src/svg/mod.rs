@@ -9,7 +9,7 @@
 mod numbers;
 mod text;
 
-use crate::error::FigureError;
+use crate::error::PageError;
 use crate::list::{
     Cap, DisplayList, Group, GroupKind, Ink, KnownPictures, PathItem, Picture, Rule, Sampling, Stroke, Text,
     VectorWriter, png, write_vectors,
@@ -23,7 +23,7 @@ use text::{escaped, text};
 /// Writes a page as an SVG document; `title` is what readers announce.
 ///
 /// ```
-/// use figure::list::{DisplayList, Group, GroupKind, Ink, Path, PathItem, Stroke};
+/// use page::list::{DisplayList, Group, GroupKind, Ink, Path, PathItem, Stroke};
 /// use glam::DVec2;
 ///
 /// let mut page = DisplayList::new(DVec2::splat(72.0));
@@ -31,17 +31,17 @@ use text::{escaped, text};
 /// let group = Group::new(GroupKind::Horizon, "Top Chalk");
 /// page.items.push(group.with([PathItem::stroked(line, Stroke::new(2.0, Ink::BLACK)).into()]).into());
 ///
-/// let svg = figure::svg(&page, "A rule").unwrap();
+/// let svg = page::svg(&page, "A rule").unwrap();
 /// assert!(svg.contains(r#"id="horizon-top-chalk""#) && svg.contains(r#"d="M0 36h72""#));
 /// ```
 ///
 /// # Errors
 /// A picture that cannot be encoded.
-pub fn svg(list: &DisplayList, title: &str) -> Result<String, FigureError> {
+pub fn svg(list: &DisplayList, title: &str) -> Result<String, PageError> {
     list.faces.scope(|| written(list, title))
 }
 
-fn written(list: &DisplayList, title: &str) -> Result<String, FigureError> {
+fn written(list: &DisplayList, title: &str) -> Result<String, PageError> {
     let mut writer = Writer::default();
     writer.families = text::faces(&mut writer.definitions, list);
     write_vectors(list, &mut writer)?;
@@ -124,7 +124,7 @@ impl VectorWriter for Writer {
     }
 
     /// A picture: a square of one unit, laid on its parallelogram.
-    fn picture(&mut self, picture: &Picture) -> Result<(), FigureError> {
+    fn picture(&mut self, picture: &Picture) -> Result<(), PageError> {
         let (known, is_new) = self.pictures.number(picture);
         let number = known + 1;
         if is_new {

@@ -30,7 +30,7 @@ pub const POINTS_PER_MM: f64 = POINTS_PER_INCH / 25.4;
 /// A page: its size and what is on it, back to front.
 ///
 /// ```
-/// use figure::list::{DisplayList, Ink, Item, Path, PathItem, Stroke};
+/// use page::list::{DisplayList, Ink, Item, Path, PathItem, Stroke};
 /// use glam::DVec2;
 ///
 /// // A rule of two points across a page of one square inch.
@@ -39,7 +39,7 @@ pub const POINTS_PER_MM: f64 = POINTS_PER_INCH / 25.4;
 /// page.items.push(PathItem::stroked(rule, Stroke::new(2.0, Ink::BLACK)).into());
 ///
 /// // At 72 dpi that is 72 pixels by 2.
-/// let pixels = figure::raster(&page, 72.0).unwrap();
+/// let pixels = page::raster(&page, 72.0).unwrap();
 /// assert_eq!(pixels.pixels().filter(|pixel| pixel.0 == [0, 0, 0, 255]).count(), 144);
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -99,7 +99,6 @@ impl DisplayList {
 
 /// Something on a page.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub enum Item {
     /// A filled or stroked path.
     Path(PathItem),

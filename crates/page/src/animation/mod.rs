@@ -44,7 +44,7 @@ impl AnimationShape {
 /// Writes an animation that repeats for ever, frame by frame.
 ///
 /// ```
-/// use figure::animation::{AnimationFormat, AnimationShape, AnimationWriter};
+/// use page::animation::{AnimationFormat, AnimationShape, AnimationWriter};
 /// let shape = AnimationShape { size_px: [4, 3], frames: 2, rate: 10.0 };
 /// let mut file = Vec::new();
 /// let mut writer = AnimationWriter::new(&mut file, AnimationFormat::Gif, shape)?;

@@ -100,7 +100,7 @@ impl Path {
     }
 
     /// Moves it.
-    pub(crate) fn shift(&mut self, by: DVec2) {
+    pub fn shift(&mut self, by: DVec2) {
         for segment in &mut self.segments {
             match segment {
                 Segment::Move(p) | Segment::Line(p) => *p += by,

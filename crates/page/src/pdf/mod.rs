@@ -11,7 +11,7 @@ mod font;
 mod pictures;
 
 use crate::compress::deflated;
-use crate::error::FigureError;
+use crate::error::PageError;
 use crate::list::{DisplayList, write_vectors};
 use content::{Layer, PageContent};
 use font::PageFonts;
@@ -25,7 +25,7 @@ const CREATOR: &str = concat!("Petroglyph ", env!("CARGO_PKG_VERSION"));
 /// Writes a page as a PDF document; `title` is what readers announce.
 ///
 /// ```
-/// use figure::list::{DisplayList, Group, GroupKind, Ink, Path, PathItem, Stroke};
+/// use page::list::{DisplayList, Group, GroupKind, Ink, Path, PathItem, Stroke};
 /// use glam::DVec2;
 ///
 /// let mut page = DisplayList::new(DVec2::splat(72.0));
@@ -33,18 +33,18 @@ const CREATOR: &str = concat!("Petroglyph ", env!("CARGO_PKG_VERSION"));
 /// let group = Group::new(GroupKind::Horizon, "Top Chalk");
 /// page.items.push(group.with([PathItem::stroked(line, Stroke::new(2.0, Ink::BLACK)).into()]).into());
 ///
-/// let pdf = figure::pdf(&page, "A rule").unwrap();
+/// let pdf = page::pdf(&page, "A rule").unwrap();
 /// assert!(pdf.starts_with(b"%PDF-1.7"));
 /// assert!(pdf.windows(17).any(|bytes| bytes == b"/Name (Top Chalk)"));
 /// ```
 ///
 /// # Errors
 /// A picture that cannot be encoded.
-pub fn pdf(list: &DisplayList, title: &str) -> Result<Vec<u8>, FigureError> {
+pub fn pdf(list: &DisplayList, title: &str) -> Result<Vec<u8>, PageError> {
     list.faces.scope(|| written(list, title))
 }
 
-fn written(list: &DisplayList, title: &str) -> Result<Vec<u8>, FigureError> {
+fn written(list: &DisplayList, title: &str) -> Result<Vec<u8>, PageError> {
     let mut refs = Refs::default();
     let [catalogue, pages, page, drawn, information] = [(); 5].map(|()| refs.next());
     let mut pdf = Pdf::new();
