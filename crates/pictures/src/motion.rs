@@ -105,6 +105,7 @@ fn between(start: &Scene, end: &Scene, geometry: &SurveyGeometry, share: f64) ->
     let eased = share * share * (3.0 - 2.0 * share);
     let mix = |from: f64, to: f64| mixed(from, to, eased);
     let mut scene = if share < 0.5 { start.clone() } else { end.clone() };
+    scene.in_motion = true;
     scene.size_px = start.size_px;
     scene.samples = start.samples;
     let boxes = [start.box_in(geometry), end.box_in(geometry)];

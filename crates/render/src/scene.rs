@@ -45,6 +45,10 @@ pub struct Scene {
     pub global_frequency: f32,
     /// What patterns are fixed to while one zooms. Default the rock.
     pub pattern_size: PatternSize,
+    /// Whether this is one of many pictures between which one zooms: then patterns that are fixed to the paper dissolve
+    /// from one size into the next. A single picture has the nearer size.
+    #[serde(skip)]
+    pub in_motion: bool,
     /// How flat coordinates are looked up. Default exact.
     pub lookup: Lookup,
     /// How colours are printed. Default as they are.
@@ -140,6 +144,7 @@ impl Default for Scene {
             blend: 0.0,
             global_frequency: 1.0,
             pattern_size: PatternSize::default(),
+            in_motion: false,
             lookup: Lookup::Exact,
             preset: Preset::Colour,
             background: Background::Colour(Colour::WHITE),

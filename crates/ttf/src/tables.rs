@@ -63,8 +63,8 @@ pub struct TtfGlobals {
     pub padding: [u32; 3],
 }
 
-/// How much denser the finer of two patterns is that are dissolved into one another: half an octave.
-pub const FINER: f32 = std::f32::consts::SQRT_2;
+/// How much denser the finer of two patterns is that are dissolved into one another: a quarter of an octave.
+pub const FINER: f32 = 1.189_207_1;
 
 /// A layer.
 #[repr(C)]

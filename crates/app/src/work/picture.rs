@@ -251,7 +251,8 @@ impl Artist {
         };
         let scene = &request.scenes[pane];
         let size_px = scene.size_px.map(|side| side.div_ceil(divisor).max(1));
-        let scene = Scene { size_px, samples, media: media_for(&scene.media, divisor), ..scene.clone() };
+        let media = media_for(&scene.media, divisor);
+        let scene = Scene { size_px, samples, media, in_motion: divisor > 1, ..scene.clone() };
         let loaded = request.rocks.read().unwrap_or_else(PoisonError::into_inner);
         let start = Instant::now();
         let (image, _) = super::compute(|| painter.draw(&scene, &loaded, progress))?;

@@ -17,7 +17,7 @@ struct TtfGlobals {
 }
 
 // How much denser the finer of two patterns is that are dissolved into one another: `ttf::FINER`.
-const FINER: f32 = 1.4142135;
+const FINER: f32 = 1.1892071;
 
 struct LayerEntry {
     colour: vec4<f32>,

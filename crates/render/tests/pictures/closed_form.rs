@@ -19,6 +19,10 @@ use ttf::{
 const RED: Colour = Colour::new(220, 40, 40);
 const GREEN: Colour = Colour::new(40, 200, 60);
 const BLUE: Colour = Colour::new(40, 60, 210);
+/// Green of ink is less.
+const INK_BELOW: u8 = 128;
+/// Pixels of the smallest piece of a pattern that counts.
+const SPECK: i32 = 5;
 
 fn geometry() -> SurveyGeometry {
     SurveyGeometry::regular([41, 31, 41], 25.0, 10.0, VerticalUnit::Metres)
@@ -98,7 +102,7 @@ fn a_striped_tile_repeats_as_often_as_its_frequency_says() {
     assert_eq!(changes(&Scene { global_frequency: 1.5, ..scene.clone() }), 30);
     assert_eq!(changes(&Scene { lookup: Lookup::Packed, ..scene.clone() }), 20);
     // Zooming in by a factor of 64 on the middle of the layer: fixed to the rock, one stripe fills the picture in the
-    // end; fixed to the paper, there are as many as before, as exactly as the half octaves allow.
+    // end; fixed to the paper, there are as many as before, as exactly as the steps allow.
     let zoomed = |pattern_size: PatternSize, zoom: f64| {
         let camera = Camera { zoom, target: Some([20.0, 0.0, 20.0]), ..scene.camera };
         changes(&Scene { pattern_size, camera, ..scene.clone() })
@@ -111,6 +115,60 @@ fn a_striped_tile_repeats_as_often_as_its_frequency_says() {
         let seen = zoomed(PatternSize::Paper, 2f64.powf(0.5 * f64::from(step))) as f64;
         let fits = whole as f64 / (1.0 - 2.0 * scene.camera.margin * 200.0 / 420.0);
         assert!((seen - fits).abs() <= 2.0, "{seen} changes of {fits} at step {step}");
+    }
+}
+
+/// Pieces of ink and of the ground between, but for specks, for each thousand pixels of a layer.
+fn pieces_per_area(image: &RgbaImage, is_layer: impl Fn(&Rgba<u8>) -> bool) -> f64 {
+    let [width, height] = [image.width() as usize, image.height() as usize];
+    // Of each pixel of the layer, whether it is ink.
+    let is_ink: Vec<Option<bool>> =
+        image.pixels().map(|pixel| is_layer(pixel).then_some(pixel.0[1] < INK_BELOW)).collect();
+    let mut seen = vec![false; width * height];
+    let mut pieces = 0;
+    for start in (0..width * height).filter(|&n| is_ink[n].is_some()) {
+        let (mut stack, mut pixels) = (vec![start], 0);
+        while let Some(n) = stack.pop() {
+            if std::mem::replace(&mut seen[n], true) {
+                continue;
+            }
+            pixels += 1;
+            let (x, y) = (n % width, n / width);
+            let columns = [(x > 0).then(|| n - 1), (x + 1 < width).then_some(n + 1)];
+            let rows = [(y > 0).then(|| n - width), (y + 1 < height).then_some(n + width)];
+            stack.extend(columns.into_iter().chain(rows).flatten().filter(|&m| !seen[m] && is_ink[m] == is_ink[n]));
+        }
+        pieces += i32::from(pixels >= SPECK);
+    }
+    1000.0 * f64::from(pieces) / is_ink.iter().flatten().count() as f64
+}
+
+#[test]
+fn dots_dashes_and_bricks_are_as_many_for_an_area_of_paper_over_a_zoom_of_64() {
+    let library = TextureLibrary::builtin().unwrap();
+    let closed = ClosedForm::folded(&geometry(), &[12.0, 30.0], 20.0, 0.1);
+    for pattern in ["sandstone-bedded", "shale", "limestone"] {
+        let mut functions = plain(&closed, &[RED, GREEN, RED]);
+        functions.layers.styles[1].intervals = vec![DepthInterval {
+            k: [0.0, 1.0],
+            texture: pattern.to_owned(),
+            frequency: None,
+            opacity: 1.0,
+            colour: None,
+        }];
+        let block = Block::of(&closed, &functions, &library);
+        let counted = |zoom: f64| {
+            let camera = Camera { zoom, target: Some([20.0, 0.0, 21.0]), ..from_the_side([1; 2]).camera };
+            let scene =
+                Scene { pattern_size: PatternSize::Paper, global_frequency: 0.4, camera, ..from_the_side([600, 420]) };
+            // Neither the layers around nor the paper.
+            let is_layer = |pixel: &Rgba<u8>| pixel.0[..3] != RED.rgb && pixel.0[..3] != [255; 3];
+            pieces_per_area(&draw(&scene, &block.inputs(&[])), is_layer)
+        };
+        let found = [1.0, 2.4, 5.7, 10.0, 19.0, 37.0, 64.0].map(counted);
+        println!("{pattern}: {found:.2?}");
+        let (least, most) = found.iter().fold((f64::INFINITY, 0.0f64), |(a, b), &n| (a.min(n), b.max(n)));
+        assert!(least > 0.5 && most < 2.0 * least, "{pattern}: {found:?}");
     }
 }
 

@@ -61,7 +61,7 @@ fn scenes(base: &Scene, whole: &VoxelBox, corner: render::Corner) -> Vec<(&'stat
     vec![
         ("exact", Scene { cut_outs: vec![cut], ..base.clone() }),
         ("packed", Scene { cut_outs: vec![cut], lookup: Lookup::Packed, ..base.clone() }),
-        ("pattern size", Scene { pattern_size: PatternSize::Paper, camera: between, ..base.clone() }),
+        ("pattern size", Scene { pattern_size: PatternSize::Paper, in_motion: true, camera: between, ..base.clone() }),
         ("half raw", Scene { blend: 0.5, camera: perspective, face_tone: 0.2, ..clear.clone() }),
         ("raw", Scene { blend: 1.0, cut_outs: whole.stair(corner, [0.6, 0.7], 0.8, 3), ..clear }),
         ("ground", Scene { cut_outs: vec![cut], ground: Some(Ground::default()), ..base.clone() }),
