@@ -55,7 +55,8 @@ impl Extraction {
         let settings: ExtractSettings =
             settings.map_or_else(|| Ok(<_>::default()), serde_json::from_str).map_err(wrong)?;
         let shared = long_of(py, progress.as_ref(), |progress| {
-            extraction::share(&project.lock(), (volume, &settings), (memory, edge), progress)
+            let project = project.lock();
+            extraction::share((project.root(), project.document()), (volume, &settings), (memory, edge), progress)
         })?;
         Ok(shared.map(|shared| Self { shared: Mutex::new(Some(shared)) }))
     }

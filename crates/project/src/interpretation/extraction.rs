@@ -8,7 +8,6 @@
 
 use super::bricked::BrickedExtraction;
 pub use super::bricked::{ExtractionPlan, SharedExtraction};
-use crate::Project;
 use crate::content;
 use crate::derived::{Scratch, folder, key_of, remove_resumable, revision};
 use crate::document::{Document, VolumeEntry};
@@ -257,14 +256,13 @@ impl<'a> Job<'a> {
 /// # Errors
 /// There is no such volume, the settings are invalid, the memory is too little, or another program does the same.
 pub fn share(
-    project: &Project,
+    (root, document): (&Path, &Document),
     (volume, settings): (Option<&str>, &ExtractSettings),
     (memory_bytes, edge): (u64, usize),
     progress: &Progress,
 ) -> Result<Option<SharedExtraction>, ProjectError> {
-    let root =
-        std::path::absolute(project.root()).map_err(|source| ProjectError::io("read", project.root(), source))?;
-    let job = Job::of(&root, project.document(), volume, settings)?;
+    let root = std::path::absolute(root).map_err(|source| ProjectError::io("read", root, source))?;
+    let job = Job::of(&root, document, volume, settings)?;
     if find_stored(&root, &job.key, Stored::Verified, progress)?.is_some() {
         return Ok(None);
     }

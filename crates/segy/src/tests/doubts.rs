@@ -10,7 +10,7 @@ fn what_would_make_bins_plausible_is_said() {
     let expected = "with a coordinate scalar of -100 in place of 0 they would be 25.00 by 25.00 m";
     assert!(has(&unscaled.warnings, expected), "{:?}", unscaled.warnings);
     // What states it is offered first.
-    assert!(has(&unscaled.warnings, "(if not: coordinate scalar -100, or X byte"), "{:?}", unscaled.warnings);
+    assert!(has(&unscaled.warnings, "(if not, state: coordinate scalar -100, or X byte"), "{:?}", unscaled.warnings);
     let stated = SegyOptions { coordinate_scalar: Some(-100), ..SegyOptions::default() };
     let info = grid().each(|_, t| t.i16(71, 0)).scan(&stated).unwrap();
     assert_eq!((info.coordinate_scalar, info.warnings.len()), ([-100; 2], 0));
