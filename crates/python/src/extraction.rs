@@ -83,6 +83,9 @@ impl Extraction {
     }
 }
 
+/// Name of each stage in the order in which they are done, and how many tasks it has where that is known beforehand.
+type Stages = Vec<(String, Option<usize>)>;
+
 /// Edge of the bricks, traces along x and y, and the stages of an extraction from the volume in the folder `path`; see
 /// [`ExtractionTasks::stages`]. Nothing is begun.
 #[pyfunction]
@@ -93,7 +96,7 @@ pub fn extraction_stages(
     settings: Option<&str>,
     memory: u64,
     edge: usize,
-) -> PyResult<([usize; 2], Vec<(String, Option<usize>)>)> {
+) -> PyResult<([usize; 2], Stages)> {
     let settings: ExtractSettings = settings.map_or_else(|| Ok(<_>::default()), serde_json::from_str).map_err(wrong)?;
     let volume = StoredVolume::open(&path).map_err(|error| refusal::of(py, error))?;
     // No array is read while tasks are counted.
@@ -191,7 +194,7 @@ impl ExtractionTasks {
     }
 
     /// All stages in their order, and the count of their tasks; `None` where it is known only once those before are done.
-    fn stages(&self, py: Python<'_>) -> PyResult<Vec<(String, Option<usize>)>> {
+    fn stages(&self, py: Python<'_>) -> PyResult<Stages> {
         let bricks = self.bricks().map_err(|error| refusal::of(py, error))?;
         let mut stages = Vec::new();
         for stage in bricks.stages() {
