@@ -25,10 +25,10 @@
 //! | `trees` | | none: whole surfaces, some at a time |
 //! | `distances` | the greatest distance | |
 //!
-//! Quantiles are exact (`samples`): bricks store their samples in order, with marks by which few of them are read. Floating-point sums are made
-//! within one task, in the order of the whole survey, or are sums of integers. So the result depends neither on the
-//! bricks' shape nor on threads, tasks or retries. Surfaces are numbered by their first vertex, leaves by their surface
-//! and their place in its tree; neither depends on the bricks.
+//! Quantiles are exact (`samples`): bricks store their samples in order, with marks by which few of them are read.
+//! Floating-point sums are made within one task, in the order of the whole survey, or are sums of integers. So the result
+//! depends neither on the bricks' shape nor on threads, tasks or retries. Surfaces are numbered by their first vertex,
+//! leaves by their surface and their place in its tree; neither depends on the bricks.
 //!
 //! The paper's method depends on the order of its seeds and is not available in bricks.
 

@@ -18,7 +18,8 @@ const CHANGE: [f32; 2] = [0.5, 1.5];
 /// A lattice of fewer nodes along an axis is not halved.
 const FEWEST: usize = 5;
 
-/// Rounds off the creases of a signed distance in metres. Memory: 8 bytes a node while it runs.
+/// Rounds off the creases of a signed distance in metres. Memory: up to 12 bytes a node while it runs,
+/// beside those of the field.
 pub(super) fn round_off(field: &mut LevelField, metric: DMat3, progress: &Progress) -> Result<(), Cancelled> {
     let steps_m = [0, 1, 2].map(|axis: usize| metric.col(axis).length() as f32 * field.step[axis]);
     let exact = Lattice { size: field.size, steps_m, values: std::mem::take(&mut field.values) };
