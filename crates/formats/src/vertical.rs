@@ -167,10 +167,13 @@ impl VerticalRule {
             return Ok(outside);
         }
         let likely = [1000.0, -1.0, -1000.0, FOOT_M, -FOOT_M, 1.0 / FOOT_M, -1.0 / FOOT_M, 0.001, -0.001, 2.0, 0.5];
+        // A surface that was drawn beyond the survey lies in it for the greater part when its sign is changed.
+        let turned_up = fit(-1.0) * 2 > values.len();
+        let is_enough = |factor: f64| fit(factor) * 10 > values.len() * 9 || (turned_up && factor == -1.0);
         let best = likely
             .iter()
             .copied()
-            .filter(|&f| fit(f) * 10 > values.len() * 9 && (!flat || f.abs() > 1.0))
+            .filter(|&f| is_enough(f) && largest * f.abs() > 2.0 * slack && (!flat || f.abs() > 1.0))
             .min_by(|a, b| rank(*a).total_cmp(&rank(*b)));
         let (hint, remedy) = match best {
             Some(factor) => (format!("It would fit when multiplied by {factor:.5}"), self.remedy(factor)),
@@ -289,6 +292,13 @@ mod tests {
         assert!(hint(&[77.0, 78.0], &plain, &depth).contains("No change"));
         let up = ImportOptions { z_positive: Some(ZPositive::Up), ..ImportOptions::default() };
         assert!(hint(&[1100.0, 1200.0], &up, &depth).contains("sign of depths down"));
+    }
+
+    #[test]
+    fn a_surface_drawn_beyond_the_survey_has_its_sign_changed_and_is_not_shrunk_into_the_first_sample() {
+        let depth = axis(0.0, 200, VerticalUnit::Metres);
+        let heights: Vec<f64> = (0..=140).map(|n| 300.0 - 10.0 * f64::from(n)).collect();
+        assert!(hint(&heights, &ImportOptions::default(), &depth).contains("sign of depths up"));
     }
 
     #[test]
