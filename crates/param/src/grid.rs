@@ -267,6 +267,13 @@ impl RegionGrid {
         (value, slope)
     }
 
+    /// What this grid adds to (x, y, v) at voxel `p`, where v is measured between other sheets.
+    pub(crate) fn offsets_at<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3, v: f32) -> Vec3 {
+        let (own_v, _) = self.level_fraction(model, p);
+        let ([dx, dy, dk], _) = self.interpolate(p.x, p.y, own_v);
+        Vec3::new(dx, dy, own_v + dk - v)
+    }
+
     /// Flat coordinates of voxel `p` in this region's parameterization, and their Jacobian ∂(i, j, k)/∂(x, y,
     /// z) per voxel. `model` is the one that was parameterized and `volume` its [`LayerModel::size`].
     pub fn lookup<M: LayerModel + ?Sized>(&self, model: &M, volume: [usize; 3], p: Vec3) -> (FlatPoint, [[f32; 3]; 3]) {

@@ -33,7 +33,7 @@
 //! | place | answer |
 //! |---|---|
 //! | outer boundary, fault, hole | the extended sheets continue: i and j may leave \[0, 1\] |
-//! | beyond a fault's tip | the blocks are those of the extended fault; both sides agree as far as their sheets do |
+//! | beyond a fault's tip | the blocks are those of the extended fault; flows take the mean of both where their sheets are one surface |
 //! | pinch-out | k keeps its limit up to the edge; beyond it the layer does not exist, and its grid holds the values of neighbours or 0 |
 //! | open layer (one horizon) | k is parallel to its horizon; i, j are those of the closest point on it |
 //! | no horizon at all | k is the vertical fraction of the volume |
@@ -91,6 +91,7 @@ mod error;
 mod flow;
 mod grid;
 mod imported;
+mod joined;
 mod lattice;
 mod layer;
 mod metric;

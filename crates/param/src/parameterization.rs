@@ -3,6 +3,7 @@
 use crate::compute::{self, ComputeCost};
 use crate::flow;
 use crate::grid::{FlatPoint, RegionGrid, SheetSource};
+use crate::joined::{self, Tips};
 use crate::metric::Metric;
 use crate::plan::{self, Method, Planner};
 use crate::touched::{ColumnScan, RegionColumns};
@@ -86,6 +87,7 @@ impl Parameterization {
         }
         let mut cost = ComputeCost::default();
         let mut grids = Vec::with_capacity(layers * blocks);
+        let methods: Vec<Method> = planned.iter().map(|(_, method)| *method).collect();
         for (n, (mut grid, method)) in planned.into_iter().enumerate() {
             let (touched, block) = (&touched[n], region(n).block);
             if touched.depths.is_empty() && method != Method::Unfolded {
@@ -112,6 +114,14 @@ impl Parameterization {
             cost.closest_points += spent.closest_points;
             cost.traces += spent.traces;
             grids.push(grid);
+        }
+        for layer in 0..layers {
+            let mut of_layer: Vec<&mut RegionGrid> = grids.iter_mut().skip(layer).step_by(layers).collect();
+            let columns: Vec<_> = (layer..layers * blocks)
+                .step_by(layers)
+                .map(|n| planner.is_joined(region(n), methods[n]).then(|| &touched[n]))
+                .collect();
+            joined::join(model, &mut of_layer, &columns, progress)?;
         }
         Ok(Self { size, layers, blocks, grids, cost })
     }
@@ -146,9 +156,13 @@ impl Parameterization {
             let reach = &mut reaches[n % layers];
             *reach = reach.max(planner.farthest(region(n), touched));
         }
-        let planned = touched.into_par_iter().enumerate().map(|(n, touched)| {
-            let (grid, method) = planner.plan(region(n), &touched, reaches[n % layers]);
-            (grid, method, touched)
+        let of_layer = |layer: usize| touched.iter().skip(layer).step_by(layers).collect::<Vec<_>>();
+        let tips = Tips::of(model);
+        let companions: Vec<Vec<Vec<u16>>> =
+            (0..layers).into_par_iter().map(|layer| tips.companions(&of_layer(layer))).collect();
+        let planned = (0..layers * blocks).into_par_iter().map(|n| {
+            let (layer, region) = (n % layers, region(n));
+            planner.plan(region, &of_layer(layer), &companions[layer][usize::from(region.block)], reaches[layer])
         });
         Ok(planned.collect())
     }

@@ -4,6 +4,7 @@ use crate::flow;
 use crate::flow::calm::calm;
 use crate::flow::harmonic::{Ends, FarBeds, Spacing};
 use crate::grid::{RegionGrid, SheetRef, SheetSource};
+use crate::joined;
 use crate::layer::{Layer, LayerKind};
 use crate::metric::Metric;
 use crate::surface::BicubicSheet;
@@ -66,8 +67,12 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
         let steps = model.metric();
         let wave = [0, 1].map(|axis| settings.flow_wave_m / steps.col(axis).length());
         let calm = if settings.flow_wave_m > 0.0 && (0..layers).any(is_calm) {
-            let sheet = |n: usize| Arc::new(calm(model.sheet(n / blocks, (n % blocks) as u16), wave));
-            ((0..(layers - 1) * blocks).into_par_iter()).map(sheet).collect()
+            let of_horizon = |horizon: usize| {
+                let drawn: Vec<&HeightField> = (0..blocks as u16).map(|block| model.sheet(horizon, block)).collect();
+                let calm = drawn.par_iter().map(|sheet| calm(sheet, wave)).collect();
+                joined::mean_of_sheets(&drawn, calm)
+            };
+            (0..layers - 1).into_par_iter().flat_map(of_horizon).map(Arc::new).collect()
         } else {
             Vec::new()
         };
@@ -156,13 +161,22 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
         }
     }
 
-    /// The empty grid of a region and the method that fills it. `reach` is the largest of [`Planner::farthest`] over
-    /// the layer.
-    pub fn plan(&self, region: Region, touched: &RegionColumns, reach: f32) -> (RegionGrid, Method) {
+    /// The empty grid of a region, the method that fills it, and the columns that it is filled in. `of_layer` has the columns of each block,
+    /// `companions` the blocks that this one meets beyond tips, and itself ([`joined::Tips::companions`]). `reach` is the
+    /// largest of [`Planner::farthest`] over the layer.
+    pub fn plan(
+        &self,
+        region: Region,
+        of_layer: &[&RegionColumns],
+        companions: &[u16],
+        reach: f32,
+    ) -> (RegionGrid, Method, RegionColumns) {
         use KDefinition::{DistanceRatio, Flow, Harmonic, ParallelToBottom, ParallelToTop, Proportional};
         use flow::Flow::{Smooth, Vertical};
+        let touched = of_layer[usize::from(region.block)];
         let last = self.model.size()[2].saturating_sub(1) as f32;
         let thickness = reach * self.metric.vertical_step();
+        let parts = || companions.iter().map(|&block| (Region { block, ..region }, of_layer[usize::from(block)]));
         let definition = self.definition(region).unwrap_or_default();
         let spacing = if definition == Harmonic { Spacing::Harmonic } else { Spacing::Even };
         let shifted = |sheet: &SheetRef, shift: f32| SheetRef { shift, ..sheet.clone() };
@@ -180,11 +194,11 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
                 (Method::Flow(Smooth(Ends::Both, Spacing::Harmonic)), bottom, top)
             }
             ((Some(bottom), None), Flow | Harmonic) => {
-                let (plane, far) = self.far_plane(region, &bottom, touched, reach, -1.0);
+                let (plane, far) = self.far_plane(parts, reach, -1.0);
                 (Method::Flow(Smooth(Ends::Bottom(far), spacing)), bottom, plane)
             }
             ((None, Some(top)), Flow | Harmonic) => {
-                let (plane, far) = self.far_plane(region, &top, touched, reach, 1.0);
+                let (plane, far) = self.far_plane(parts, reach, 1.0);
                 (Method::Flow(Smooth(Ends::Top(far), spacing)), plane, top)
             }
             ((Some(bottom), Some(top)), Proportional) => (Method::Flow(Vertical), bottom, top),
@@ -202,11 +216,12 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
         let thickness = if is_vertical { last.max(1.0) * self.metric.vertical_step() } else { thickness };
         let is_parallel =
             is_vertical || matches!(method, Method::Closest(LayerKind::AboveBottom(_) | LayerKind::BelowTop(_)));
+        let filled = self.filled(touched, companions);
         let grid = RegionGrid {
             region,
-            origin: touched.origin,
-            size: if method == Method::Unfolded { [0; 2] } else { touched.size },
-            levels: self.levels(region, touched, method, &bottom, &top),
+            origin: filled.origin,
+            size: if method == Method::Unfolded { [0; 2] } else { filled.size },
+            levels: self.levels(region, &filled, method, &bottom, &top),
             bottom,
             top,
             thickness_m: (is_open || is_parallel).then(|| f64::from(thickness) * self.metric.unit_m),
@@ -214,7 +229,23 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
             creases: Vec::new(),
             unfolded: None,
         };
-        (grid, method)
+        (grid, method, filled)
+    }
+
+    /// The columns of a region, and those beyond it in which a block that goes on there takes the mean with it.
+    fn filled(&self, touched: &RegionColumns, companions: &[u16]) -> RegionColumns {
+        if companions.len() < 2 {
+            return touched.clone();
+        }
+        let ([nx, ny, _], steps) = (self.model.size(), self.model.metric());
+        let samples = joined::length_m(self.model) / steps.z_axis.length();
+        touched.grown(joined::GROWN, samples as f32, [nx, ny])
+    }
+
+    /// Whether a region takes the mean with others beyond the tips of faults: the published definition stays as it is.
+    pub fn is_joined(&self, region: Region, method: Method) -> bool {
+        let is_published = self.definition(region) == Some(KDefinition::DistanceRatio);
+        !is_published && !matches!(method, Method::Unfolded | Method::Closest(LayerKind::Vertical))
     }
 
     /// Count of levels of a region: odd for a flow, which has a middle one.
@@ -242,28 +273,33 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
     }
 
     /// A plane along the trend of an open layer's horizon, beyond the region (`side` −1: above, 1: below), and the
-    /// beds parallel to it.
-    fn far_plane(
-        &self,
-        region: Region,
-        sheet: &SheetRef,
-        touched: &RegionColumns,
-        reach: f32,
-        side: f32,
-    ) -> (SheetRef, FarBeds) {
+    /// beds parallel to it: one for all `parts` (regions and their columns) of rock that faults do not sever.
+    fn far_plane<'c, Parts>(&self, parts: impl Fn() -> Parts, reach: f32, side: f32) -> (SheetRef, FarBeds)
+    where
+        Parts: Iterator<Item = (Region, &'c RegionColumns)>,
+    {
         let last = self.model.size()[2].saturating_sub(1) as f32;
-        let node = |x, y| sheet.node(self.model, region.block, x, y);
-        let [cx, cy] = [0, 1].map(|n| touched.origin[n] + touched.size[n] as i32 / 2);
-        let [px, py, p0] = trend(touched, [cx, cy], node);
+        let nodes = || {
+            parts().flat_map(|(region, touched)| {
+                let (bottom, top) = self.sheets(region);
+                let sheet = if side < 0.0 { bottom } else { top };
+                let node = move |[x, y]: [i32; 2]| {
+                    let z = sheet.as_ref().map_or(0.0, |sheet| sheet.node(self.model, region.block, x, y));
+                    ([x, y], z)
+                };
+                touched.columns().map(move |(_, column, _)| node(column))
+            })
+        };
+        let ([cx, cy], [px, py, p0]) = trend(nodes);
         let plane = |x: i32, y: i32| p0 + px * (x - cx) as f32 + py * (y - cy) as f32;
         let edge = if side < 0.0 { 0.0 } else { last };
-        let shift = touched.columns().fold(0.0f32, |shift, (_, [x, y], _)| {
+        let shift = nodes().fold(0.0f32, |shift, ([x, y], z)| {
             let beyond_volume = side * (edge - plane(x, y)) + BEYOND * reach;
-            let beyond_sheet = side * (node(x, y) - plane(x, y)) + 2.0 * BEYOND * reach;
+            let beyond_sheet = side * (z - plane(x, y)) + 2.0 * BEYOND * reach;
             shift.max(beyond_volume).max(beyond_sheet)
         });
-        let far =
-            HeightField::from_fn(touched.origin, touched.size.map(|n| n.max(2)), |x, y| plane(x, y) + side * shift);
+        // A height field goes on evenly past its nodes.
+        let far = HeightField::from_fn([cx, cy], [2, 2], |x, y| plane(x, y) + side * shift);
         let normal = Vec3::new(px, py, -1.0);
         let length = normal.dot(self.metric.raise(normal)).sqrt();
         let density = 1.0 / (reach * self.metric.vertical_step());
@@ -281,18 +317,26 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
     }
 }
 
-/// The plane that fits a sheet best over the columns of a region: its slopes along x and y, and its height at the centre.
-fn trend(touched: &RegionColumns, [cx, cy]: [i32; 2], node: impl Fn(i32, i32) -> f32) -> [f32; 3] {
+/// The plane that fits nodes (voxel x, y; z) best: the column at their centre, and the slopes along x and y and the height
+/// there.
+fn trend<Nodes: Iterator<Item = ([i32; 2], f32)>>(nodes: impl Fn() -> Nodes) -> ([i32; 2], [f32; 3]) {
+    let far = ([i32::MAX; 2], [i32::MIN; 2]);
+    let (low, high) = nodes()
+        .fold(far, |(low, high), (at, _)| ([0, 1].map(|n| at[n].min(low[n])), [0, 1].map(|n| at[n].max(high[n]))));
+    if low[0] > high[0] {
+        return ([0; 2], [0.0; 3]);
+    }
+    let [cx, cy] = [0, 1].map(|n| low[n] + (high[n] - low[n] + 1) / 2);
     let (mut normal, mut right) = (DMat3::ZERO, DVec3::ZERO);
-    for (_, [x, y], _) in touched.columns() {
+    for ([x, y], z) in nodes() {
         let row = DVec3::new(f64::from(x - cx), f64::from(y - cy), 1.0);
         normal += DMat3::from_cols(row * row.x, row * row.y, row);
-        right += row * f64::from(node(x, y));
+        right += row * f64::from(z);
     }
-    let count = normal.z_axis.z.max(1.0);
+    let count = normal.z_axis.z;
     // One column, or one row of them, has no slope across.
     if normal.determinant() < 1e-6 * count.powi(3) {
-        return [0.0, 0.0, (right.z / count) as f32];
+        return ([cx, cy], [0.0, 0.0, (right.z / count) as f32]);
     }
-    (normal.inverse() * right).as_vec3().to_array()
+    ([cx, cy], (normal.inverse() * right).as_vec3().to_array())
 }

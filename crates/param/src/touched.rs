@@ -45,12 +45,57 @@ pub struct RegionColumns {
     pub size: [usize; 2],
     /// Range of depths to compute per column of the box, `[x][y]`.
     pub depths: Vec<Depths>,
+    /// Columns beyond the region, per column of the box, where the box was grown.
+    beyond: Vec<u8>,
 }
 
 impl RegionColumns {
     /// Whether column n of the box is to be computed.
     pub fn is_wanted(&self, n: usize) -> bool {
         self.depths[n][0] <= self.depths[n][1]
+    }
+
+    /// The range of depths to compute in a voxel column, if any.
+    pub fn depths_at(&self, column: [i32; 2]) -> Option<Depths> {
+        let n = self.index(column)?;
+        self.is_wanted(n).then(|| self.depths[n])
+    }
+
+    fn index(&self, column: [i32; 2]) -> Option<usize> {
+        let [x, y] = [0, 1].map(|axis| usize::try_from(column[axis] - self.origin[axis]).unwrap_or(usize::MAX));
+        (x < self.size[0] && y < self.size[1]).then(|| x * self.size[1] + y)
+    }
+
+    /// The same with so many columns more around each, within a survey of so many columns and its margin, and so many samples
+    /// above and below.
+    pub fn grown(&self, columns: usize, samples: f32, survey: [usize; 2]) -> Self {
+        if self.size[0] == 0 {
+            return self.clone();
+        }
+        let (grown, margin) = (columns as i32, MARGIN as i32);
+        let origin = [0, 1].map(|n| (self.origin[n] - grown).max(-margin).min(self.origin[n]));
+        let size = [0, 1].map(|n| {
+            let end = self.origin[n] + self.size[n] as i32;
+            ((end + grown).min(survey[n] as i32 + margin).max(end) - origin[n]) as usize
+        });
+        let column = |n: usize| [origin[0] + (n / size[1]) as i32, origin[1] + (n % size[1]) as i32];
+        let deeper = |[low, high]: Depths| [low - samples, high + samples];
+        let own: Vec<Depths> = (0..size[0] * size[1]).map(|n| self.depths_at(column(n)).unwrap_or(NOWHERE)).collect();
+        let mut wanted: Vec<bool> = own.iter().map(|depths| depths[0] <= depths[1]).collect();
+        let mut beyond = vec![u8::MAX; own.len()];
+        for step in 0..=columns {
+            let reached = beyond.iter_mut().zip(&wanted).filter(|(steps, wanted)| **wanted && **steps == u8::MAX);
+            reached.for_each(|(steps, _)| *steps = step as u8);
+            wanted = widen(size, &wanted, 1, |a, b| a | b);
+        }
+        let depths = widen(size, &own, columns, |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        Self { origin, size, depths: depths.into_iter().map(deeper).collect(), beyond }
+    }
+
+    /// How many columns beyond the region a voxel column lies that is to be computed; `None` where none is.
+    pub fn steps_beyond(&self, column: [i32; 2]) -> Option<usize> {
+        let n = self.index(column)?;
+        self.is_wanted(n).then(|| self.beyond.get(n).map_or(0, |steps| usize::from(*steps)))
     }
 
     /// The columns to be computed: index in the box, voxel column, range of depths.
@@ -142,7 +187,7 @@ impl ColumnScan {
             high = [high[0].max(at[0]), high[1].max(at[1])];
         }
         if low[0] == usize::MAX {
-            return RegionColumns { origin: [0; 2], size: [0; 2], depths: Vec::new() };
+            return RegionColumns { origin: [0; 2], size: [0; 2], depths: Vec::new(), beyond: Vec::new() };
         }
         for axis in 0..2 {
             // At least two columns, so that there is a cell to interpolate in.
@@ -152,7 +197,7 @@ impl ColumnScan {
         }
         let size: [usize; 2] = std::array::from_fn(|axis| high[axis] - low[axis] + 1);
         let depths = (low[0]..=high[0]).flat_map(|x| all[x * ny + low[1]..=x * ny + high[1]].iter().copied()).collect();
-        RegionColumns { origin: low.map(|n| n as i32 - margin), size, depths }
+        RegionColumns { origin: low.map(|n| n as i32 - margin), size, depths, beyond: Vec::new() }
     }
 }
 

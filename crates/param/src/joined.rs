@@ -1,0 +1,235 @@
+//! Blocks that meet beyond the tip of a fault, joined: rock is not broken there, and neither are patterns.
+//!
+//! What is computed of each block alone parts beyond the tip, because it also follows the sheets beside the fault, which
+//! differ. So each block takes the mean with its neighbours, in which another block counts by
+//!
+//! ```text
+//! w = ∏ f(d / L) · f(e / L) · ∏ (1 − f(h / 2t))         f(x) = 1 for x ≤ 0, 0 for x ≥ 1, 1 − x²(3 − 2x) between
+//! ```
+//!
+//! d is the distance from a fault between the two, e how far inside its tip line a place lies (negative beyond), L the
+//! length of [`GROWN`] columns; h is the vertical distance from a horizon of the layer and t the horizon's throw there.
+//! On the continuation of a fault both have the same mean, and a pattern goes on. Along the fault it begins to break within
+//! L of the tip line. On a horizon that the fault breaks nothing changes.
+
+use crate::LayerModel;
+use crate::RegionGrid;
+use crate::plan::horizons;
+use crate::touched::RegionColumns;
+use glam::Vec3;
+use model::{FaultNetwork, FaultSurface};
+use rayon::prelude::*;
+use survey::{Cancelled, HeightField, Progress};
+
+/// Columns by which the grid of a block reaches beyond it, so that its neighbours can take the mean with it. Over these
+/// its weight dies out.
+pub const GROWN: usize = 12;
+/// Columns and samples between the places at which blocks are looked for that meet.
+const MEETS_EVERY: usize = 3;
+
+/// A throw that does not count, voxels.
+const UNBROKEN: f32 = 0.1;
+
+/// How much of another block's sheet counts where both are so many voxels apart.
+fn share(throw: f32) -> f32 {
+    (1.0 - throw * throw).max(0.0).powi(2)
+}
+
+/// 1 up to x = 0, 0 from x = 1 on.
+fn falling(x: f32) -> f32 {
+    let x = x.clamp(0.0, 1.0);
+    1.0 - x * x * (3.0 - 2.0 * x)
+}
+
+/// The mean of the calm sheets of one horizon, `[block]`, over the blocks whose `drawn` sheets are one surface: another counts by (1 − t²)² where they are
+/// t < 1 voxels apart.
+pub fn mean_of_sheets(drawn: &[&HeightField], calm: Vec<HeightField>) -> Vec<HeightField> {
+    if calm.len() < 2 {
+        return calm;
+    }
+    let mean = |a: usize, n: usize| {
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (drawn_b, calm_b) in drawn.iter().zip(&calm) {
+            let weight = share(drawn_b.z[n] - drawn[a].z[n]);
+            sum += weight * (calm_b.z[n] - calm[a].z[n]);
+            weights += weight;
+        }
+        calm[a].z[n] + sum / weights
+    };
+    let of_block = |(a, calm): (usize, &HeightField)| HeightField {
+        z: (0..calm.z.len()).map(|n| mean(a, n)).collect(),
+        ..calm.clone()
+    };
+    calm.par_iter().enumerate().map(of_block).collect()
+}
+
+/// L, the length of [`GROWN`] columns, m.
+pub fn length_m<M: LayerModel + ?Sized>(model: &M) -> f64 {
+    let steps = model.metric();
+    GROWN as f64 * steps.x_axis.length().min(steps.y_axis.length())
+}
+
+/// The faults of a model, and how far blocks reach beyond their tips.
+pub struct Tips<'a> {
+    faults: Option<&'a FaultNetwork>,
+    /// L, m.
+    length_m: f64,
+}
+
+impl<'a> Tips<'a> {
+    /// Of a model.
+    pub fn of<M: LayerModel + ?Sized>(model: &'a M) -> Self {
+        Self { faults: model.faults(), length_m: length_m(model) }
+    }
+
+    /// The faults between two blocks.
+    fn between(&self, [a, b]: [u16; 2]) -> Vec<&FaultSurface> {
+        let Some(faults) = self.faults else { return Vec::new() };
+        let [a, b] = [a, b].map(|block| faults.signatures()[usize::from(block)]);
+        let bits = (a.bits ^ b.bits) & a.care & b.care;
+        (0..64).filter(|n| bits >> n & 1 == 1).map(|n: usize| &faults.surfaces()[n]).collect()
+    }
+
+    /// How much a block on the other side of `faults` counts at voxel p.
+    fn weight(&self, faults: &[&FaultSurface], p: Vec3) -> f32 {
+        let of = |length: f64| falling((length / self.length_m) as f32);
+        let p = p.as_dvec3();
+        faults.iter().fold(1.0, |weight, fault| {
+            if weight == 0.0 { 0.0 } else { weight * of(fault.side(p).abs()) * of(fault.extent_at(p)) }
+        })
+    }
+
+    /// For each block of a layer, itself and those that it meets beyond a tip, directly or through others.
+    pub fn companions(&self, touched: &[&RegionColumns]) -> Vec<Vec<u16>> {
+        let blocks = touched.len();
+        let meets = |a: usize, b: usize| {
+            let faults = self.between([a as u16, b as u16]);
+            let columns = touched[a]
+                .columns()
+                .filter(|(_, [x, y], _)| [x, y].iter().all(|at| at.rem_euclid(MEETS_EVERY as i32) == 0));
+            !faults.is_empty()
+                && columns.into_iter().any(|(_, [x, y], own)| {
+                    touched[b].depths_at([x, y]).is_some_and(|other| {
+                        let (low, high) = (own[0].max(other[0]), own[1].min(other[1]));
+                        let count = ((high - low) / MEETS_EVERY as f32).max(0.0) as usize;
+                        let place = |n: usize| Vec3::new(x as f32, y as f32, low + (n * MEETS_EVERY) as f32);
+                        low <= high && (0..=count).any(|n| self.weight(&faults, place(n)) > 0.5)
+                    })
+                })
+        };
+        let mut group: Vec<usize> = (0..blocks).collect();
+        for (a, b) in (0..blocks).flat_map(|a| (0..a).map(move |b| (a, b))) {
+            if group[a] != group[b] && meets(a, b) {
+                let (kept, gone) = (group[a].min(group[b]), group[a].max(group[b]));
+                group.iter_mut().filter(|g| **g == gone).for_each(|g| *g = kept);
+            }
+        }
+        let of = |a: usize| (0..blocks).filter(|&b| group[b] == group[a]).map(|b| b as u16).collect();
+        (0..blocks).map(of).collect()
+    }
+}
+
+/// Gives the grids of one layer, by block, the mean with the blocks that they meet beyond tips. `columns` are those that the
+/// grids are filled in; where there are none, a grid stays alone.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn join<M: LayerModel + ?Sized>(
+    model: &M,
+    grids: &mut [&mut RegionGrid],
+    columns: &[Option<&RegionColumns>],
+    progress: &Progress,
+) -> Result<(), Cancelled> {
+    let tips = Tips::of(model);
+    let filled = |n: usize| columns[n].filter(|_| !grids[n].offsets.is_empty()).map(|columns| (n, columns));
+    let filled: Vec<(usize, &RegionColumns)> = (0..grids.len()).filter_map(filled).collect();
+    let mut joined = Vec::with_capacity(filled.len());
+    for &(a, columns) in &filled {
+        let grid = &*grids[a];
+        let others = filled.iter().filter_map(|&(b, columns)| {
+            let faults = tips.between([grid.region.block, grids[b].region.block]);
+            (!faults.is_empty()).then_some(Other { grid: &*grids[b], columns, faults })
+        });
+        let others: Vec<Other> = others.collect();
+        let column = Joined { model, tips: &tips, grid, others: &others };
+        let [nx, ny] = grid.size;
+        let rows = (0..nx).into_par_iter().map(|x| {
+            progress.check()?;
+            let at = |y: usize| [grid.origin[0] + x as i32, grid.origin[1] + y as i32];
+            let wanted = (0..ny).filter(|&y| columns.depths_at(at(y)).is_some());
+            Ok(wanted.filter_map(|y| Some((grid.node(x, y, 0), column.mean(at(y))?))).collect::<Vec<_>>())
+        });
+        joined.push(rows.collect::<Result<Vec<_>, Cancelled>>()?);
+    }
+    for ((a, _), rows) in filled.into_iter().zip(joined) {
+        for (start, column) in rows.into_iter().flatten() {
+            grids[a].offsets[start..start + column.len()].copy_from_slice(&column);
+        }
+    }
+    Ok(())
+}
+
+/// The grid of another block, the columns that it is filled in, and the faults between.
+struct Other<'a> {
+    grid: &'a RegionGrid,
+    columns: &'a RegionColumns,
+    faults: Vec<&'a FaultSurface>,
+}
+
+impl Other<'_> {
+    /// 1 in the columns of the block, less beyond.
+    fn reach(&self, column: [i32; 2]) -> f32 {
+        self.columns.steps_beyond(column).map_or(0.0, |steps| falling(steps as f32 / GROWN as f32))
+    }
+}
+
+/// A grid and those that it takes the mean with.
+struct Joined<'a, M: ?Sized> {
+    model: &'a M,
+    tips: &'a Tips<'a>,
+    grid: &'a RegionGrid,
+    others: &'a [Other<'a>],
+}
+
+impl<M: LayerModel + ?Sized> Joined<'_, M> {
+    /// The mean in a voxel column; `None` where nothing else counts.
+    fn mean(&self, column @ [x, y]: [i32; 2]) -> Option<Vec<[f32; 3]>> {
+        let (grid, last) = (self.grid, self.grid.levels - 1);
+        let start = grid.node((x - grid.origin[0]) as usize, (y - grid.origin[1]) as usize, 0);
+        let own = &grid.offsets[start..=start + last];
+        let bottom = grid.bottom.node(self.model, grid.region.block, x, y);
+        let thickness = bottom - grid.top.node(self.model, grid.region.block, x, y);
+        let (below, above) = horizons(self.model, usize::from(grid.region.layer));
+        // k is 0 and 1 on the sheets.
+        let is_fixed = [(below, &grid.bottom), (above, &grid.top)].map(|(h, sheet)| h.is_some() && sheet.shift == 0.0);
+        let mut sums: Vec<(Vec3, f32)> = own.iter().map(|own| (Vec3::from(*own), 1.0)).collect();
+        for (other, reach) in self.others.iter().map(|other| (other, other.reach(column))).filter(|of| of.1 > 0.0) {
+            let broken = self.broken(column, [below, above], other.grid.region.block);
+            for (level, (sum, weights)) in sums.iter_mut().enumerate() {
+                let v = level as f32 / last as f32;
+                let p = Vec3::new(x as f32, y as f32, bottom - v * thickness);
+                let clear = broken.iter().flatten().map(|&(z, throw)| clear_of((p.z - z).abs(), throw));
+                let weight = reach * clear.product::<f32>() * self.tips.weight(&other.faults, p);
+                if weight > 0.0 {
+                    let found = other.grid.offsets_at(self.model, p, v);
+                    let is_fixed = (level == 0 && is_fixed[0]) || (level == last && is_fixed[1]);
+                    *sum += weight * if is_fixed { found.with_z(own[level][2]) } else { found };
+                    *weights += weight;
+                }
+            }
+        }
+        let is_alone = sums.iter().all(|(_, weights)| *weights == 1.0);
+        (!is_alone).then(|| sums.iter().map(|(sum, weights)| (*sum / *weights).to_array()).collect())
+    }
+
+    /// Depth and throw (voxels) of the layer's horizons between this and another block.
+    fn broken(&self, [x, y]: [i32; 2], horizons: [Option<usize>; 2], other: u16) -> [Option<(f32, f32)>; 2] {
+        let z = |h: usize, block: u16| self.model.sheet(h, block).node(x, y);
+        horizons.map(|h| h.map(|h| (z(h, self.grid.region.block), h)).map(|(own, h)| (own, (z(h, other) - own).abs())))
+    }
+}
+
+/// 0 on a horizon that is broken by a throw, 1 from twice the throw away on.
+fn clear_of(distance: f32, throw: f32) -> f32 {
+    1.0 - falling((distance + UNBROKEN) / (2.0 * throw + UNBROKEN))
+}
