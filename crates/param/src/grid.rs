@@ -267,11 +267,16 @@ impl RegionGrid {
         (value, slope)
     }
 
-    /// What this grid adds to (x, y, v) at voxel `p`, where v is measured between other sheets.
-    pub(crate) fn offsets_at<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3, v: f32) -> Vec3 {
-        let (own_v, _) = self.level_fraction(model, p);
-        let ([dx, dy, dk], _) = self.interpolate(p.x, p.y, own_v);
-        Vec3::new(dx, dy, own_v + dk - v)
+    /// A voxel column of the grid.
+    ///
+    /// # Panics
+    /// Outside the grid.
+    pub(crate) fn column<M: LayerModel + ?Sized>(&self, model: &M, [x, y]: [i32; 2]) -> GridColumn<'_> {
+        let [u, v] = [x - self.origin[0], y - self.origin[1]].map(|at| at as usize);
+        let start = self.node(u, v, 0);
+        let bottom = self.bottom.node(model, self.region.block, x, y);
+        let thickness = bottom - self.top.node(model, self.region.block, x, y);
+        GridColumn { offsets: &self.offsets[start..start + self.levels], bottom, thickness }
     }
 
     /// Flat coordinates of voxel `p` in this region's parameterization, and their Jacobian ∂(i, j, k)/∂(x, y,
@@ -309,6 +314,23 @@ impl RegionGrid {
         });
         let flat = FlatPoint { i, j, k, region: self.region };
         (flat, [i_slope.to_array(), j_slope.to_array(), k_slope.to_array()])
+    }
+}
+
+/// One voxel column of a [`RegionGrid`].
+pub(crate) struct GridColumn<'a> {
+    offsets: &'a [[f32; 3]],
+    bottom: f32,
+    thickness: f32,
+}
+
+impl GridColumn<'_> {
+    /// What is added to (x, y, v) at voxel z, where v is measured between other sheets.
+    pub fn offsets(&self, z: f32, v: f32) -> Vec3 {
+        let own_v = if self.thickness < PINCHED { 0.5 } else { (self.bottom - z) / self.thickness };
+        let (cell, fraction) = split(own_v * (self.offsets.len() - 1) as f32, self.offsets.len());
+        let ([dx, dy, dk], _) = cubic(self.offsets, cell, fraction);
+        Vec3::new(dx, dy, own_v + dk - v)
     }
 }
 

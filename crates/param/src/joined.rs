@@ -27,6 +27,8 @@ pub const GROWN: usize = 12;
 /// Columns and samples between the places at which blocks are looked for that meet.
 const MEETS_EVERY: usize = 3;
 
+/// Levels between those at which the distance from faults is measured; between them it is interpolated.
+const WEIGHED_EVERY: usize = 4;
 /// A throw that does not count, voxels.
 const UNBROKEN: f32 = 0.1;
 
@@ -181,6 +183,12 @@ impl Other<'_> {
     fn reach(&self, column: [i32; 2]) -> f32 {
         self.columns.steps_beyond(column).map_or(0.0, |steps| falling(steps as f32 / GROWN as f32))
     }
+
+    /// How near the continuations of the faults each [`WEIGHED_EVERY`]th of so many levels is, and one more.
+    fn near(&self, tips: &Tips, levels: usize, place: impl Fn(usize) -> Vec3) -> Vec<f32> {
+        let count = (levels - 1) / WEIGHED_EVERY + 2;
+        (0..count).map(|n| tips.weight(&self.faults, place(n * WEIGHED_EVERY))).collect()
+    }
 }
 
 /// A grid and those that it takes the mean with.
@@ -204,14 +212,24 @@ impl<M: LayerModel + ?Sized> Joined<'_, M> {
         let is_fixed = [(below, &grid.bottom), (above, &grid.top)].map(|(h, sheet)| h.is_some() && sheet.shift == 0.0);
         let mut sums: Vec<(Vec3, f32)> = own.iter().map(|own| (Vec3::from(*own), 1.0)).collect();
         for (other, reach) in self.others.iter().map(|other| (other, other.reach(column))).filter(|of| of.1 > 0.0) {
-            let broken = self.broken(column, [below, above], other.grid.region.block);
-            for (level, (sum, weights)) in sums.iter_mut().enumerate() {
+            let place = |level: usize| {
                 let v = level as f32 / last as f32;
-                let p = Vec3::new(x as f32, y as f32, bottom - v * thickness);
-                let clear = broken.iter().flatten().map(|&(z, throw)| clear_of((p.z - z).abs(), throw));
-                let weight = reach * clear.product::<f32>() * self.tips.weight(&other.faults, p);
+                Vec3::new(x as f32, y as f32, bottom - v * thickness)
+            };
+            let near = other.near(self.tips, grid.levels, place);
+            if near.iter().all(|near| *near == 0.0) {
+                continue;
+            }
+            let broken = self.broken(column, [below, above], other.grid.region.block);
+            let other = other.grid.column(self.model, column);
+            for (level, (sum, weights)) in sums.iter_mut().enumerate() {
+                let z = place(level).z;
+                let clear = broken.iter().flatten().map(|&(horizon, throw)| clear_of((z - horizon).abs(), throw));
+                let (cell, fraction) = (level / WEIGHED_EVERY, (level % WEIGHED_EVERY) as f32 / WEIGHED_EVERY as f32);
+                let near = near[cell] + fraction * (near[cell + 1] - near[cell]);
+                let weight = reach * near * clear.product::<f32>();
                 if weight > 0.0 {
-                    let found = other.grid.offsets_at(self.model, p, v);
+                    let found = other.offsets(z, level as f32 / last as f32);
                     let is_fixed = (level == 0 && is_fixed[0]) || (level == last && is_fixed[1]);
                     *sum += weight * if is_fixed { found.with_z(own[level][2]) } else { found };
                     *weights += weight;
