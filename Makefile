@@ -125,6 +125,7 @@ ATTACKS_ON_CRATES = what_is_kept_comes_back grids_that_do_not_fit blocks_with_a_
 ATTACKS = hostile:: foreign:: check:: steps:: bombs:: sources:: kill:: safety:: store:: bad_input:: memory:: extraction::the_same_extraction_twice extraction::damaged_candidates
 
 attack: export XDG_STATE_HOME = $(CURDIR)/target/state
+attack: export PETROGLYPH_EVERY_STEP = 1
 attack: setup
 	cargo test --locked --test it -- $(ATTACKS)
 	cargo test --locked --workspace --lib -- $(ATTACKS_ON_CRATES)
