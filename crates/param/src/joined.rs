@@ -8,7 +8,7 @@
 //! ```
 //!
 //! d is the distance from a fault between the two, e how far inside its tip line a place lies (negative beyond), L the
-//! length of [`GROWN`] columns; h is the vertical distance from a horizon of the layer and t the horizon's throw there.
+//! length of [`LENGTH`] columns; h is the vertical distance from a horizon of the layer and t the horizon's throw there.
 //! On the continuation of a fault both have the same mean, and a pattern goes on. Along the fault it begins to break within
 //! L of the tip line. On a horizon that the fault breaks nothing changes.
 
@@ -23,7 +23,9 @@ use survey::{Cancelled, HeightField, Progress};
 
 /// Columns by which the grid of a block reaches beyond it, so that its neighbours can take the mean with it. Over these
 /// its weight dies out.
-pub const GROWN: usize = 12;
+pub const GROWN: usize = 6;
+/// L in columns: a block is computed for three columns beyond it in any case.
+const LENGTH: usize = GROWN + 3;
 /// Columns and samples between the places at which blocks are looked for that meet.
 const MEETS_EVERY: usize = 3;
 
@@ -65,10 +67,10 @@ pub fn mean_of_sheets(drawn: &[&HeightField], calm: Vec<HeightField>) -> Vec<Hei
     calm.par_iter().enumerate().map(of_block).collect()
 }
 
-/// L, the length of [`GROWN`] columns, m.
+/// L, the length of [`LENGTH`] columns, m.
 pub fn length_m<M: LayerModel + ?Sized>(model: &M) -> f64 {
     let steps = model.metric();
-    GROWN as f64 * steps.x_axis.length().min(steps.y_axis.length())
+    LENGTH as f64 * steps.x_axis.length().min(steps.y_axis.length())
 }
 
 /// The faults of a model, and how far blocks reach beyond their tips.

@@ -78,18 +78,25 @@ impl RegionColumns {
             let end = self.origin[n] + self.size[n] as i32;
             ((end + grown).min(survey[n] as i32 + margin).max(end) - origin[n]) as usize
         });
-        let column = |n: usize| [origin[0] + (n / size[1]) as i32, origin[1] + (n % size[1]) as i32];
-        let deeper = |[low, high]: Depths| [low - samples, high + samples];
-        let own: Vec<Depths> = (0..size[0] * size[1]).map(|n| self.depths_at(column(n)).unwrap_or(NOWHERE)).collect();
-        let mut wanted: Vec<bool> = own.iter().map(|depths| depths[0] <= depths[1]).collect();
-        let mut beyond = vec![u8::MAX; own.len()];
-        for step in 0..=columns {
-            let reached = beyond.iter_mut().zip(&wanted).filter(|(steps, wanted)| **wanted && **steps == u8::MAX);
-            reached.for_each(|(steps, _)| *steps = step as u8);
-            wanted = widen(size, &wanted, 1, |a, b| a | b);
+        let union = |a: Depths, b: Depths| [a[0].min(b[0]), a[1].max(b[1])];
+        let place = |n: usize| [origin[0] + (n / size[1]) as i32, origin[1] + (n % size[1]) as i32];
+        let own = |n: usize| self.depths_at(place(n)).map_or(NOWHERE, |[low, high]| [low - samples, high + samples]);
+        let mut depths: Vec<Depths> = (0..size[0] * size[1]).map(own).collect();
+        let mut beyond: Vec<u8> =
+            depths.iter().map(|depths| if depths[0] <= depths[1] { 0 } else { u8::MAX }).collect();
+        for step in 0..columns as u8 {
+            let reached: Vec<(usize, Depths)> = (0..depths.len())
+                .filter(|&n| beyond[n] == u8::MAX)
+                .filter_map(|n| {
+                    let near = around(size, n).filter(|&m| beyond[m] == step).map(|m| depths[m]);
+                    near.reduce(union).map(|depths| (n, depths))
+                })
+                .collect();
+            for (n, range) in reached {
+                (depths[n], beyond[n]) = (range, step + 1);
+            }
         }
-        let depths = widen(size, &own, columns, |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
-        Self { origin, size, depths: depths.into_iter().map(deeper).collect(), beyond }
+        Self { origin, size, depths, beyond }
     }
 
     /// How many columns beyond the region a voxel column lies that is to be computed; `None` where none is.
@@ -199,6 +206,13 @@ impl ColumnScan {
         let depths = (low[0]..=high[0]).flat_map(|x| all[x * ny + low[1]..=x * ny + high[1]].iter().copied()).collect();
         RegionColumns { origin: low.map(|n| n as i32 - margin), size, depths, beyond: Vec::new() }
     }
+}
+
+/// The eight columns around column n of a box.
+fn around([nx, ny]: [usize; 2], n: usize) -> impl Iterator<Item = usize> {
+    let (x, y) = (n / ny, n % ny);
+    let near = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
+    near(x, nx).flat_map(move |x| near(y, ny).map(move |y| x * ny + y)).filter(move |&m| m != n)
 }
 
 /// The union of the values in a square of 2·radius + 1 columns around each column.
