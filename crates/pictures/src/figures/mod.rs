@@ -35,6 +35,7 @@ use project::styles;
 use render::vector::{VectorBlock, vectors};
 use render::{FaceData, Faces, Media, RenderError, Scene};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 use survey::{Progress, Well, memory};
 use ttf::{LayerStyle, LayerTtf, Preset, TextureLibrary};
@@ -193,12 +194,16 @@ impl FigurePainter<'_> {
         let ground = scene.ground.filter(|_| self.loaded.rock.is_some());
         Scene { ground, preset: self.preset, ..scene.clone() }
     }
+
+    /// Pixels of what is painted and not traced.
+    fn painted_px(&self, scene: &Scene) -> [u32; 2] {
+        scene.size_px.map(|side| (f64::from(side) * self.share).round().max(1.0) as u32)
+    }
 }
 
 impl BlockPainter for FigurePainter<'_> {
     fn paint(&mut self, scene: &Scene) -> Result<RgbaImage, RenderError> {
-        let mut scene = self.shown(scene);
-        scene.size_px = scene.size_px.map(|side| (f64::from(side) * self.share).round().max(1.0) as u32);
+        let scene = Scene { size_px: self.painted_px(scene), ..self.shown(scene) };
         let painter = match &mut self.painter {
             Some(painter) => painter,
             empty => empty.insert(Painter::new(self.device, self.progress)?),
@@ -213,7 +218,12 @@ impl BlockPainter for FigurePainter<'_> {
         let scene = self.loaded.complete(&self.shown(scene));
         let (volumes, wells) = (self.loaded.named_volumes(), self.loaded.well_paths());
         let inputs = self.loaded.inputs(&volumes, &wells);
-        let traced = vectors(&scene, &inputs, self.library, tolerance_px, self.progress)?;
+        let mut traced = vectors(&scene, &inputs, self.library, tolerance_px, self.painted_px(&scene), self.progress)?;
+        if !self.preset.is_colour()
+            && let Some(over) = traced.as_mut().and_then(|traced| traced.over.as_mut())
+        {
+            Arc::make_mut(over).pixels_mut().for_each(|pixel| pixel.0 = self.preset.pixel(pixel.0));
+        }
         self.stages.push(Stage::new("paths", start.elapsed()));
         Ok(traced)
     }

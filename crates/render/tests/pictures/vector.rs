@@ -22,7 +22,7 @@ fn bricks(closed: &ClosedForm) -> Block {
 }
 
 fn traced(scene: &Scene, block: &Block) -> VectorBlock {
-    vectors(scene, &block.inputs(&[]), &library(), 0.05, &Progress::silent()).unwrap().unwrap()
+    vectors(scene, &block.inputs(&[]), &library(), 0.05, scene.size_px, &Progress::silent()).unwrap().unwrap()
 }
 
 fn head_on(size_px: [u32; 2]) -> Scene {
@@ -91,7 +91,8 @@ fn curves_are_as_straight_as_asked() {
     let closed = ClosedForm::dome(&geometry, &[12.0, 36.0], 35.0);
     let block = bricks(&closed);
     let points = |tolerance: f64| {
-        let traced = vectors(&head_on([800, 600]), &block.inputs(&[]), &library(), tolerance, &Progress::silent());
+        let traced =
+            vectors(&head_on([800, 600]), &block.inputs(&[]), &library(), tolerance, [800, 600], &Progress::silent());
         lines(&traced.unwrap().unwrap(), 1).iter().map(|line| line.points.len()).sum::<usize>()
     };
     assert!(points(0.02) > points(0.2) && points(0.2) > points(2.0));
@@ -231,6 +232,7 @@ fn what_paths_cannot_show_is_left_to_the_picture() {
     let volumes = [render::NamedVolume::whole("seismic", &volume)];
     let raw = ttf::RawColour::new("seismic", ttf::RgbaFunction::centred(ttf::ColourMap::Grey, 1.0));
     let scene = Scene { raw: Some(raw), blend: 0.5, outlines: Outlines::default(), ..head_on([200, 160]) };
-    let half = vectors(&scene, &block.inputs(&volumes), &library(), 0.1, &Progress::silent()).unwrap().unwrap();
+    let half =
+        vectors(&scene, &block.inputs(&volumes), &library(), 0.1, scene.size_px, &Progress::silent()).unwrap().unwrap();
     assert!(!half.has_areas && half.areas.is_empty() && !half.lines.is_empty());
 }
