@@ -21,7 +21,7 @@ use pictures::figures::FigureFormat;
 use pictures::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use project::command::{
     AddNote, AddTexture, Command, Extract, LinkVolume, RemoveNote, RemoveScalar, RemoveScene, RemoveVolume,
-    RenameVolume, ResetLayer, SetLayer, SetParameterization, SetScalar, SetVelocity,
+    RenameScene, RenameVolume, ResetLayer, SetLayer, SetParameterization, SetScalar, SetVelocity,
 };
 use project::document::{NoteEntry, Polarity};
 use project::memory_budget;
@@ -240,6 +240,9 @@ impl TryFrom<Action> for Request {
                 from: typed.from,
                 view: typed.view.try_into()?,
             },
+            Action::Scene(SceneAction::Rename { project, from, to }) => {
+                change(project, Command::RenameScene(RenameScene { from, to }))
+            }
             Action::Scene(SceneAction::Remove { project, name }) => {
                 change(project, Command::RemoveScene(RemoveScene { name }))
             }

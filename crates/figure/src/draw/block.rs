@@ -236,7 +236,11 @@ impl BlockPanel<'_> {
     /// Surfaces and sticks before the block.
     fn lay_over(&self, group: &mut Group, scene: &Scene, view: &View, shown: &DrawnInterpretation, pane: Rect) {
         let [nx, ny, _] = self.geometry.size();
-        let faults = shown.faults.iter().map(|fault| surfaces::of_fault(fault, self.geometry.size()));
+        let opacity = surfaces::fault_opacity(scene.media.faces);
+        let faults = shown.faults.iter().map(|fault| {
+            let (cells, colour) = surfaces::of_fault(fault, self.geometry.size());
+            (cells, colour, opacity)
+        });
         let mut cells: Vec<(Cells, ttf::Colour, f32)> = faults.collect();
         if self.has_surfaces {
             for horizon in &shown.horizons {

@@ -17,7 +17,7 @@ pub use fonts::{FontFile, faces, font_files};
 pub use interpreter::{InterpreterView, borrowed};
 pub use output::{FigureFormat, title, write};
 
-use crate::load::{self, Loaded, Stage};
+use crate::load::{self, Loaded, Rock, Stage};
 use crate::{Device, Painter};
 use figure::cut::SectionSource;
 use figure::draw::NamedColour;
@@ -63,6 +63,8 @@ pub struct FigureSettings {
     /// Coarsest resolution that pictures of blocks may have, dots an inch, where a page is looked at soon; absent: the
     /// figure's. All else is laid out as at the figure's.
     pub picture_dpi: Option<f64>,
+    /// The model and its parameterization, where they are known already.
+    pub rock: Option<Arc<Rock>>,
 }
 
 /// The page itself refuses longer sides.
@@ -135,7 +137,7 @@ fn lettered(
     let device = painter.painter.map(|painter| painter.device().to_owned());
     let stages = painter.stages;
     let scene = Scene { preset, ..needs(figure) };
-    let confusions = confusions(project.root(), document, loaded.rock.as_ref(), &scene)?;
+    let confusions = confusions(project.root(), document, loaded.rock.as_deref(), &scene)?;
     Ok(MadeFigure { page, device, stages, confusions })
 }
 
@@ -239,8 +241,10 @@ fn load(
     let scene = Scene { preset: figure.printed_in(), ..needs(figure) };
     let has_block = figure.parts.iter().any(|part| matches!(part, Part::Block(_)));
     if (has_block || figure.has_rock_sections()) && !figure.interpretation {
-        let mut loaded = load::load_within(project, &scene, settings.volume_bytes, progress)?;
-        let stages = loaded.rock.as_mut().map(|rock| std::mem::take(&mut rock.stages)).unwrap_or_default();
+        let loaded = load::load_with(project, settings.rock.clone(), &scene, settings.volume_bytes, progress)?;
+        let made =
+            loaded.rock.as_ref().filter(|rock| settings.rock.as_ref().is_none_or(|known| !Arc::ptr_eq(known, rock)));
+        let stages = made.map(|rock| rock.stages.clone()).unwrap_or_default();
         return Ok((loaded, None, stages));
     }
     let loaded = load::load_bare(project, &scene, settings.volume_bytes, progress)?;
