@@ -130,6 +130,11 @@ fn a_well_is_hidden_in_the_scene() {
     assert_eq!(hidden(&harness), ["W"]);
     click_last(&mut harness, "Show well W");
     assert!(hidden(&harness).is_empty());
+    // Its path has a colour of its own.
+    click_last(&mut harness, "Colour of well W");
+    click_last(&mut harness, "Colour 10");
+    let red = Some(ttf::Colour::new(0xc0, 0x18, 0x2c));
+    wait(&mut harness, "it has its colour", |harness| document(harness).wells[0].colour == red);
     // It stays hidden under another name.
     click_last(&mut harness, "Show well W");
     click_last(&mut harness, "W");
