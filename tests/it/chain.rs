@@ -228,7 +228,7 @@ fn scenes_are_kept_shown_and_drawn() {
     run_in(at, "scene add p.petro copy --from front.toml --azimuth 40").done();
     assert_eq!(names(&run_in(at, "scene list p.petro --json").done().json()["scenes"]), ["front", "copy"]);
     // What names it follows.
-    run_in(at, "note add p.petro Here --at 4,4,24 --scene copy").done();
+    run_in(at, "note add p.petro Here --at 110,510,100 --scene copy").done();
     run_in(at, "scene rename p.petro copy front").failed(&["front"]);
     run_in(at, "scene rename p.petro nothing x").failed(&["it has: front, copy"]);
     run_in(at, "scene rename p.petro copy 'Seen from afar'").done();

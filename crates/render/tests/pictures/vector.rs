@@ -273,7 +273,7 @@ fn the_ground_and_wells_are_drawn_alone_as_in_a_picture() {
             }
             _ => rim += 1,
         }
-        green += usize::from(over.0[3] == 255 && over.0[1] > 2 * over.0[0].max(over.0[2]));
+        green += usize::from(over.0[3] == 255 && over.0[1] / 2 > over.0[0].max(over.0[2]));
     }
     assert!(whole > 4000 && clear > 4000 && green > 50, "{whole} whole, {clear} clear, {green} of the well");
     assert!(rim * 10 < whole, "{rim} at the rim");
