@@ -20,7 +20,7 @@ pub const OPACITY: [f32; 3] = [0.22, 0.6, 0.85];
 /// Opacity of faults, and the colour of black ones, which have no shades.
 const FAULT: (f32, Colour) = (0.34, Colour::new(0x8a, 0x8f, 0x98));
 /// The same before volume rendering, which is to be seen through them.
-const FAULT_BEFORE_VOLUMES: f32 = 0.1;
+const FAULT_BEFORE_VOLUMES: f32 = 0.16;
 /// Longest side of a fault's triangle, of the sides that [`CELLS`] have.
 const LONGEST: f64 = 1.6;
 /// Samples a pixel along each axis.

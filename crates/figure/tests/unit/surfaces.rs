@@ -91,5 +91,5 @@ fn a_fault_is_seen_within_the_block() {
 #[test]
 fn a_fault_is_a_veil_before_volume_rendering() {
     let [before_faces, before_volumes] = [Faces::All, Faces::None].map(fault_opacity);
-    assert!(before_volumes > 0.0 && before_volumes < 0.4 * before_faces && before_faces < 0.5);
+    assert!(before_volumes > 0.0 && before_volumes < 0.5 * before_faces && before_faces < 0.5);
 }
