@@ -24,6 +24,7 @@ use serde::Serialize;
 use std::fmt;
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 pub use store::StoreMeasured;
 use survey::Progress;
@@ -209,7 +210,7 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
         Loaded {
             picked: Vec::new(),
             geometry,
-            rock: Some(rock),
+            rock: Some(Arc::new(rock)),
             volumes: Vec::new(),
             packed: Some(packed),
             candidates: None,

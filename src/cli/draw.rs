@@ -54,8 +54,8 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
         FaceData::Distortion => loaded.distortion(&scene, progress)?,
         _ => Vec::new(),
     };
-    let look_alikes = figures::confusions(project.root(), document, loaded.rock.as_ref(), &scene)?;
-    let mut stages = loaded.rock.map(|rock| rock.stages).unwrap_or_default();
+    let look_alikes = figures::confusions(project.root(), document, loaded.rock.as_deref(), &scene)?;
+    let mut stages = loaded.rock.as_ref().map(|rock| rock.stages.clone()).unwrap_or_default();
     stages.push(stage);
     let mut report = Report::line(written(&request.out, scene.size_px, request.dpi));
     advise(&request.project, look_alikes, &mut report);

@@ -232,7 +232,7 @@ pub(super) fn draw(
     let figure = page.figure(scene, request.dpi, project)?;
     let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
     let device = request.device;
-    let settings = FigureSettings { device, volume_bytes, fonts: page.fonts.clone(), picture_dpi: None };
+    let settings = FigureSettings { device, volume_bytes, fonts: page.fonts.clone(), picture_dpi: None, rock: None };
     let made = figures::make(project, &figure, &InterpreterView::default(), &settings, progress)?;
     figures::write(&made.page, request.format, &request.out, figure.dpi, &figures::title(project))?;
     let mut report = Report::line(written(&request.out, figure.size_px(), figure.dpi));

@@ -21,7 +21,7 @@ use pictures::figures::FigureFormat;
 use pictures::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use project::command::{
     AddNote, AddTexture, Command, Extract, LinkVolume, RemoveNote, RemoveScalar, RemoveScene, RemoveVolume,
-    RenameVolume, ResetLayer, SetLayer, SetParameterization, SetScalar, SetVelocity,
+    RenameScene, RenameVolume, ResetLayer, SetLayer, SetParameterization, SetScalar, SetVelocity,
 };
 use project::document::{NoteEntry, Polarity};
 use project::memory_budget;
@@ -232,17 +232,7 @@ impl TryFrom<Action> for Request {
             Action::Texture(typed) => {
                 change(typed.project, Command::AddTexture(AddTexture { path: typed.file, width_mm: typed.width_mm }))
             }
-            Action::Scene(SceneAction::List { project }) => Self::List { project, what: Listing::Scenes },
-            Action::Scene(SceneAction::Show { project, name }) => Self::List { project, what: Listing::Scene(name) },
-            Action::Scene(SceneAction::Add(typed)) => Self::AddScene {
-                project: typed.project,
-                name: typed.name,
-                from: typed.from,
-                view: typed.view.try_into()?,
-            },
-            Action::Scene(SceneAction::Remove { project, name }) => {
-                change(project, Command::RemoveScene(RemoveScene { name }))
-            }
+            Action::Scene(action) => scene(action)?,
             Action::Undo { project } => Self::Undo(project),
             Action::Redo { project } => Self::Redo(project),
             Action::Check { project, repair } => {
@@ -533,4 +523,21 @@ fn volume(action: VolumeAction) -> Request {
             Request::Change { project, command: Command::RemoveVolume(RemoveVolume { name }) }
         }
     }
+}
+
+/// What is asked for with scenes.
+fn scene(action: SceneAction) -> Result<Request, Usage> {
+    let change = |project: PathBuf, command: Command| Request::Change { project, command };
+    Ok(match action {
+        SceneAction::List { project } => Request::List { project, what: Listing::Scenes },
+        SceneAction::Show { project, name } => Request::List { project, what: Listing::Scene(name) },
+        SceneAction::Add(typed) => Request::AddScene {
+            project: typed.project,
+            name: typed.name,
+            from: typed.from,
+            view: typed.view.try_into()?,
+        },
+        SceneAction::Rename { project, from, to } => change(project, Command::RenameScene(RenameScene { from, to })),
+        SceneAction::Remove { project, name } => change(project, Command::RemoveScene(RemoveScene { name })),
+    })
 }

@@ -7,7 +7,7 @@ use super::request::{Listing, Request, Usage, numbers};
 use formats::ZUnit;
 use formats::well::{WellFiles, WellOptions, WellReport};
 use project::Project;
-use project::command::{AddWell, Command, RemoveWell, RenameWell, WellAdded};
+use project::command::{AddWell, Command, RemoveWell, RenameWell, SetWellColour, WellAdded};
 use project::content;
 use project::error::Noun;
 use survey::Progress;
@@ -18,6 +18,10 @@ pub(super) fn well(action: WellAction) -> Result<Request, Usage> {
         WellAction::Add(typed) => add(*typed)?,
         WellAction::List { project } => Request::List { project, what: Listing::Wells },
         WellAction::Show { project, name } => Request::List { project, what: Listing::Well(name) },
+        WellAction::Colour { project, name, colour } => {
+            let colour = colour.parse().map_err(|_| format!("colour {colour}: expected #rrggbb"))?;
+            Request::Change { project, command: Command::SetWellColour(SetWellColour { well: name, colour }) }
+        }
         WellAction::Rename { project, from, to } => {
             Request::Change { project, command: Command::RenameWell(RenameWell { from, to }) }
         }

@@ -76,6 +76,7 @@ fn undo_and_redo_restore_the_project_and_its_data() {
         "scene add p.petro front --azimuth 10 --cut nearest",
         "velocity p.petro 2500",
         "volume rename p.petro seismic Stack",
+        "scene rename p.petro front Front",
     ] {
         run_in(at, change).done();
         states.push(state(at));
@@ -226,6 +227,14 @@ fn scenes_are_kept_shown_and_drawn() {
     assert!(fs::read(at.join("front.png")).unwrap() == fs::read(at.join("front.toml.png")).unwrap());
     run_in(at, "scene add p.petro copy --from front.toml --azimuth 40").done();
     assert_eq!(names(&run_in(at, "scene list p.petro --json").done().json()["scenes"]), ["front", "copy"]);
+    // What names it follows.
+    run_in(at, "note add p.petro Here --at 110,510,100 --scene copy").done();
+    run_in(at, "scene rename p.petro copy front").failed(&["front"]);
+    run_in(at, "scene rename p.petro nothing x").failed(&["it has: front, copy"]);
+    run_in(at, "scene rename p.petro copy 'Seen from afar'").done();
+    let state: toml::Value = toml::from_str(&fs::read_to_string(at.join("p.petro/project.toml")).unwrap()).unwrap();
+    assert_eq!(state["notes"][0]["scene"].as_str(), Some("Seen from afar"));
+    run_in(at, "render p.petro afar.png --scene 'Seen from afar' --size 60x40 --samples 1").done();
     run_in(at, "scene remove p.petro front").done();
     run_in(at, "scene show p.petro front").failed(&["no scene named"]);
 }

@@ -178,7 +178,10 @@ mod window {
     use ::app::views::overlay::Overlay;
     use ::app::views::print::Page;
     use ::app::views::sections::Sections;
+    use ::app::work::Rocks;
     use ::figure::map::Mapped;
+    use render::Scene;
+    use std::sync::{Arc, RwLock};
     use survey::Progress;
 
     /// What the window exports of a project looked at in some way.
@@ -188,6 +191,18 @@ mod window {
 
     /// The same, with something else on sections.
     fn filled(at: &Path, section_fill: SectionFill, look: impl Fn(&mut Session)) -> RgbImage {
+        written(at, shown(at), section_fill, look)
+    }
+
+    /// What the window shows.
+    fn shown(at: &Path) -> Rocks {
+        let opened = ::project::Project::open(&at.join("p.petro")).unwrap();
+        let loaded = pictures::load::load(&opened, &Scene::default(), &Progress::silent()).unwrap();
+        Arc::new(RwLock::new(loaded))
+    }
+
+    /// The same while the window shows something.
+    fn written(at: &Path, rocks: Rocks, section_fill: SectionFill, look: impl Fn(&mut Session)) -> RgbImage {
         let opened = ::project::Project::open(&at.join("p.petro")).unwrap();
         let (root, document) = (opened.root().to_owned(), opened.document().clone());
         let mut session = Session::new(Snapshot { root, document, history: Vec::new() }, None);
@@ -202,7 +217,7 @@ mod window {
             ..ExportForm::new(path)
         };
         let mapped = Mapped::Structure(1);
-        let page = Page::of(&session, &Overlay::default(), &Sections::default(), mapped, &form).unwrap();
+        let page = Page::of(&session, &Overlay::default(), &Sections::default(), mapped, &form, Some(rocks)).unwrap();
         page.write(&Progress::silent()).unwrap();
         image::open(at.join("window.png")).unwrap().to_rgb8()
     }
@@ -213,6 +228,16 @@ mod window {
         );
         run_in(at, &line).done();
         image::open(at.join("a.png")).unwrap().to_rgb8()
+    }
+
+    /// The model on the screen saves an export its time; one of an earlier state is made anew.
+    #[test]
+    fn a_model_of_another_state_shapes_no_export() {
+        let folder = project();
+        let at = folder.path();
+        let before = shown(at);
+        run_in(at, "horizon remove p.petro Charlie").done();
+        assert!(written(at, before, SectionFill::Measured, |_| {}) == typed(at, ""));
     }
 
     #[test]

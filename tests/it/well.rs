@@ -75,6 +75,20 @@ fn a_well_is_placed_against_the_survey_and_its_horizons() {
     run_in(at, "well rename c.petro A-1 '16/1-9'").done();
     assert!(run_in(at, "well list c.petro").done().stdout.contains("16/1-9: 2 stations"));
     run_in(at, "well show c.petro A-1").failed(&["16/1-9"]);
+    run_in(at, "well colour c.petro nothing '#00c81e'").failed(&["16/1-9"]);
+    run_in(at, "well colour c.petro 16/1-9 '#00c81e'").done();
+    let green = |scene: &str| {
+        run_in(
+            at,
+            &format!("render c.petro w.png --inline 13 --section-blend 0 --annotate wells --size 600x400 {scene}"),
+        )
+        .done();
+        let picture = image::open(at.join("w.png")).unwrap().to_rgb8();
+        picture.pixels().filter(|pixel| u16::from(pixel.0[1]) > 2 * u16::from(pixel.0[0].max(pixel.0[2]))).count()
+    };
+    assert!(green("") > 200, "its path has its colour on a section");
+    assert_eq!(green("--preset greyscale"), 0);
+    run_in(at, "undo c.petro").done();
     run_in(at, "well remove c.petro 16/1-9").done();
     assert!(run_in(at, "well list c.petro").done().stdout.contains("no wells"));
     run_in(at, "undo c.petro").done();

@@ -5,12 +5,13 @@
 //! ```
 //!
 //! Opens a copy of the project, waits for the sharp block, then changes the colour of a layer and its pattern in turns,
-//! as the panels do. For each change it prints the seconds until the project has it and the picture is sharp; then an
-//! export of the block in print quality. Give a copy: the project is changed.
+//! as the panels do. For each change it prints the seconds until the project has it and the picture is sharp; then how many
+//! pictures a second there are while the block is turned by the mouse, and the seconds of an export of the block in print
+//! quality. Give a copy: the project is changed.
 
 use anyhow::{Context as _, bail};
 use app::Window;
-use eframe::egui::{self, vec2};
+use eframe::egui::{self, Event, Modifiers, PointerButton, pos2, vec2};
 use egui_kittest::Harness;
 use project::command::{Command, SetLayer};
 use state::{Action, ExportForm};
@@ -22,6 +23,8 @@ type Driven = Harness<'static, Option<Window>>;
 
 /// Longest wait.
 const PATIENCE: Duration = Duration::from_secs(300);
+/// How long the block is turned.
+const TURNING: Duration = Duration::from_secs(5);
 /// Calm after which nothing more is to come.
 const CALM: Duration = Duration::from_millis(700);
 
@@ -70,6 +73,34 @@ fn last_work(harness: &mut Driven, start: Instant) -> anyhow::Result<Duration> {
     Ok(last)
 }
 
+/// Pictures a second while the block is turned, from the middle of the window to the right and back.
+fn turned(harness: &mut Driven, middle: egui::Pos2) -> anyhow::Result<f64> {
+    let button = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    harness.event(Event::PointerMoved(middle));
+    window(harness)?;
+    harness.event(button(middle, true));
+    let (start, mut pictures) = (Instant::now(), 0u32);
+    let mut shown = window(harness)?.picture_number();
+    let (mut at, mut steps) = (middle, 0);
+    while start.elapsed() < TURNING {
+        steps += 1;
+        at.x += if steps / 40 % 2 == 0 { 3.0 } else { -3.0 };
+        harness.event(Event::PointerMoved(at));
+        let now = window(harness)?.picture_number();
+        pictures += u32::from(now > shown);
+        shown = now;
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    harness.event(button(pos2(at.x, at.y), false));
+    Ok(f64::from(pictures) / seconds)
+}
+
 fn median(mut seconds: Vec<f64>) -> f64 {
     seconds.sort_by(f64::total_cmp);
     seconds[seconds.len() / 2]
@@ -107,6 +138,8 @@ fn main() -> anyhow::Result<()> {
     }
     println!("colour to sharp picture {:6.2} s  (median of {rounds})", median(colours));
     println!("pattern to sharp picture{:6.2} s", median(patterns));
+    let rate = turned(&mut harness, pos2(0.45 * width, 0.5 * height))?;
+    println!("turning                 {rate:6.1} pictures a second");
     let out = folder.path().join("out.png");
     let form = ExportForm::new(out.display().to_string());
     let start = Instant::now();

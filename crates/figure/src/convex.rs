@@ -8,15 +8,16 @@ pub(crate) fn meet(one: &[DVec2], other: &[DVec2]) -> bool {
         let along = polygon.iter().map(|corner| corner.dot(axis));
         along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
     };
-    let sides = |polygon: &[DVec2]| -> Vec<DVec2> {
-        let count = polygon.len();
-        let along = (0..count).map(|n| polygon[(n + 1) % count] - polygon[n]);
-        along.flat_map(|side| [side.perp(), side]).collect()
-    };
-    !sides(one).into_iter().chain(sides(other)).any(|axis| {
+    let is_between = |axis: DVec2| {
         let ([low, high], [other_low, other_high]) = (span(one, axis), span(other, axis));
         high < other_low || other_high < low
-    })
+    };
+    let has_between = |polygon: &[DVec2]| {
+        let along = (0..polygon.len()).map(|n| polygon[(n + 1) % polygon.len()] - polygon[n]);
+        along.flat_map(|side| [side.perp(), side]).any(is_between)
+    };
+    // Most polygons of a page are far apart.
+    ![DVec2::X, DVec2::Y].into_iter().any(is_between) && !has_between(one) && !has_between(other)
 }
 
 /// Whether a place lies in a convex polygon.

@@ -60,7 +60,12 @@ impl Survey {
     fn page(&self, scene: &Scene, annotate: &[Annotation]) -> (DisplayList, Scene) {
         let volumes = [NamedVolume::whole("seismic", &self.volume)];
         let paths: Vec<Vec<DVec3>> = self.wells.iter().map(|well| well.path_in_voxels(&self.geometry)).collect();
-        let drawn = self.wells.iter().zip(&paths).map(|(well, path)| DrawnWell { name: &well.name, path, tops: &[] });
+        let drawn = self.wells.iter().zip(&paths).map(|(well, path)| DrawnWell {
+            name: &well.name,
+            colour: None,
+            path,
+            tops: &[],
+        });
         let wells: Vec<DrawnWell> = drawn.collect();
         let data = Inputs { model: Some(&self.model), wells: &wells, ..Inputs::raw(&self.geometry, &volumes) };
         let library = TextureLibrary::builtin().unwrap();
@@ -430,7 +435,12 @@ fn water_is_not_painted_over_wells_that_stand_before_it() {
     let water = Water { opacity: 0.4, ..Water::default() };
     scene.size_px = [400, 300];
     let paths: Vec<Vec<DVec3>> = survey.wells.iter().map(|well| well.path_in_voxels(&survey.geometry)).collect();
-    let drawn = survey.wells.iter().zip(&paths).map(|(well, path)| DrawnWell { name: &well.name, path, tops: &[] });
+    let drawn = survey.wells.iter().zip(&paths).map(|(well, path)| DrawnWell {
+        name: &well.name,
+        colour: None,
+        path,
+        tops: &[],
+    });
     let wells: Vec<DrawnWell> = drawn.collect();
     let volumes = [NamedVolume::whole("seismic", &survey.volume)];
     let inputs = Inputs { model: Some(&survey.model), wells: &wells, ..Inputs::raw(&survey.geometry, &volumes) };

@@ -53,7 +53,8 @@ fn made_of(
     let raw = RawColour::new("seismic", RgbaFunction::over(ColourMap::Grey, [0.0, 2.0]));
     let wells = [well("A-1", 6.0, 5.0), well("Deep test 2", 8.0, 6.0), well("B", 22.0, 17.0)];
     let paths: Vec<_> = wells.iter().map(|well| well.path_in_voxels(&geometry)).collect();
-    let drawn = wells.iter().zip(&paths).map(|(well, path)| DrawnWell { name: &well.name, path, tops: &[] });
+    let drawn =
+        wells.iter().zip(&paths).map(|(well, path)| DrawnWell { name: &well.name, colour: None, path, tops: &[] });
     let drawn: Vec<DrawnWell> = drawn.collect();
     let data = Inputs { model: Some(model), wells: &drawn, ..Inputs::raw(&geometry, &volumes) };
     let horizons = [("H1", Colour::new(255, 0, 0)), ("H2", Colour::new(0, 0, 255))]

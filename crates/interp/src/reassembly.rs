@@ -7,7 +7,7 @@
 //! vertex whose trace is taken is left for a traversal of its own and becomes part of a further sheet of that
 //! block. So overlaps stay visible, and without interpreted faults the second side of a reverse fault is
 //! preserved. Patches that tracking left beyond a fault, over or under the sheet that belongs there, are
-//! dropped. Space: voxels.
+//! dropped, and so are the few that noise left over a sheet, which a climb tolerates. Space: voxels.
 
 use crate::assembly::{Overlap, Selection};
 use crate::forest::Forest;
@@ -28,6 +28,8 @@ pub struct Reassembled {
     pub overlap: Overlap,
     /// Count of vertices dropped because they lie beyond a fault that their surface was tracked across.
     pub left_out: usize,
+    /// Vertices dropped because they lie over or under a sheet, no more than noise leaves.
+    pub doubled: Overlap,
 }
 
 /// No vertex, or none yet.
@@ -80,8 +82,12 @@ pub fn reassemble(forest: &Forest, selection: &Selection, seeds: &[u32], blocks:
         left_out += patch.vertices.len();
         patch.vertices.clear();
     }
+    let is_picked =
+        |v: &u32| seeds.iter().any(|&t| surfaces.triangles[t as usize].contains(&mesh.vertices[*v as usize]));
+    let doubled = doubles(&patches, is_picked, trace_of, nx * ny);
     let mut sheets: Vec<VoxelSheet> = Vec::new();
-    for patch in patches.iter().filter(|patch| !patch.vertices.is_empty()) {
+    let kept = patches.iter().zip(&doubled).filter(|(_, doubled)| !**doubled).map(|(patch, _)| patch);
+    for patch in kept.filter(|patch| !patch.vertices.is_empty()) {
         let free = |sheet: &VoxelSheet| {
             sheet.block == patch.block && patch.vertices.iter().all(|&v| sheet.z[trace_of(v)].is_nan())
         };
@@ -97,7 +103,15 @@ pub fn reassemble(forest: &Forest, selection: &Selection, seeds: &[u32], blocks:
     // A stable sort: of the sheets of one block, the one that was begun first stays first.
     sheets.sort_by_key(|sheet| sheet.block);
     let overlap = overlap_of(&sheets, ny);
-    Reassembled { sheets, overlap, left_out }
+    let mut over = Overlap::default();
+    for (patch, _) in patches.iter().zip(&doubled).filter(|(_, doubled)| **doubled) {
+        for &v in &patch.vertices {
+            let others = sheets.iter().filter(|sheet| sheet.block == patch.block);
+            let apart = others.map(|sheet| (sheet.z[trace_of(v)] - of(v).z).abs()).fold(f32::NAN, f32::max);
+            over.add(apart, [f32::from(of(v).x), f32::from(of(v).y), of(v).z]);
+        }
+    }
+    Reassembled { sheets, overlap, left_out, doubled: over }
 }
 
 /// Connected vertices of one block, at most one a trace.
@@ -203,6 +217,41 @@ fn is_fringe(mesh: &Mesh, patch_of: &[u32], patch: u32, fault: Vec<u32>) -> bool
     false
 }
 
+/// Share of the vertices that noise leaves over others at most: as much as a climb tolerates.
+const DOUBLED: f64 = 0.02;
+
+/// Share of a patch that lies over or under a larger one of its block, from which on it is no part of the horizon.
+const OVER: f64 = 0.5;
+
+/// Which patches are left where a front passed above or below an error and met itself again: they have no pick and lie
+/// mostly over or under a larger patch of their block. None, if they are more than noise leaves: then another reflection
+/// or the other side of a fault is among them.
+fn doubles(
+    patches: &[SheetPatch],
+    is_picked: impl Fn(&u32) -> bool,
+    trace_of: impl Fn(u32) -> usize,
+    traces: usize,
+) -> Vec<bool> {
+    let mut covered = vec![false; traces];
+    let mut order: Vec<usize> = (0..patches.len()).collect();
+    order.sort_by_key(|&p| (patches[p].block, std::cmp::Reverse(patches[p].vertices.len()), p));
+    let mut found = vec![false; patches.len()];
+    for of_block in order.chunk_by(|&a, &b| patches[a].block == patches[b].block) {
+        covered.fill(false);
+        for &p in of_block {
+            let vertices = &patches[p].vertices;
+            let under = vertices.iter().filter(|&&v| covered[trace_of(v)]).count();
+            found[p] = under > 0 && under as f64 >= OVER * vertices.len() as f64 && !vertices.iter().any(&is_picked);
+            if !found[p] {
+                vertices.iter().for_each(|&v| covered[trace_of(v)] = true);
+            }
+        }
+    }
+    let all: usize = patches.iter().map(|patch| patch.vertices.len()).sum();
+    let doubled: usize = patches.iter().zip(&found).filter(|(_, found)| **found).map(|(p, _)| p.vertices.len()).sum();
+    if doubled as f64 > DOUBLED * all as f64 { vec![false; patches.len()] } else { found }
+}
+
 /// Where further sheets of a block lie over its first sheets.
 fn overlap_of(sheets: &[VoxelSheet], ny: usize) -> Overlap {
     let mut overlap = Overlap::default();
@@ -212,11 +261,7 @@ fn overlap_of(sheets: &[VoxelSheet], ny: usize) -> Overlap {
                 let others = of_block[..n].iter().map(|other| (other.z[trace] - z).abs());
                 let apart = others.filter(|apart| apart.is_finite()).fold(f32::NAN, f32::max);
                 if apart.is_finite() {
-                    overlap.traces += 1;
-                    if apart > overlap.apart {
-                        overlap.apart = apart;
-                        overlap.at_voxel = [(trace / ny) as f32, (trace % ny) as f32, z];
-                    }
+                    overlap.add(apart, [(trace / ny) as f32, (trace % ny) as f32, z]);
                 }
             }
         }

@@ -75,6 +75,7 @@ pub use levels::{
 pub use network::{BlockSignature, FaultCrossing, FaultNetwork, FaultSurface, Truncation, drawn_crossing};
 pub use report::{InferredPlacement, ModelError, ModelNote, ModelReport, SurfaceProblem};
 pub use settings::ModelSettings;
+pub use sheets::picked_share;
 pub use structural::{Region, StructuralModel};
 
 #[cfg(test)]

@@ -44,15 +44,33 @@ impl ExtendedSheet {
 
     /// Which nodes are data or within a few nodes of it.
     pub fn near_data(&self, lattice: MarginLattice) -> Vec<bool> {
-        let mut near = self.known.clone();
-        for _ in 0..SOLID_NODES {
-            let before = near.clone();
-            for n in (0..near.len()).filter(|&n| !before[n]) {
-                near[n] = beside(lattice.size, n).any(|m| before[m]);
-            }
-        }
-        near
+        near(lattice.size, self.known.clone())
     }
+}
+
+/// The share of the nodes of a grid that are data or within [`SOLID_NODES`] nodes of it, which counts as picked everywhere.
+///
+/// ```
+/// // One trace of a line of nine, in its middle.
+/// let is_data = (0..9).map(|n| n == 4).collect();
+/// assert_eq!(model::picked_share([9, 1], is_data), 1.0);
+/// assert_eq!(model::picked_share([1, 9], vec![false; 9]), 0.0);
+/// assert_eq!(model::picked_share([1, 10], (0..10).map(|n| n == 0).collect()), 0.5);
+/// ```
+pub fn picked_share(size: [usize; 2], is_data: Vec<bool>) -> f64 {
+    let near = near(size, is_data);
+    near.iter().filter(|near| **near).count() as f64 / near.len().max(1) as f64
+}
+
+/// These nodes of a grid and those within [`SOLID_NODES`] nodes of them.
+fn near(size: [usize; 2], mut near: Vec<bool>) -> Vec<bool> {
+    for _ in 0..SOLID_NODES {
+        let before = near.clone();
+        for n in (0..near.len()).filter(|&n| !before[n]) {
+            near[n] = beside(size, n).any(|m| before[m]);
+        }
+    }
+    near
 }
 
 /// The four neighbours of node `n`.

@@ -28,15 +28,17 @@ impl PickedShare {
         self.share < SPARSE
     }
 
+    /// The share as it is written everywhere.
+    pub fn percent(&self) -> String {
+        format!("{:.0} %", 100.0 * self.share)
+    }
+
     /// What there is to know before a picture is believed.
     pub fn sentence(&self) -> String {
-        let percent = (100.0 * self.share).round();
+        let percent = self.percent();
         // "Horizon 1" is its name already.
         let noun = if self.name.to_lowercase().starts_with("horizon") { "" } else { "horizon " };
-        format!(
-            "{noun}{} was picked on or near {percent:.0} % of its traces; the rest is filled or extrapolated",
-            self.name
-        )
+        format!("{noun}{} was picked on or near {percent} of its traces; the rest is filled or extrapolated", self.name)
     }
 }
 

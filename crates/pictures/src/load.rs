@@ -15,11 +15,11 @@ use project::{content, derived, memory_budget, styles};
 use render::distortion::{self, LayerDistortion};
 use render::{DrawnWell, Inputs, Lookup, Media, NamedVolume, RenderError, Scene, VoxelBox};
 use std::path::Path;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 use survey::{Progress, SurveyGeometry, Volume, Well, memory};
-use ttf::{BlockExtent, LayerExtent, RawColour, TtfTables};
+use ttf::{BlockExtent, Colour, LayerExtent, RawColour, TtfTables};
 
 /// Memory that the sampled parameterization takes for each voxel: i, j, k, layer and block.
 const VOXEL_BYTES: usize = 16;
@@ -89,7 +89,7 @@ pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, Proj
     let Some((model, stage)) = structural_model(project, progress)? else { return Ok(None) };
     let mut stages = vec![stage];
     let param_settings = solid::param_settings(document);
-    let key = derived::parameterization_key(document, &ModelSettings::default(), &param_settings);
+    let key = rock_key(document);
     let parameterization = match derived::load_grids(project.root(), &key) {
         Some(kept) if is_of(&kept, &model) => kept,
         _ => {
@@ -108,6 +108,11 @@ pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, Proj
         }
     };
     Ok(Some(Rock::new(model, parameterization, key, stages)))
+}
+
+/// The key of the interpretation of a project's state.
+fn rock_key(document: &Document) -> String {
+    derived::parameterization_key(document, &ModelSettings::default(), &solid::param_settings(document))
 }
 
 /// Whether a parameterization has the size, layers and blocks of a model.
@@ -199,6 +204,8 @@ pub struct LoadedVolume {
 pub struct LoadedWell {
     /// Its name.
     pub name: String,
+    /// Its own colour.
+    pub colour: Option<Colour>,
     /// Its path from the head down.
     pub path: Vec<DVec3>,
     /// Its tops.
@@ -235,7 +242,7 @@ pub struct Loaded {
     /// The survey geometry.
     pub geometry: SurveyGeometry,
     /// The interpretation, if there is one and the scene shows it.
-    pub rock: Option<Rock>,
+    pub rock: Option<Arc<Rock>>,
     /// How much of each horizon was picked, youngest first.
     pub picked: Vec<PickedShare>,
     /// The volumes that the scene shows.
@@ -282,11 +289,28 @@ pub fn load_within(
     volume_bytes: u64,
     progress: &Progress,
 ) -> Result<Loaded, ProjectError> {
+    load_with(project, None, scene, volume_bytes, progress)
+}
+
+/// The same where the interpretation may be known already, as while a window shows it; one of another state is not used.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(
+    project: &Project,
+    known: Option<Arc<Rock>>,
+    scene: &Scene,
+    volume_bytes: u64,
+    progress: &Progress,
+) -> Result<Loaded, ProjectError> {
     let document = project.document();
     let geometry = document.frame()?.clone();
     // Raw data alone needs no interpretation, but outlines and ground do.
-    let rock = rock(project, progress)?;
-    let picked = rock.as_ref().map_or_else(Vec::new, Rock::picked);
+    let rock = match known.filter(|rock| rock.key == rock_key(document)) {
+        Some(rock) => Some(rock),
+        None => rock(project, progress)?.map(Arc::new),
+    };
+    let picked = rock.as_ref().map_or_else(Vec::new, |rock| rock.picked());
     if scene.blend < 1.0 {
         super::sparse_sentences(&sparse(&picked)).into_iter().for_each(|sentence| progress.warn(sentence));
     }
@@ -439,6 +463,7 @@ pub fn read_wells(
         let (tops, top_names) = placed.unzip();
         wells.push(LoadedWell {
             name: entry.name.clone(),
+            colour: entry.colour,
             path: well.path_in_voxels(geometry),
             tops,
             top_names,
@@ -512,7 +537,10 @@ impl Loaded {
 
     /// The wells in the form that renderers take.
     pub fn well_paths(&self) -> Vec<DrawnWell<'_>> {
-        self.wells.iter().map(|well| DrawnWell { name: &well.name, path: &well.path, tops: &well.tops }).collect()
+        let named = self.wells.iter();
+        named
+            .map(|well| DrawnWell { name: &well.name, colour: well.colour, path: &well.path, tops: &well.tops })
+            .collect()
     }
 
     /// The distortion of patterns on the faces that a scene shows, for each layer from the bottom.

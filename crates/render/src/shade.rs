@@ -25,6 +25,17 @@ pub(crate) fn stopping_points(resolved: &ResolvedScene, view_rays: &[ViewRay]) -
     Points::of(resolved, view_rays.iter().zip(hits))
 }
 
+/// The colours of what lies over the faces of the block, the ground or a well, on rays that are stopped by it.
+pub(crate) fn over_rock(resolved: &ResolvedScene, view_rays: &[ViewRay]) -> Vec<Option<Vec3>> {
+    let rays: Vec<Ray> = view_rays.iter().map(|ray| Ray::from(*ray)).collect();
+    let hits = rays.iter().zip(starts(resolved, &rays)).map(|(ray, start)| stopping_hit(resolved, ray, start));
+    let over: Vec<(&ViewRay, RayHit)> = view_rays.iter().zip(hits).collect();
+    let is_over = |hit: &RayHit| matches!(hit, RayHit::Ground(_) | RayHit::Well(_));
+    let stopped = over.iter().copied().filter(|(_, hit)| is_over(hit));
+    let mut colours = Points::of(resolved, stopped).colours(resolved).into_iter().map(Vec4::truncate);
+    over.iter().map(|(_, hit)| if is_over(hit) { colours.next() } else { None }).collect()
+}
+
 /// Straight RGBA of rays: of what stops each, and of what lies behind a ground that is not opaque. Fastest
 /// for rays that are neighbours in the picture.
 pub(crate) fn trace(resolved: &ResolvedScene, light: Option<&LightVolume>, view_rays: &[ViewRay]) -> Vec<Vec4> {

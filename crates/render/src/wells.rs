@@ -23,6 +23,8 @@ use ttf::Colour;
 pub struct DrawnWell<'a> {
     /// Its name.
     pub name: &'a str,
+    /// Its own colour; otherwise that of the scene's wells.
+    pub colour: Option<Colour>,
     /// Its path from the surface down, voxels.
     pub path: &'a [DVec3],
     /// Positions of its tops on the path, voxels.
@@ -115,9 +117,10 @@ impl Tubes {
         let mut capsules = Vec::new();
         for (well, path) in wells.iter().enumerate().filter(|(_, well)| !scene.hides_well(well.name)) {
             let kept = simplified(path.path, STRAIGHT);
+            let colour = path.colour.map_or(style.colour, |own| scene.preset.line(own)).to_unit();
             for ends in kept.windows(2).filter_map(|ends| clipped([ends[0], ends[1]], roaming_box)) {
                 let ends = ends.map(|end| (to_display * end).as_vec3());
-                capsules.push(Capsule { ends, radius, colour: style.colour.to_unit(), well });
+                capsules.push(Capsule { ends, radius, colour, well });
             }
             let inside = |p: &&DVec3| {
                 let p = p.as_vec3();

@@ -9,6 +9,7 @@ use resvg::tiny_skia::{self, PathSegment};
 use resvg::usvg::{self, FillRule, LineCap, Node, Paint};
 
 use crate::TtfError;
+use std::mem::discriminant;
 
 /// Pieces of one tile, back to front.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -64,8 +65,6 @@ pub enum TilePaint {
 
 /// Corners of two pieces closer than this are the same, tile units.
 const SAME: f64 = 1e-3;
-/// How many tiles away a repetition is looked for.
-const REACH: i32 = 3;
 
 /// The drawing of an SVG tile; `None` if it holds what has no place here.
 ///
@@ -199,12 +198,14 @@ pub fn bounds(path: &[TileSegment]) -> [[f64; 2]; 2] {
     bounds
 }
 
-fn points(segment: &TileSegment) -> Vec<[f64; 2]> {
-    match segment {
-        TileSegment::Move(p) | TileSegment::Line(p) => vec![*p],
-        TileSegment::Cubic(a, b, p) => vec![*a, *b, *p],
-        TileSegment::Close => Vec::new(),
-    }
+/// Its points: up to three.
+fn points(segment: &TileSegment) -> impl Iterator<Item = [f64; 2]> + use<> {
+    let points = match *segment {
+        TileSegment::Move(p) | TileSegment::Line(p) => [Some(p), None, None],
+        TileSegment::Cubic(a, b, p) => [Some(a), Some(b), Some(p)],
+        TileSegment::Close => [None; 3],
+    };
+    points.into_iter().flatten()
 }
 
 /// Joins pieces that lie inside another one with it: they are its holes.
@@ -223,19 +224,22 @@ fn with_holes(pieces: Vec<Vec<TileSegment>>) -> Vec<Vec<TileSegment>> {
 
 /// Each piece once, moved by whole tiles so that its middle lies in [0, 1).
 fn once(pieces: Vec<Vec<TileSegment>>) -> Vec<Vec<TileSegment>> {
-    let mut kept: Vec<Vec<TileSegment>> = Vec::new();
+    let mut kept: Vec<([f64; 2], Vec<TileSegment>)> = Vec::new();
     for piece in pieces {
         let [low, high] = bounds(&piece);
         let home = [0, 1].map(|n| -(0.5 * (low[n] + high[n]) + SAME).floor());
         let piece: Vec<TileSegment> = piece.iter().map(|segment| moved(segment, home)).collect();
-        let again = kept.iter().any(|other| {
-            (-REACH..=REACH).any(|u| (-REACH..=REACH).any(|v| is_same(other, &piece, [f64::from(u), f64::from(v)])))
+        let low = bounds(&piece)[0];
+        let again = kept.iter().any(|(corner, other)| {
+            // Copies lie whole tiles apart.
+            let by = [0, 1].map(|n| (low[n] - corner[n]).round());
+            (0..2).all(|n| (low[n] - corner[n] - by[n]).abs() < SAME) && is_same(other, &piece, by)
         });
         if !again {
-            kept.push(piece);
+            kept.push((low, piece));
         }
     }
-    kept
+    kept.into_iter().map(|(_, piece)| piece).collect()
 }
 
 fn moved(segment: &TileSegment, by: [f64; 2]) -> TileSegment {
@@ -250,8 +254,8 @@ fn moved(segment: &TileSegment, by: [f64; 2]) -> TileSegment {
 
 fn is_same(a: &[TileSegment], b: &[TileSegment], by: [f64; 2]) -> bool {
     let near = |(a, b): (&TileSegment, &TileSegment)| {
-        let (a, b) = (points(&moved(a, by)), points(b));
-        a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| (0..2).all(|n| (a[n] - b[n]).abs() < SAME))
+        let is_alike = discriminant(a) == discriminant(b);
+        is_alike && points(&moved(a, by)).zip(points(b)).all(|(a, b)| (0..2).all(|n| (a[n] - b[n]).abs() < SAME))
     };
     a.len() == b.len() && a.iter().zip(b).all(near)
 }

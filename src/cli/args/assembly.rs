@@ -16,8 +16,9 @@ pub(in crate::cli) struct PickArgs {
     /// Climb this many levels above the leaf [default: 0]
     #[arg(long, value_name = "N", conflicts_with = "highest_valid")]
     pub(in crate::cli) up: Option<u32>,
-    /// Climb to the highest node that has no two depths at one trace but for a few: at most 2 % of its points over
-    /// itself, as noise leaves them, and 10 % over the horizon, as beside a fault that is not drawn
+    /// Climb to the highest node that is a single sheet: at most 2 % of its points lie over itself, as noise leaves
+    /// them, and are left out of the horizon; at most 10 % lie over the rest of the horizon, as beside a fault that is not
+    /// drawn, which is then said
     #[arg(long)]
     pub(in crate::cli) highest_valid: bool,
     /// Add a new horizon that is the level of geologic time through the place, over the whole survey and across its
@@ -54,8 +55,8 @@ pub(in crate::cli) struct ClimbArgs {
     /// Levels
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(in crate::cli) levels: u32,
-    /// Climb to the highest node that has no two depths at one trace but for a few: at most 2 % of its points over
-    /// itself, and 10 % over the rest of the horizon
+    /// Climb to the highest node that is a single sheet: at most 2 % of its points lie over itself, as noise leaves
+    /// them, and are left out of the horizon; at most 10 % lie over the rest of it, which is then said
     #[arg(long, conflicts_with = "levels")]
     pub(in crate::cli) highest_valid: bool,
 }

@@ -24,6 +24,16 @@ pub(in crate::cli) enum SceneAction {
         /// Name of the scene [default: the one that `render` starts from]
         name: Option<String>,
     },
+    /// Rename a scene
+    #[command(after_help = "Example:\n  petroglyph scene rename north.petro corner \"Corner cut away\"")]
+    Rename {
+        /// Project folder
+        project: PathBuf,
+        /// Name of the scene
+        from: String,
+        /// New name
+        to: String,
+    },
     /// Remove a scene
     #[command(after_help = "Example:\n  petroglyph scene remove north.petro corner")]
     Remove {

@@ -28,6 +28,16 @@ pub(in crate::cli) enum WellAction {
         /// Well
         name: String,
     },
+    /// Give a well another colour, in the block and on sections
+    #[command(after_help = "Example:\n  petroglyph well colour north.petro A-1 #c0182c")]
+    Colour {
+        /// Project folder
+        project: PathBuf,
+        /// Well
+        name: String,
+        /// Colour, #rrggbb
+        colour: String,
+    },
     /// Rename a well
     #[command(after_help = "Example:\n  petroglyph well rename north.petro A-1 \"16/1-9\"")]
     Rename {

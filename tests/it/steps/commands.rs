@@ -132,7 +132,7 @@ pub const MAKING: [Scenario; 5] = [
 ];
 
 /// What changes horizons, faults and wells.
-pub const INTERPRETING: [Scenario; 22] = [
+pub const INTERPRETING: [Scenario; 23] = [
     of(Imported, "horizon add p.petro top.csv --name Another"),
     of(Imported, "volume rename p.petro seismic Stack"),
     of(Imported, "horizon rename p.petro Top Roof"),
@@ -153,6 +153,7 @@ pub const INTERPRETING: [Scenario; 22] = [
     of(Imported, "fault remove p.petro F"),
     of(Imported, "well add p.petro A.csv --name A-1 --head 100,100 --kb 0 --tops tops.csv"),
     after(Imported, with_well, "well rename p.petro A-1 B-2"),
+    after(Imported, with_well, "well colour p.petro A-1 '#c0182c'"),
     after(Imported, with_well, "well remove p.petro A-1"),
     of(Imported, "velocity p.petro 2500"),
 ];
@@ -174,7 +175,7 @@ pub const PICKING: [Scenario; 12] = [
 ];
 
 /// What changes how it looks.
-pub const LOOKING: [Scenario; 11] = [
+pub const LOOKING: [Scenario; 12] = [
     of(Imported, "layer set p.petro 'Top - Base' --name Chalk --pattern chalk"),
     of(Imported, "layer set p.petro 'Top - Base' --rock 'oolitic limestone' --age Campanian"),
     of(Imported, "layer reset p.petro 'Top - Base'"),
@@ -183,6 +184,7 @@ pub const LOOKING: [Scenario; 11] = [
     of(Imported, "raw p.petro --map grey"),
     of(Imported, "texture p.petro tile.png"),
     of(Imported, "scene add p.petro front --blend 0.5"),
+    after(Imported, |at| all(at, &["scene add p.petro front"]), "scene rename p.petro front back"),
     after(Imported, |at| all(at, &["scene add p.petro front"]), "scene remove p.petro front"),
     of(Imported, "note add p.petro 'Look here' --at 4,4,24"),
     after(Imported, |at| all(at, &["note add p.petro Here --at 4,4,24"]), "note remove p.petro 1"),

@@ -2,13 +2,14 @@
 
 use super::{cut_shapes, notices};
 use crate::state::{Action, Panel, Place, Session, StandardView, State};
-use eframe::egui::{Button, ComboBox, DragValue, Grid, ScrollArea, Slider, TextEdit, Ui};
+use eframe::egui::{Align, Button, ComboBox, DragValue, Grid, Layout, ScrollArea, Slider, TextEdit, Ui};
 use glam::DVec3;
-use project::command::{AddScene, Command, RemoveScene};
+use project::command::{AddScene, Command, RemoveScene, RenameScene};
 use render::{Corner, Ground, PatternSize, Projection, Scene, VoxelBox};
 use survey::VerticalUnit;
 use ttf::Preset;
 use widgets::form::{self, LABELS};
+use widgets::keyboard::{Renamed, Renaming};
 use widgets::obstacle::{needs, unless};
 use widgets::percent;
 
@@ -16,8 +17,8 @@ use widgets::percent;
 const FOV_DEG: f64 = 35.0;
 /// Width that the label and the number beside a slider take, points.
 const BESIDE_SLIDER: f32 = 184.0;
-/// Width that the button beside a scene takes, points.
-const BESIDE_SCENE: f32 = 90.0;
+/// Width that the buttons beside a scene take, points.
+const BESIDE_SCENE: f32 = 164.0;
 /// Margins of a field, and room beside it, points.
 const BESIDE_FIELD: f32 = 16.0;
 /// Shares of the block that a new corner cut takes.
@@ -27,6 +28,8 @@ const CUT_SHARE: [f64; 2] = [0.45, 0.45];
 #[derive(Debug, Default)]
 pub struct Controls {
     scene_name: String,
+    /// The scene whose name is being changed.
+    renaming: Option<Renaming>,
 }
 
 impl Controls {
@@ -59,6 +62,17 @@ impl Controls {
     fn scenes(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         for entry in &session.document.scenes {
             ui.horizontal(|ui| {
+                if let Some(renaming) = self.renaming.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
+                    let renamed = renaming.show(ui, ui.available_width() - BESIDE_FIELD);
+                    if let Renamed::To(to) = &renamed {
+                        let command = RenameScene { from: entry.name.clone(), to: to.clone() };
+                        actions.push(Action::Apply(Box::new(Command::RenameScene(command))));
+                    }
+                    if renamed != Renamed::Typing {
+                        self.renaming = None;
+                    }
+                    return;
+                }
                 let shown = ui.scope(|ui| {
                     ui.set_max_width((ui.available_width() - BESIDE_SCENE).max(60.0));
                     ui.add(Button::new(&entry.name).truncate())
@@ -66,10 +80,15 @@ impl Controls {
                 if shown.inner.on_hover_text(format!("Show scene {}", entry.name)).clicked() {
                     actions.push(Action::ShowNamed(entry.name.clone()));
                 }
-                if super::data::remove(ui, &format!("Remove scene {}", entry.name)) {
-                    let command = RemoveScene { name: entry.name.clone() };
-                    actions.push(Action::Apply(Box::new(Command::RemoveScene(command))));
-                }
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    if ui.button("Remove").on_hover_text(format!("Remove scene {}", entry.name)).clicked() {
+                        let command = RemoveScene { name: entry.name.clone() };
+                        actions.push(Action::Apply(Box::new(Command::RemoveScene(command))));
+                    }
+                    if ui.button("Rename").on_hover_text(format!("Rename scene {}", entry.name)).clicked() {
+                        self.renaming = Some(Renaming::of(&entry.name));
+                    }
+                });
             });
         }
         ui.horizontal(|ui| {

@@ -9,7 +9,7 @@ use eframe::egui::{
 use formats::SurfaceKind;
 use project::command::{
     Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameFault, RenameHorizon, RenameVolume,
-    RenameWell, SetFaultColour, SetFaultExtent, SetRaw, SetVelocity,
+    RenameWell, SetFaultColour, SetFaultExtent, SetRaw, SetVelocity, SetWellColour,
 };
 use project::document::{FaultEntry, VolumeEntry};
 use project::styles;
@@ -245,6 +245,11 @@ impl Data {
                     hidden.extend((!is_shown).then(|| entry.name.clone()));
                     let scene = Scene { hidden_wells: hidden, ..session.view.scene.clone() };
                     actions.push(Action::Show(Box::new(scene)));
+                }
+                let ink = entry.colour.unwrap_or(session.view.scene.wells.colour);
+                if let Some(colour) = palette(ui, ink, &format!("Colour of well {}", entry.name)) {
+                    let command = SetWellColour { well: entry.name.clone(), colour };
+                    actions.push(Action::Apply(Box::new(Command::SetWellColour(command))));
                 }
                 if let Some(renaming) = self.renaming_well.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
                     let renamed = renaming.show(ui, 150.0);

@@ -6,17 +6,18 @@
 
 use super::surfaces;
 use crate::state::picking::voxel_of;
-use crate::state::{Hidden, Panel, Session, StickPoint, Tool, camera};
+use crate::state::{Hidden, Look, Panel, Session, StickPoint, Tool, camera};
 use crate::work::{Interpreted, ShownPick, sheet};
 use eframe::egui::{Painter, Pos2, Rect, Ui};
 use figure::SectionKind;
 use figure::draw::overlay::{OverlayLines, SeenOn, stick};
-use figure::draw::surfaces::{Cells, OPACITY, of_fault};
+use figure::draw::surfaces::{Cells, OPACITY, fault_opacity, of_fault};
 use figure::interpretation::{DrawnInterpretation, DrawnSelection, Stick};
 use formats::SurfaceKind;
 use glam::DVec2;
 use pictures::figures::InterpreterView;
 use project::document::FaultEntry;
+use render::Faces;
 use std::collections::HashMap;
 use std::sync::Arc;
 use ttf::Colour;
@@ -37,7 +38,7 @@ pub struct Overlay {
     /// Increases with each selection.
     selection: usize,
     cells: Arc<Vec<(Colour, Vec<Cells>)>>,
-    fault_cells: Arc<Vec<(Cells, Colour, f32)>>,
+    fault_cells: Arc<Vec<(Cells, Colour)>>,
     selected_cells: Arc<Vec<Cells>>,
     lines: HashMap<SectionKind, (Made<u64>, OverlayLines)>,
     fence: Option<(Made<Vec<DVec2>>, OverlayLines)>,
@@ -221,7 +222,9 @@ impl Overlay {
         let names = self.interpreted.iter().flat_map(|shown| &shown.faults).map(|fault| &fault.name);
         let faults = self.fault_cells.iter().zip(names);
         let faults = faults.filter(|(_, name)| !session.view.hidden.has(SurfaceKind::Fault, name));
-        let faults = faults.map(|((cells, colour, opacity), _)| (cells, *colour, *opacity));
+        let is_clear = picking.look == Look::VolumeRendering;
+        let opacity = fault_opacity(if is_clear { Faces::None } else { Faces::All });
+        let faults = faults.map(|((cells, colour), _)| (cells, *colour, opacity));
         let own = picking.colour_in(&session.document);
         let picked = self.selected_cells.iter().map(|cells| (cells, own, OPACITY[2]));
         let missing = horizons.chain(picked).filter(|_| !has_horizons);

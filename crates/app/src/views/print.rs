@@ -7,7 +7,7 @@ use super::overlay::{Overlay, interpreter_view};
 use super::sections::Sections;
 use crate::state::picking::place_of;
 use crate::state::{Compare, ExportForm, Layout, Panel, SectionFill, SectionKind, Session, Shown, State, showing};
-use crate::work::compute;
+use crate::work::{Rocks, compute};
 use figure::cut::value_at;
 use figure::draw::block::Comparison;
 use figure::map::Mapped;
@@ -19,6 +19,7 @@ use pictures::figures::{self, FigureFormat, FigureSettings, InterpreterView};
 use project::{Project, ProjectError, memory_budget};
 use render::{Background, FaceData, Scene};
 use std::path::{Path, PathBuf};
+use std::sync::PoisonError;
 use survey::{Progress, SurveyGeometry};
 use ttf::{Colour, Preset};
 use widgets::page::PREVIEW_DPI;
@@ -32,6 +33,8 @@ pub struct Page {
     figure: Figure,
     view: InterpreterView,
     path: String,
+    /// What the block on the screen is drawn from.
+    rocks: Option<Rocks>,
 }
 
 impl Page {
@@ -42,6 +45,7 @@ impl Page {
         sections: &Sections,
         mapped: Mapped,
         form: &ExportForm,
+        rocks: Option<Rocks>,
     ) -> Option<Self> {
         let geometry = session.document.geometry.as_ref()?;
         let is_interpreting = session.view.panel == Panel::Interpret;
@@ -65,7 +69,7 @@ impl Page {
             preset: Some(session.view.scene.preset),
         };
         let view = interpreter_view(session, overlay.selected());
-        Some(Self { root: session.root.clone(), figure, view, path: form.path.clone() })
+        Some(Self { root: session.root.clone(), figure, view, path: form.path.clone(), rocks })
     }
 
     /// What the page shows.
@@ -87,11 +91,21 @@ impl Page {
                 block.scene.samples = 2;
             }
         }
-        let volume_bytes = memory_budget::half_of_available();
-        let settings =
-            FigureSettings { device: Device::Auto, volume_bytes, fonts: Vec::new(), picture_dpi: Some(PREVIEW_DPI) };
+        let settings = self.settings(Some(PREVIEW_DPI));
         let made = compute(|| figures::make(&project, &figure, &self.view, &settings, progress))?;
         Ok((made.page, figure.printed_in()))
+    }
+
+    /// How it is drawn: from the model on the screen, where that is of the project's state.
+    fn settings(&self, picture_dpi: Option<f64>) -> FigureSettings {
+        let known = |rocks: &Rocks| rocks.read().unwrap_or_else(PoisonError::into_inner).rock.clone();
+        FigureSettings {
+            device: Device::Auto,
+            volume_bytes: memory_budget::half_of_available(),
+            fonts: Vec::new(),
+            picture_dpi,
+            rock: self.rocks.as_ref().and_then(known),
+        }
     }
 
     /// Makes the page and writes it.
@@ -102,12 +116,7 @@ impl Page {
         let project = Project::open(&self.root)?;
         let path = Path::new(&self.path);
         let format = FigureFormat::of(path).unwrap_or(FigureFormat::Png);
-        let settings = FigureSettings {
-            device: Device::Auto,
-            volume_bytes: memory_budget::half_of_available(),
-            fonts: Vec::new(),
-            picture_dpi: None,
-        };
+        let settings = self.settings(None);
         compute(|| {
             let made = figures::make(&project, &self.figure, &self.view, &settings, progress)?;
             figures::write(&made.page, format, path, self.figure.dpi, &figures::title(&project))

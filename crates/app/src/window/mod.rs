@@ -197,6 +197,11 @@ impl Window {
         self.work.running.is_idle() && (!drawable || self.block.is_settled())
     }
 
+    /// The number of the picture of the block that is on the screen: later pictures have larger ones.
+    pub fn picture_number(&self) -> u64 {
+        self.block.picture_number()
+    }
+
     /// Applies an action and has its tasks carried out.
     pub fn act(&mut self, action: Action) {
         for task in self.state.apply(action) {
@@ -275,7 +280,8 @@ impl Window {
     /// What is on the screen as a page.
     fn page(&self, form: &ExportForm) -> Option<Page> {
         let session = self.state.session.as_ref()?;
-        Page::of(session, &self.overlay, &self.sections, self.map.mapped(session), form)
+        let rocks = self.rocks.as_ref().map(|(rocks, _)| rocks.clone());
+        Page::of(session, &self.overlay, &self.sections, self.map.mapped(session), form, rocks)
     }
 
     /// Drops everything that was made for a project.
@@ -303,9 +309,11 @@ impl Window {
         match command.as_ref() {
             _ if self.state.dialogue.is_some() => Place::Dialogue,
             Command::SetLayer(_) | Command::ResetLayer(_) | Command::SetContact(_) => Place::Layers,
-            Command::AddScene(_) | Command::RemoveScene(_) | Command::AddNote(_) | Command::RemoveNote(_) => {
-                Place::Scenes
-            }
+            Command::AddScene(_)
+            | Command::RenameScene(_)
+            | Command::RemoveScene(_)
+            | Command::AddNote(_)
+            | Command::RemoveNote(_) => Place::Scenes,
             Command::Pick(_)
             | Command::PickSeveral(_)
             | Command::DrawHorizon(_)

@@ -244,7 +244,13 @@ fn a_tile_of_ones_own_is_added_and_a_scene_comes_and_goes() {
     harness.run_steps(2);
     click_last(&mut harness, "Save scene");
     wait(&mut harness, "the view is kept", |harness| document(harness).scenes.len() == 1);
-    wait(&mut harness, "it is listed", |harness| harness.query_by_label("plan").is_some());
+    click_last(&mut harness, "Rename");
+    harness.key_press_modifiers(eframe::egui::Modifiers::COMMAND, Key::A);
+    harness.get_by_label("New name").type_text("map");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    wait(&mut harness, "it has its name", |harness| document(harness).scenes[0].name == "map");
+    wait(&mut harness, "it is listed", |harness| harness.query_by_label("map").is_some());
     click_last(&mut harness, "Remove");
     wait(&mut harness, "it is gone", |harness| document(harness).scenes.is_empty());
 }

@@ -63,7 +63,9 @@ fn a_volume_is_renamed_and_written_from_the_window() {
     wait(&mut harness, "the scene is saved", |harness| document(harness).scenes.len() == 1);
     click(&mut harness, "Data");
     click_last(&mut harness, "seismic");
-    click_last(&mut harness, "Rename");
+    // The last one is that of the scene.
+    harness.get_all_by_label("Rename").next().unwrap().click_accesskit();
+    harness.run_steps(2);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
     harness.get_by_label("New name").type_text("Full stack");
     harness.run_steps(2);
@@ -130,6 +132,11 @@ fn a_well_is_hidden_in_the_scene() {
     assert_eq!(hidden(&harness), ["W"]);
     click_last(&mut harness, "Show well W");
     assert!(hidden(&harness).is_empty());
+    // Its path has a colour of its own.
+    click_last(&mut harness, "Colour of well W");
+    click_last(&mut harness, "Colour 10");
+    let red = Some(ttf::Colour::new(0xc0, 0x18, 0x2c));
+    wait(&mut harness, "it has its colour", |harness| document(harness).wells[0].colour == red);
     // It stays hidden under another name.
     click_last(&mut harness, "Show well W");
     click_last(&mut harness, "W");

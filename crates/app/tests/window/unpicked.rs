@@ -57,6 +57,10 @@ fn an_export_with_a_horizon_that_was_hardly_picked_is_asked_for() {
     assert_eq!(unpicked(&harness), Unpicked::Dashed);
     click(&mut harness, "Dashed where not picked");
     assert_eq!(unpicked(&harness), Unpicked::Solid);
+    // While interpreting it is the same share, counted in the same way.
+    click(&mut harness, "Interpret");
+    wait(&mut harness, "it is listed", |harness| harness.query_by_label("42 % picked").is_some());
+    click(&mut harness, "Layers");
     // No thickness is offered below the deepest horizon, and why.
     act(&mut harness, Action::Arrange(Layout::Map));
     harness.run_steps(3);

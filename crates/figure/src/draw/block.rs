@@ -151,7 +151,7 @@ pub struct DrawnBlock {
 }
 
 /// A scene in its place on the page, as paths where the painter has them and as a picture otherwise; and the picture
-/// that was needed.
+/// that has its wells, if one was needed.
 pub(crate) fn painted(
     scene: &Scene,
     pane: Rect,
@@ -169,7 +169,8 @@ pub(crate) fn painted(
         true => Some(Arc::new(painter.paint(&Scene { outlines: Outlines::none(), ..scene.clone() })?)),
         false => None,
     };
-    Ok((vector_block::items(&traced, picture.as_ref(), pane, names, &page), picture))
+    let items = vector_block::items(&traced, picture.as_ref(), pane, names, &page);
+    Ok((items, picture.or(traced.over)))
 }
 
 impl BlockPanel<'_> {
@@ -235,7 +236,11 @@ impl BlockPanel<'_> {
     /// Surfaces and sticks before the block.
     fn lay_over(&self, group: &mut Group, scene: &Scene, view: &View, shown: &DrawnInterpretation, pane: Rect) {
         let [nx, ny, _] = self.geometry.size();
-        let faults = shown.faults.iter().map(|fault| surfaces::of_fault(fault, self.geometry.size()));
+        let opacity = surfaces::fault_opacity(scene.media.faces);
+        let faults = shown.faults.iter().map(|fault| {
+            let (cells, colour) = surfaces::of_fault(fault, self.geometry.size());
+            (cells, colour, opacity)
+        });
         let mut cells: Vec<(Cells, ttf::Colour, f32)> = faults.collect();
         if self.has_surfaces {
             for horizon in &shown.horizons {

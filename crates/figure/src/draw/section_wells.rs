@@ -52,6 +52,8 @@ pub fn runs<P>(points: impl Iterator<Item = Option<P>>) -> Vec<Vec<P>> {
 pub struct WellOnSection {
     /// The well.
     pub name: String,
+    /// The colour of its path.
+    pub colour: Colour,
     /// Parts of its path; of a slice, the place where it passes through.
     pub parts: Vec<Vec<DVec2>>,
     /// Its tops.
@@ -88,7 +90,7 @@ impl WellOnSection {
         let tops = well.tops.iter().filter(|_| has_tops);
         let tops = tops.filter_map(|top| Some((top.name.clone(), near(well.voxel_at_md(top.md_m, geometry)?)?)));
         let tops = tops.collect();
-        (!parts.is_empty()).then(|| Self { name: well.name.clone(), parts, tops })
+        (!parts.is_empty()).then(|| Self { name: well.name.clone(), colour: INK, parts, tops })
     }
 
     /// The well within `body`, its names where `room` has room for them; `page` takes (s, t) to the page.
@@ -104,12 +106,12 @@ impl WellOnSection {
         let rim = Ink::glass(Colour::WHITE, RIM_OPACITY);
         if is_plan {
             let ring = PathItem::filled(Path::circle(head, SIGN_PT), Colour::WHITE);
-            group.push(ring.outlined(Stroke::new(0.9, INK)));
+            group.push(ring.outlined(Stroke::new(0.9, self.colour)));
         } else {
             let lines = || self.parts.iter().filter(|part| part.len() > 1);
             let line = |part: &Vec<DVec2>| Path::line(&part.iter().map(|st| page(*st)).collect::<Vec<_>>());
             lines().for_each(|part| group.push(PathItem::stroked(line(part), Stroke::new(HORIZON_PT + RIM_PT, rim))));
-            lines().for_each(|part| group.push(PathItem::stroked(line(part), Stroke::new(HORIZON_PT, INK))));
+            lines().for_each(|part| group.push(PathItem::stroked(line(part), Stroke::new(HORIZON_PT, self.colour))));
         }
         for (name, st) in &self.tops {
             let at = page(*st);

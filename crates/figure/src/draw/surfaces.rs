@@ -8,7 +8,7 @@
 use crate::interpretation::{FaultMesh, TraceSheet};
 use glam::{DVec2, DVec3};
 use image::{Rgba, RgbaImage, imageops};
-use render::{Scene, View};
+use render::{Faces, Scene, View};
 use std::collections::HashMap;
 use survey::{Quality, SurveyGeometry};
 use ttf::Colour;
@@ -19,6 +19,8 @@ pub const CELLS: usize = 56;
 pub const OPACITY: [f32; 3] = [0.22, 0.6, 0.85];
 /// Opacity of faults, and the colour of black ones, which have no shades.
 const FAULT: (f32, Colour) = (0.34, Colour::new(0x8a, 0x8f, 0x98));
+/// The same before volume rendering, which is to be seen through them.
+const FAULT_BEFORE_VOLUMES: f32 = 0.16;
 /// Longest side of a fault's triangle, of the sides that [`CELLS`] have.
 const LONGEST: f64 = 1.6;
 /// Samples a pixel along each axis.
@@ -111,10 +113,15 @@ impl Cells {
     }
 }
 
-/// A fault in a survey of this size: its cells, colour and opacity.
-pub fn of_fault(fault: &FaultMesh, size: [usize; 3]) -> (Cells, Colour, f32) {
+/// A fault in a survey of this size: its cells and colour.
+pub fn of_fault(fault: &FaultMesh, size: [usize; 3]) -> (Cells, Colour) {
     let colour = if fault.colour == Colour::BLACK { FAULT.1 } else { fault.colour };
-    (Cells::of_fault(fault.triangles, size), colour, FAULT.0)
+    (Cells::of_fault(fault.triangles, size), colour)
+}
+
+/// The opacity of a fault before a block that shows this.
+pub fn fault_opacity(faces: Faces) -> f32 {
+    if faces == Faces::None { FAULT_BEFORE_VOLUMES } else { FAULT.0 }
 }
 
 /// Triangles whose corners are joined within boxes of these sides: the first corner stands for those of its box.

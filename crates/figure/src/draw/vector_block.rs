@@ -2,11 +2,10 @@
 
 use super::NamedColour;
 use glam::DVec2;
-use image::{GrayImage, RgbaImage, imageops};
+use image::RgbaImage;
 use page::Rect;
 use page::list::{Cap, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Rule, Segment, Stroke};
 use render::vector::{AreaFill, PatternPaint, PatternPart, Polyline, VectorArea, VectorBlock, VectorLineKind};
-use std::borrow::Cow;
 use std::sync::Arc;
 use ttf::LayerStyle;
 
@@ -49,7 +48,7 @@ impl BlockNames<'_> {
 /// Whether the painted picture is needed as well.
 pub(super) fn needs_picture(block: &VectorBlock) -> bool {
     let is_painted = |area: &VectorArea| matches!(area.fill, AreaFill::Picture);
-    !block.has_areas || block.covered.is_some() || block.areas.iter().any(is_painted)
+    !block.has_areas || block.areas.iter().any(is_painted)
 }
 
 /// The items of a block whose picture fills `pane`; `page` takes its pixels to the page.
@@ -80,15 +79,9 @@ pub(super) fn items(
         layers[place].1.push(filled(area, picture, pane, page, points_per_px));
     }
     items.extend(layers.into_iter().map(|(_, group)| Item::from(group)));
-    if let (Some(covered), Some(picture)) = (&block.covered, picture) {
-        let mut ground = RgbaImage::clone(picture);
-        // A page that is looked at soon has a coarser picture.
-        let covered = resized(covered, ground.dimensions());
-        for (pixel, share) in ground.pixels_mut().zip(covered.pixels()) {
-            pixel.0[3] = (u16::from(pixel.0[3]) * u16::from(share.0[0]) / 255) as u8;
-        }
+    if let Some(over) = &block.over {
         let mut group = Group::new(GroupKind::Data, "ground and wells");
-        group.push(Picture::in_rect(ground, pane));
+        group.push(Picture::in_rect(Arc::clone(over), pane));
         items.push(group.into());
     }
     let contacts = block.lines.iter().filter(|line| matches!(line.kind, VectorLineKind::Horizon(Some(_)))).count();
@@ -117,14 +110,6 @@ pub(super) fn items(
         items.push(group.into());
     }
     items
-}
-
-/// An image in another size; the same where it has that size.
-fn resized(image: &GrayImage, (width, height): (u32, u32)) -> Cow<'_, GrayImage> {
-    match image.dimensions() == (width, height) {
-        true => Cow::Borrowed(image),
-        false => Cow::Owned(imageops::resize(image, width, height, imageops::FilterType::Triangle)),
-    }
 }
 
 /// An area, within the part of its face that is seen.

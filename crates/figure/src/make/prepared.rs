@@ -149,7 +149,11 @@ impl Maker<'_> {
             self.figure.hides(&well.name) || scenes.into_iter().any(|scene| scene.hides_well(&well.name))
         };
         let wells = self.inputs.wells.iter().filter(|well| self.wants(Annotation::Wells) && !is_hidden(well));
-        wells.filter_map(near).collect()
+        let coloured = |well: WellOnSection| {
+            let own = self.inputs.source.data.wells.iter().find(|drawn| drawn.name == well.name);
+            WellOnSection { colour: own.and_then(|drawn| drawn.colour).unwrap_or(well.colour), ..well }
+        };
+        wells.filter_map(near).map(coloured).collect()
     }
 
     /// The lines of what is not hidden.

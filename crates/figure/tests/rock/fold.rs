@@ -119,6 +119,6 @@ impl BlockPainter for Painter<'_> {
         if !self.has_vectors {
             return Ok(None);
         }
-        vectors(scene, &self.fold.inputs(), &self.fold.library, tolerance_px, &Progress::silent())
+        vectors(scene, &self.fold.inputs(), &self.fold.library, tolerance_px, scene.size_px, &Progress::silent())
     }
 }

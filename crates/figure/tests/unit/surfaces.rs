@@ -60,7 +60,7 @@ fn a_fault_is_seen_within_the_block() {
     let plane = [[a, b, c], [a, c, d]];
     let cells = of_fault(&FaultMesh { name: "F", colour: Colour::BLACK, triangles: &plane }, geometry.size());
     let view = scene.view(&geometry);
-    let drawn = seen(&view, &scene, &geometry, [(&cells.0, cells.1, cells.2)].into_iter());
+    let drawn = seen(&view, &scene, &geometry, [(&cells.0, cells.1, 0.34)].into_iter());
     assert!(drawn.len() > 500 && drawn.iter().all(|cell| cell.colour.rgb[0] > 0x30), "{}", drawn.len());
     // As much as the block shows of the plane, to within the length of a cell around it.
     let area = |[a, b, c, d]: [DVec2; 4]| 0.5 * ((c - a).perp_dot(d - b)).abs();
@@ -85,4 +85,11 @@ fn a_fault_is_seen_within_the_block() {
         .collect();
     let cells = Cells::of_fault(&dense, geometry.size()).cells;
     assert!(dense.len() > 100_000 && (500..4 * CELLS * CELLS).contains(&cells.len()), "{}", cells.len());
+}
+
+/// Volume rendering is seen through a fault, and raw faces are not hidden by one either.
+#[test]
+fn a_fault_is_a_veil_before_volume_rendering() {
+    let [before_faces, before_volumes] = [Faces::All, Faces::None].map(fault_opacity);
+    assert!(before_volumes > 0.0 && before_volumes < 0.5 * before_faces && before_faces < 0.5);
 }

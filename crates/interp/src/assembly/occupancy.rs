@@ -20,6 +20,16 @@ pub struct Overlap {
     pub at_voxel: [f32; 3],
 }
 
+impl Overlap {
+    /// Counts a vertex that lies so far, samples, from another one of its trace.
+    pub(crate) fn add(&mut self, apart: f32, at_voxel: [f32; 3]) {
+        self.traces += 1;
+        if apart > self.apart {
+            (self.apart, self.at_voxel) = (apart, at_voxel);
+        }
+    }
+}
+
 /// No entry.
 const NONE: u32 = u32::MAX;
 

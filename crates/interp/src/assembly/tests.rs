@@ -285,6 +285,28 @@ fn sheets_that_overlap_come_back_whole() {
     assert_eq!(back.iter().map(VoxelSheet::nodes).collect::<Vec<_>>(), [18 * ny, (nx - 14) * ny]);
 }
 
+/// A few nodes over a sheet, as noise leaves them, are left out and counted; picked ones stay, and so do many.
+#[test]
+fn what_noise_leaves_over_a_sheet_is_left_out() {
+    let none = FaultNetwork::none();
+    let found = |last: usize, seeds: &dyn Fn(&Forest) -> Vec<u32>| {
+        let few = move |x: usize, y: usize| (x < last && y < 3).then_some(26.0);
+        let forest = forest_of(SIZE, &[&[&|_, _| Some(20.0)], &[&few]], 64);
+        let mut all = Selection::default();
+        all.insert(0..forest.surfaces.triangles.len() as u32);
+        let seeds = seeds(&forest);
+        reassemble(&forest, &all, &seeds, &none)
+    };
+    let nodes = SIZE[0] * SIZE[1];
+    let few = found(3, &|_| vec![0]);
+    assert_eq!((few.sheets.len(), few.sheets[0].nodes(), few.overlap.traces), (1, nodes, 0));
+    assert_eq!((few.doubled.traces, few.doubled.apart, few.doubled.at_voxel[2]), (9, 6.0, 26.0));
+    let picked = found(3, &|forest| forest.surfaces.surfaces.iter().map(|surface| surface.triangles.start).collect());
+    assert_eq!((picked.sheets.len(), picked.overlap.traces, picked.doubled.traces), (2, 9, 0));
+    let many = found(12, &|_| vec![0]);
+    assert_eq!((many.sheets.len(), many.overlap.traces, many.doubled.traces), (2, 36, 0));
+}
+
 #[test]
 fn every_vertex_lands_on_exactly_one_sheet() {
     let forest = forest_of(SIZE, &[&[&|x, _| Some(20.0 + 0.1 * x as f32), &|x, y| (x + y > 20).then_some(30.0)]], 64);

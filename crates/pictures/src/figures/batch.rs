@@ -70,7 +70,7 @@ fn stage(
 ) -> Result<Vec<WrittenFigure>, ProjectError> {
     let mut staged = Vec::new();
     for (file, format, figure) in meant {
-        let settings = FigureSettings { device, volume_bytes, fonts: fonts.to_vec(), picture_dpi: None };
+        let settings = FigureSettings { device, volume_bytes, fonts: fonts.to_vec(), picture_dpi: None, rock: None };
         let made = make(project, figure, &InterpreterView::default(), &settings, progress).map_err(of_figure(file))?;
         let path = out.join(file);
         let replacement = Replacement::of(&path)?;

@@ -17,7 +17,7 @@ pub use fonts::{FontFile, faces, font_files};
 pub use interpreter::{InterpreterView, borrowed};
 pub use output::{FigureFormat, title, write};
 
-use crate::load::{self, Loaded, Stage};
+use crate::load::{self, Loaded, Rock, Stage};
 use crate::{Device, Painter};
 use figure::cut::SectionSource;
 use figure::draw::NamedColour;
@@ -35,6 +35,7 @@ use project::styles;
 use render::vector::{VectorBlock, vectors};
 use render::{FaceData, Faces, Media, RenderError, Scene};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 use survey::{Progress, Well, memory};
 use ttf::{LayerStyle, LayerTtf, Preset, TextureLibrary};
@@ -62,6 +63,8 @@ pub struct FigureSettings {
     /// Coarsest resolution that pictures of blocks may have, dots an inch, where a page is looked at soon; absent: the
     /// figure's. All else is laid out as at the figure's.
     pub picture_dpi: Option<f64>,
+    /// The model and its parameterization, where they are known already.
+    pub rock: Option<Arc<Rock>>,
 }
 
 /// The page itself refuses longer sides.
@@ -134,7 +137,7 @@ fn lettered(
     let device = painter.painter.map(|painter| painter.device().to_owned());
     let stages = painter.stages;
     let scene = Scene { preset, ..needs(figure) };
-    let confusions = confusions(project.root(), document, loaded.rock.as_ref(), &scene)?;
+    let confusions = confusions(project.root(), document, loaded.rock.as_deref(), &scene)?;
     Ok(MadeFigure { page, device, stages, confusions })
 }
 
@@ -193,12 +196,16 @@ impl FigurePainter<'_> {
         let ground = scene.ground.filter(|_| self.loaded.rock.is_some());
         Scene { ground, preset: self.preset, ..scene.clone() }
     }
+
+    /// Pixels of what is painted and not traced.
+    fn painted_px(&self, scene: &Scene) -> [u32; 2] {
+        scene.size_px.map(|side| (f64::from(side) * self.share).round().max(1.0) as u32)
+    }
 }
 
 impl BlockPainter for FigurePainter<'_> {
     fn paint(&mut self, scene: &Scene) -> Result<RgbaImage, RenderError> {
-        let mut scene = self.shown(scene);
-        scene.size_px = scene.size_px.map(|side| (f64::from(side) * self.share).round().max(1.0) as u32);
+        let scene = Scene { size_px: self.painted_px(scene), ..self.shown(scene) };
         let painter = match &mut self.painter {
             Some(painter) => painter,
             empty => empty.insert(Painter::new(self.device, self.progress)?),
@@ -213,7 +220,12 @@ impl BlockPainter for FigurePainter<'_> {
         let scene = self.loaded.complete(&self.shown(scene));
         let (volumes, wells) = (self.loaded.named_volumes(), self.loaded.well_paths());
         let inputs = self.loaded.inputs(&volumes, &wells);
-        let traced = vectors(&scene, &inputs, self.library, tolerance_px, self.progress)?;
+        let mut traced = vectors(&scene, &inputs, self.library, tolerance_px, self.painted_px(&scene), self.progress)?;
+        if !self.preset.is_colour()
+            && let Some(over) = traced.as_mut().and_then(|traced| traced.over.as_mut())
+        {
+            Arc::make_mut(over).pixels_mut().for_each(|pixel| pixel.0 = self.preset.pixel(pixel.0));
+        }
         self.stages.push(Stage::new("paths", start.elapsed()));
         Ok(traced)
     }
@@ -229,8 +241,10 @@ fn load(
     let scene = Scene { preset: figure.printed_in(), ..needs(figure) };
     let has_block = figure.parts.iter().any(|part| matches!(part, Part::Block(_)));
     if (has_block || figure.has_rock_sections()) && !figure.interpretation {
-        let mut loaded = load::load_within(project, &scene, settings.volume_bytes, progress)?;
-        let stages = loaded.rock.as_mut().map(|rock| std::mem::take(&mut rock.stages)).unwrap_or_default();
+        let loaded = load::load_with(project, settings.rock.clone(), &scene, settings.volume_bytes, progress)?;
+        let made =
+            loaded.rock.as_ref().filter(|rock| settings.rock.as_ref().is_none_or(|known| !Arc::ptr_eq(known, rock)));
+        let stages = made.map(|rock| rock.stages.clone()).unwrap_or_default();
         return Ok((loaded, None, stages));
     }
     let loaded = load::load_bare(project, &scene, settings.volume_bytes, progress)?;

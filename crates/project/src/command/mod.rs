@@ -48,12 +48,12 @@ pub use pick::{
 pub use pick_by_time::{PickByTime, PickedByTime, TimeLevel};
 pub use refine::{FillHorizon, HorizonRefined, SmoothHorizon};
 pub use scalar::{RemoveScalar, SetRaw, SetScalar};
-pub use scene::{AddScene, RemoveScene};
+pub use scene::{AddScene, RemoveScene, RenameScene};
 pub use stack::{Spacing, StackHorizons, Stacked};
 pub use survey_frame::SetVelocity;
 pub use texture::AddTexture;
 pub use time::{ComputeTime, TimeComputed};
-pub use well::{AddWell, RemoveWell, RenameWell, WellAdded};
+pub use well::{AddWell, RemoveWell, RenameWell, SetWellColour, WellAdded};
 
 use crate::document::{Document, Source};
 use crate::error::{Noun, ProjectError};
@@ -142,6 +142,8 @@ pub enum Command {
     AddWell(AddWell),
     /// Rename a well.
     RenameWell(RenameWell),
+    /// Give a well another colour.
+    SetWellColour(SetWellColour),
     /// Remove a well.
     RemoveWell(RemoveWell),
     /// State the velocity that turns two-way time into metres.
@@ -164,6 +166,8 @@ pub enum Command {
     SetParameterization(SetParameterization),
     /// Save a scene under a name.
     AddScene(AddScene),
+    /// Give a scene another name.
+    RenameScene(RenameScene),
     /// Remove a scene.
     RemoveScene(RemoveScene),
     /// Write a note on a place.
@@ -261,6 +265,7 @@ impl Command {
             Self::AddFault(change) => change.execute(draft, progress),
             Self::AddWell(change) => change.execute(draft, progress),
             Self::RenameWell(change) => change.execute(draft),
+            Self::SetWellColour(change) => change.execute(draft),
             Self::RemoveWell(change) => change.execute(draft),
             Self::SetTruncation(change) => change.execute(draft, progress),
             Self::SetFaultExtent(change) => change.execute(draft, progress),
@@ -277,6 +282,7 @@ impl Command {
             Self::AddTexture(change) => change.execute(draft),
             Self::SetParameterization(change) => change.execute(draft, progress),
             Self::AddScene(change) => change.execute(draft),
+            Self::RenameScene(change) => change.execute(draft),
             Self::RemoveScene(change) => change.execute(draft),
             Self::AddNote(change) => change.execute(draft),
             Self::RemoveNote(change) => change.execute(draft),

@@ -10,6 +10,7 @@ use std::fmt;
 use std::path::Path;
 use survey::well::{LogSet, TopPlace, WellPlacement, is_same_surface};
 use survey::{Horizon, Progress, Well};
+use ttf::Colour;
 
 /// Reads a well into the project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -30,6 +31,15 @@ pub struct RenameWell {
     pub from: String,
     /// Its new name.
     pub to: String,
+}
+
+/// Gives a well another colour.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SetWellColour {
+    /// Name of the well.
+    pub well: String,
+    /// Colour of its path, in the block and on sections.
+    pub colour: Colour,
 }
 
 /// Removes a well.
@@ -232,8 +242,16 @@ impl AddWell {
             done.curves.len()
         );
         let source = super::source_of(&self.files.deviation, reading)?;
-        draft.document.wells.push(WellEntry { name: self.name.clone(), file, hash, source });
+        draft.document.wells.push(WellEntry { name: self.name.clone(), file, hash, colour: None, source });
         Ok(Effect::WellAdded(Box::new(done)))
+    }
+}
+
+impl SetWellColour {
+    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
+        let index = draft.document.position(Noun::Well, &self.well)?;
+        draft.document.wells[index].colour = Some(self.colour);
+        Ok(Effect::Changed { summary: format!("colour of well {}", self.well) })
     }
 }
 

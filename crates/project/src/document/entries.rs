@@ -167,6 +167,9 @@ pub struct WellEntry {
     pub file: String,
     /// BLAKE3 of its path, tops, logs and checkshots.
     pub hash: String,
+    /// The colour of its path. Absent: that of the scene's wells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub colour: Option<Colour>,
     /// Where it came from.
     pub source: Source,
 }

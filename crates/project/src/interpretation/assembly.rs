@@ -37,6 +37,9 @@ pub struct AssemblyReport {
     /// Where sheets of one fault block overlap.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub overlap: Option<ReportedOverlap>,
+    /// Nodes left out because they lie over or under a sheet, no more than noise leaves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub doubled: Option<ReportedOverlap>,
     /// Number of nodes left out because they were tracked past a fault, where the sheet of the other side runs.
     #[serde(skip_serializing_if = "is_zero")]
     pub past_faults: usize,
@@ -171,6 +174,15 @@ impl std::fmt::Display for AssemblyReport {
                 overlap.traces, overlap.apart
             )?;
         }
+        if let Some(doubled) = &self.doubled {
+            let [inline, crossline, z] = doubled.at;
+            write!(
+                f,
+                "\n  {} nodes over or under others left out, by up to {:.1} samples at inline {inline:.0}, crossline \
+                 {crossline:.0}, {z:.1}: noise, or a fault that is still to be drawn",
+                doubled.traces, doubled.apart
+            )?;
+        }
         if self.past_faults > 0 {
             write!(f, "\n  {} nodes tracked past faults left out", self.past_faults)?;
         }
@@ -298,7 +310,12 @@ pub(crate) fn rebuild(
         Some(candidates) => Some(from_picks(name, &log, candidates, blocks)?),
         None => return Err(ProjectError::NotExtracted),
     }
-    .unwrap_or(Reassembled { sheets: Vec::new(), overlap: Overlap::default(), left_out: 0 });
+    .unwrap_or(Reassembled {
+        sheets: Vec::new(),
+        overlap: Overlap::default(),
+        left_out: 0,
+        doubled: Overlap::default(),
+    });
     let made = drawn::add(draft, &mut assembled.sheets, blocks, &log.drawn)?;
     if assembled.sheets.iter().all(|sheet| sheet.nodes() == 0) {
         return Err(ProjectError::NothingLeft { horizon: name.to_owned() });
@@ -308,6 +325,7 @@ pub(crate) fn rebuild(
     (report.filled, report.smoothed) = refined;
     report.drawn = made;
     report.past_faults = assembled.left_out;
+    report.doubled = ReportedOverlap::new(assembled.doubled, &geometry);
     report.overlap = ReportedOverlap::new(assembled.overlap, &geometry);
     let horizon = to_horizon(name, &assembled.sheets, &geometry);
     put(draft, &horizon, Some(log), "", progress)?;

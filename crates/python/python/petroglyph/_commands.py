@@ -391,6 +391,10 @@ class Commands:
         """Gives a well another name."""
         return self.apply({"rename-well": {"from": from_, "to": to}})
 
+    def set_well_colour(self, well: str, colour: str) -> Effect:
+        """Gives a well another colour, in the block and on sections."""
+        return self.apply({"set-well-colour": {"well": well, "colour": colour}})
+
     def remove_well(self, name: str) -> Effect:
         """Removes a well."""
         return self.apply({"remove-well": {"name": name}})
@@ -483,6 +487,10 @@ class Commands:
     def add_scene(self, name: str, scene: Options) -> Effect:
         """Saves a scene under a name."""
         return self.apply({"add-scene": {"name": name, "scene": scene}})
+
+    def rename_scene(self, from_: str, to: str) -> Effect:
+        """Gives a scene another name, also in notes and figures."""
+        return self.apply({"rename-scene": {"from": from_, "to": to}})
 
     def remove_scene(self, name: str) -> Effect:
         """Removes a scene."""

@@ -1669,6 +1669,36 @@ def well_show(
     )
 
 
+def well_colour(
+    project: Value,
+    name: Value,
+    colour: Value,
+    *,
+    progress: Progress | None = None,
+) -> Answer:
+    """Give a well another colour, in the block and on sections.
+
+    Parameters
+    ----------
+    project : value
+        Project folder.
+    name : value
+        Well.
+    colour : value
+        Colour, #rrggbb.
+    progress : callable, optional
+        Called as ``progress(stage, done, total)``.
+    """
+    return run(
+        "well",
+        "colour",
+        project,
+        name,
+        colour,
+        progress=progress,
+    )
+
+
 def well_rename(
     project: Value,
     from_: Value,
@@ -2522,6 +2552,36 @@ def scene_show(
         "show",
         project,
         *([] if name is None else [name]),
+        progress=progress,
+    )
+
+
+def scene_rename(
+    project: Value,
+    from_: Value,
+    to: Value,
+    *,
+    progress: Progress | None = None,
+) -> Answer:
+    """Rename a scene.
+
+    Parameters
+    ----------
+    project : value
+        Project folder.
+    from_ : value
+        Name of the scene.
+    to : value
+        New name.
+    progress : callable, optional
+        Called as ``progress(stage, done, total)``.
+    """
+    return run(
+        "scene",
+        "rename",
+        project,
+        from_,
+        to,
         progress=progress,
     )
 

@@ -143,7 +143,8 @@ impl<'a> Outline<'a> {
         if !sides.into_iter().any(|(a, b)| !self.crossings(a, b).is_empty()) {
             // It may lie around a piece of the outline.
             let (low, high) = bounds(points);
-            let is_around = || self.rings.iter().flatten().any(|p| p.cmpgt(low).all() && p.cmplt(high).all());
+            let is_within = |[p, _]: &[DVec2; 2]| p.cmpgt(low).all() && p.cmplt(high).all();
+            let is_around = || self.rows_between(low.y, high.y).any(|row| self.rows[row].iter().any(is_within));
             return if self.holds(first) || is_around() { vec![area] } else { Vec::new() };
         }
         if points.len() > MOST_CORNERS {

@@ -5,7 +5,7 @@
 //! the inverse of the map from rock to pattern, so that it bends with the layers and has no resolution (`pattern`).
 //! Lines are those that the picture's outlines are stroked from, hidden ones gone.
 //!
-//! What is no path stays pixels: the relief of the ground and wells ([`VectorBlock::covered`]), and areas whose pattern
+//! What is no path stays pixels: the relief of the ground and wells ([`VectorBlock::over`]), and areas whose pattern
 //! is an image for a tile ([`AreaFill::Picture`]). Scenes of raw data, volume rendering and textures
 //! by value are pictures altogether: [`vectors`] then gives lines alone.
 //!
@@ -17,6 +17,7 @@
 mod cut;
 mod face;
 mod join;
+mod over;
 mod pattern;
 mod sections;
 mod visible;
@@ -32,13 +33,12 @@ use crate::media::Faces;
 use crate::outline::draw::OutlineLines;
 use crate::resolved::ResolvedScene;
 use crate::scene::Scene;
-use crate::shade::{RayHit, Start, stopping_hit};
-use crate::visible::Ray;
 use face::face_areas;
 use glam::DVec2;
-use image::GrayImage;
+use image::RgbaImage;
 use join::joined;
-use rayon::prelude::*;
+use over::over;
+use std::sync::Arc;
 use survey::Progress;
 use ttf::{Colour, TextureLibrary};
 
@@ -53,8 +53,8 @@ pub struct VectorBlock {
     pub is_ordered: bool,
     /// Lines over them, in the order of drawing.
     pub lines: Vec<VectorLine>,
-    /// Share of each pixel on which the ground or a well lies over the areas, 255 = all; `None`: nowhere.
-    pub covered: Option<GrayImage>,
+    /// The ground and wells over the areas, straight alpha, as large as the picture that was asked for; `None`: nowhere.
+    pub over: Option<Arc<RgbaImage>>,
 }
 
 /// A connected piece of a layer on a face: its colour, or the pattern of the part of it in one fault block.
@@ -148,10 +148,8 @@ pub enum VectorLineKind {
     Edge,
 }
 
-/// Rays on each side of a pixel that tell how much of it the ground covers.
-const RAYS: u32 = 2;
-
-/// The paths of a scene, or `None` where lines lie behind what is seen through. Curves are straight to `tolerance_px`.
+/// The paths of a scene, or `None` where lines lie behind what is seen through. Curves are straight to `tolerance_px`; the
+/// ground and wells, which are no paths, are drawn with `picture_px` pixels.
 ///
 /// # Errors
 /// A scene that cannot be drawn, missing inputs, or cancellation.
@@ -160,6 +158,7 @@ pub fn vectors(
     inputs: &Inputs,
     library: &TextureLibrary,
     tolerance_px: f64,
+    picture_px: [u32; 2],
     progress: &Progress,
 ) -> Result<Option<VectorBlock>, RenderError> {
     if scene.has_back_edges() {
@@ -174,7 +173,8 @@ pub fn vectors(
     block.has_areas = true;
     block.is_ordered = resolved.relief.is_some() && !resolved.solid.cut_outs.is_empty();
     block.areas = face_areas(&resolved, library, tolerance_px, progress)?;
-    block.covered = covered(&resolved, progress)?;
+    let picture = Scene { size_px: picture_px, ..scene.clone() };
+    block.over = over(&ResolvedScene::new(&picture, inputs, &mut kept)?, progress)?.map(Arc::new);
     Ok(Some(block))
 }
 
@@ -224,26 +224,4 @@ fn lines(resolved: &ResolvedScene) -> Vec<VectorLine> {
         line.parts = joined(&line.parts);
     }
     lines
-}
-
-/// Where the ground and wells lie over the areas.
-fn covered(resolved: &ResolvedScene, progress: &Progress) -> Result<Option<GrayImage>, RenderError> {
-    if resolved.relief.is_none() && resolved.tubes.is_none() {
-        return Ok(None);
-    }
-    let [width, height] = resolved.scene.size_px;
-    progress.begin("ground", u64::from(height));
-    let row = |y: u32| {
-        let share = |x: u32| {
-            let hits = (0..RAYS * RAYS).filter(|n| {
-                let inside = DVec2::new(f64::from(n % RAYS) + 0.5, f64::from(n / RAYS) + 0.5) / f64::from(RAYS);
-                let ray = Ray::from(resolved.view.ray(DVec2::new(f64::from(x), f64::from(y)) + inside));
-                matches!(stopping_hit(resolved, &ray, Start::OF_RAY), RayHit::Ground(_) | RayHit::Well(_))
-            });
-            (hits.count() as u32 * 255 / (RAYS * RAYS)) as u8
-        };
-        progress.step(1).map(|()| (0..width).map(share).collect::<Vec<u8>>())
-    };
-    let rows: Vec<Vec<u8>> = (0..height).into_par_iter().map(row).collect::<Result<_, _>>()?;
-    Ok(GrayImage::from_raw(width, height, rows.concat()).filter(|image| image.pixels().any(|pixel| pixel.0[0] > 0)))
 }

@@ -264,7 +264,7 @@ fn gpu_and_cpu_render_media_alike() {
     let groups: Vec<u32> = (0..64).map(|leaf| if leaf == 12 { 0 } else { leaf / 2 }).collect();
     let path =
         [glam::DVec3::new(20.0, 14.0, -5.0), glam::DVec3::new(22.0, 13.0, 20.0), glam::DVec3::new(27.0, 10.0, 44.0)];
-    let wells = [DrawnWell { name: "A-1", path: &path, tops: &path[1..2] }];
+    let wells = [DrawnWell { name: "A-1", colour: None, path: &path, tops: &path[1..2] }];
     let mut inputs = block.inputs(&volumes);
     inputs.wells = &wells;
     inputs.candidates = Some(CandidateVolume {

@@ -106,7 +106,8 @@ fn a_body_is_outlined_where_it_comes_to_the_surface() {
     for (ground, contact) in [(Contact::Erosional, Contact::Truncated), (Contact::Conformable, Contact::Intrusive)] {
         let block = salt(ground, contact);
         let library = TextureLibrary::builtin().unwrap();
-        let traced = vectors(&scene, &block.inputs(&[]), &library, 0.05, &Progress::silent()).unwrap().unwrap();
+        let traced =
+            vectors(&scene, &block.inputs(&[]), &library, 0.05, scene.size_px, &Progress::silent()).unwrap().unwrap();
         let of_salt = traced.lines.iter().filter(|line| line.kind == VectorLineKind::Horizon(Some(2)));
         let parts: Vec<&Vec<DVec2>> = of_salt.flat_map(|line| &line.parts).collect();
         let depth = |at: DVec2| 330.0 - 60.0 * (-(at - DVec2::new(500.0, 400.0)).length_squared() / 9e4).exp();
@@ -141,7 +142,8 @@ fn a_body_that_stands_out_of_the_ground_has_a_silhouette() {
         let camera = Camera { elevation_deg, azimuth_deg: Some(25.0), ..Camera::default() };
         let scene = Scene { size_px: [400, 400], ground: Some(Ground::default()), camera, ..Scene::default() };
         let view = scene.view(&geometry);
-        let traced = vectors(&scene, &block.inputs(&[]), &library, 0.05, &Progress::silent()).unwrap().unwrap();
+        let traced =
+            vectors(&scene, &block.inputs(&[]), &library, 0.05, scene.size_px, &Progress::silent()).unwrap().unwrap();
         let crests = traced.lines.iter().filter(|line| line.kind == VectorLineKind::Horizon(None));
         let parts: Vec<&Vec<DVec2>> = crests.flat_map(|line| &line.parts).collect();
         let length: f64 = parts.iter().flat_map(|part| part.windows(2)).map(|ends| ends[0].distance(ends[1])).sum();

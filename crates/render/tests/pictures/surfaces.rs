@@ -69,7 +69,7 @@ fn what_is_under_a_pixel_is_what_shows_there() {
     let candidates =
         CandidateVolume { size: [33; 3], distance: &distance, leaf: &leaf, voxels_per_step: 0.04, groups: None };
     let path = [DVec3::new(4.0, 3.0, -9.0), DVec3::new(4.0, 3.0, 40.0)];
-    let wells = [DrawnWell { name: "A", path: &path, tops: &path[..0] }];
+    let wells = [DrawnWell { name: "A", colour: None, path: &path, tops: &path[..0] }];
     let inputs = Inputs { candidates: Some(candidates), wells: &wells, ..Inputs::raw(&geometry, &volumes) };
     let media = Media {
         faces: Faces::None,

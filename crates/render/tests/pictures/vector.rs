@@ -3,7 +3,7 @@
 use crate::block::Block;
 use glam::{DVec2, DVec3};
 use render::vector::{AreaFill, Polyline, VectorBlock, VectorLineKind, vectors};
-use render::{Background, Camera, Outlines, Scene, VoxelBox};
+use render::{Background, Camera, DrawnWell, Ground, Inputs, Outlines, Scene, VoxelBox};
 use survey::{Progress, SurveyGeometry, VerticalUnit};
 use synth::closed_form::ClosedForm;
 use ttf::{Colour, LayerStyle, TextureLibrary, TransferFunctions};
@@ -22,7 +22,7 @@ fn bricks(closed: &ClosedForm) -> Block {
 }
 
 fn traced(scene: &Scene, block: &Block) -> VectorBlock {
-    vectors(scene, &block.inputs(&[]), &library(), 0.05, &Progress::silent()).unwrap().unwrap()
+    vectors(scene, &block.inputs(&[]), &library(), 0.05, scene.size_px, &Progress::silent()).unwrap().unwrap()
 }
 
 fn head_on(size_px: [u32; 2]) -> Scene {
@@ -91,7 +91,8 @@ fn curves_are_as_straight_as_asked() {
     let closed = ClosedForm::dome(&geometry, &[12.0, 36.0], 35.0);
     let block = bricks(&closed);
     let points = |tolerance: f64| {
-        let traced = vectors(&head_on([800, 600]), &block.inputs(&[]), &library(), tolerance, &Progress::silent());
+        let traced =
+            vectors(&head_on([800, 600]), &block.inputs(&[]), &library(), tolerance, [800, 600], &Progress::silent());
         lines(&traced.unwrap().unwrap(), 1).iter().map(|line| line.points.len()).sum::<usize>()
     };
     assert!(points(0.02) > points(0.2) && points(0.2) > points(2.0));
@@ -231,6 +232,57 @@ fn what_paths_cannot_show_is_left_to_the_picture() {
     let volumes = [render::NamedVolume::whole("seismic", &volume)];
     let raw = ttf::RawColour::new("seismic", ttf::RgbaFunction::centred(ttf::ColourMap::Grey, 1.0));
     let scene = Scene { raw: Some(raw), blend: 0.5, outlines: Outlines::default(), ..head_on([200, 160]) };
-    let half = vectors(&scene, &block.inputs(&volumes), &library(), 0.1, &Progress::silent()).unwrap().unwrap();
+    let half =
+        vectors(&scene, &block.inputs(&volumes), &library(), 0.1, scene.size_px, &Progress::silent()).unwrap().unwrap();
     assert!(!half.has_areas && half.areas.is_empty() && !half.lines.is_empty());
+}
+
+/// The ground and a well are drawn alone, in the colours that a picture has there, and clear where faces are seen; in as
+/// many pixels as are asked for.
+#[test]
+fn the_ground_and_wells_are_drawn_alone_as_in_a_picture() {
+    let geometry = SurveyGeometry::regular([41, 41, 31], 10.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::dome(&geometry, &[8.0, 18.0], 30.0).with_fault(60.0, 4.0);
+    let block = bricks(&closed);
+    let path = [DVec3::new(32.0, 6.0, 0.0), DVec3::new(32.0, 6.0, 30.0)];
+    let wells = [DrawnWell { name: "A", colour: Some(Colour::new(10, 200, 30)), path: &path, tops: &[] }];
+    let scene = Scene {
+        size_px: [240, 200],
+        samples: 3,
+        cut_outs: vec![VoxelBox { min: [25.0, 0.0, 0.0], max: [40.0, 15.0, 30.0] }],
+        ground: Some(Ground::default()),
+        outlines: Outlines::none(),
+        background: Background::Transparent,
+        ..Scene::default()
+    };
+    let inputs = Inputs { wells: &wells, ..block.inputs(&[]) };
+    let drawn = |scene: &Scene, size_px| {
+        let traced = vectors(scene, &inputs, &library(), 0.1, size_px, &Progress::silent()).unwrap().unwrap();
+        traced.over
+    };
+    let over = drawn(&scene, scene.size_px).unwrap();
+    let picture = render::reference::render(&scene, &inputs, &Progress::silent()).unwrap();
+    let (mut whole, mut clear, mut rim, mut green) = (0, 0, 0, 0);
+    for (over, seen) in over.pixels().zip(picture.pixels()) {
+        match over.0[3] {
+            0 => clear += usize::from(seen.0[3] == 255),
+            255 => {
+                whole += 1;
+                let off = (0..3).map(|n| over.0[n].abs_diff(seen.0[n])).max().unwrap();
+                assert!(off <= 8, "{:?} is {:?} in the picture", over.0, seen.0);
+            }
+            _ => rim += 1,
+        }
+        green += usize::from(over.0[3] == 255 && over.0[1] / 2 > over.0[0].max(over.0[2]));
+    }
+    assert!(whole > 4000 && clear > 4000 && green > 50, "{whole} whole, {clear} clear, {green} of the well");
+    assert!(rim * 10 < whole, "{rim} at the rim");
+    assert_eq!(drawn(&scene, [60, 50]).unwrap().dimensions(), (60, 50));
+    let bare = Scene { ground: None, ..scene.clone() };
+    let well = drawn(&bare, scene.size_px).unwrap();
+    assert!(well.pixels().filter(|pixel| pixel.0[3] > 0).count() < whole / 4);
+    let closed = Scene { cut_outs: Vec::new(), ..bare };
+    assert!(
+        drawn(&closed, scene.size_px).is_none_or(|over| over.pixels().filter(|pixel| pixel.0[3] > 0).count() < 200)
+    );
 }

@@ -62,6 +62,11 @@ impl BlockView {
         self.is_final && self.shown == self.number
     }
 
+    /// The number of the picture that is shown: later ones have larger numbers.
+    pub fn picture_number(&self) -> u64 {
+        self.shown
+    }
+
     /// Copies the picture to the clipboard, on white; of two compared pictures, the illustrated one.
     pub fn copy(&self, ctx: &eframe::egui::Context) {
         let Some(mut image) = self.pixels.iter().flatten().next().cloned() else { return };

@@ -106,7 +106,7 @@ impl Legibility {
         std::thread::spawn(move || {
             let loaded = rocks.read().unwrap_or_else(PoisonError::into_inner);
             // What cannot be read here is told where the picture is drawn.
-            let found = confusions(&root, &document, loaded.rock.as_ref(), &scene).unwrap_or_default();
+            let found = confusions(&root, &document, loaded.rock.as_deref(), &scene).unwrap_or_default();
             if sender.send(found).is_ok() {
                 context.request_repaint();
             }

@@ -98,8 +98,8 @@ impl Layers {
                 let style = self.style_of(document, index, name);
                 row(ui, session, name, &style, swatches, tiles, actions);
                 if let Some(horizon) = document.horizons.get(index) {
-                    let share = self.picked.iter().find(|known| known.name == horizon.name).map(|known| known.share);
-                    boundary(ui, (index, share), horizon, actions);
+                    let picked = self.picked.iter().find(|known| known.name == horizon.name);
+                    boundary(ui, (index, picked), horizon, actions);
                 }
             }
             unpicked(ui, session, actions);
@@ -261,7 +261,12 @@ fn row(
 const WHOLE: f64 = 0.995;
 
 /// The horizon between two layers, how much of it was picked where that is not all, and its contact.
-fn boundary(ui: &mut Ui, (index, picked): (usize, Option<f64>), horizon: &HorizonEntry, actions: &mut Vec<Action>) {
+fn boundary(
+    ui: &mut Ui,
+    (index, picked): (usize, Option<&PickedShare>),
+    horizon: &HorizonEntry,
+    actions: &mut Vec<Action>,
+) {
     let (name, contact) = (horizon.name.as_str(), horizon.contact);
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(SWATCH[0] + 8.0, 16.0), Sense::hover());
@@ -279,19 +284,15 @@ fn boundary(ui: &mut Ui, (index, picked): (usize, Option<f64>), horizon: &Horizo
             });
             ui.with_layout(Layout::top_down(Align::Min), |ui| {
                 ui.spacing_mut().item_spacing.y = 1.0;
-                let share = picked.filter(|share| *share < WHOLE);
-                if share.is_none() {
+                let partly = picked.filter(|picked| picked.share < WHOLE);
+                if partly.is_none() {
                     // In the middle of its row.
                     ui.add_space(5.0);
                 }
                 ui.add(Label::new(RichText::new(name).small()).truncate());
-                if let Some(share) = share {
-                    let percent = format!("{:.0} %", 100.0 * share);
-                    let hint = format!(
-                        "{name} was picked on {percent} of its traces or within four traces of them; the rest is filled or \
-                         extrapolated"
-                    );
-                    ui.label(RichText::new(format!("{percent} picked")).small().weak()).on_hover_text(hint);
+                if let Some(picked) = partly {
+                    let said = RichText::new(format!("{} picked", picked.percent())).small().weak();
+                    ui.label(said).on_hover_text(picked.sentence());
                 }
             });
         });

@@ -341,7 +341,7 @@ fn row(
     ui.horizontal(|ui| {
         swatch(ui, entry, index, actions);
         // Room for the coverage and the sign that something is wrong.
-        let room = (ui.available_width() - 78.0).max(40.0);
+        let room = (ui.available_width() - 112.0).max(40.0);
         let label = Button::selectable(is_current, RichText::new(&entry.name).strong()).truncate();
         let label = ui.scope(|ui| {
             ui.set_max_width(room);
@@ -351,7 +351,7 @@ fn row(
             actions.push(Action::Picking(PickingStep::Choose(entry.name.clone())));
         }
         if let Some(facts) = facts {
-            ui.weak(format!("{:.0} %", 100.0 * facts.report.share)).on_hover_text("Of the traces");
+            ui.weak(format!("{} picked", facts.picked.percent())).on_hover_text(facts.picked.sentence());
             if facts.report.overlap.is_some() || !facts.conflicts.is_empty() || facts.outdated {
                 let colour = ui.visuals().warn_fg_color;
                 let hint = "It overlaps itself or conflicts with another horizon; choose it to see where";

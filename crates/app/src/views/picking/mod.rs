@@ -188,7 +188,7 @@ fn selected(ui: &mut Ui, session: &Session, overlay: &Overlay, geometry: &Survey
         if unless(ui, needs(pick.up > 0, AT_LEAF), Button::new("Descend")).on_hover_text("Down arrow").clicked() {
             actions.push(step(PickingStep::Climb(-1)));
         }
-        let hint = "Climb to the highest node without overlap (H)";
+        let hint = "Climb to the highest node that is a single sheet (H)";
         if ui.button("Highest valid").on_hover_text(hint).clicked() {
             actions.push(step(PickingStep::HighestValid));
         }

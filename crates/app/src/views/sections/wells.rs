@@ -33,12 +33,13 @@ pub(super) fn draw(
     for well in wells.iter().filter(|well| !session.view.scene.hides_well(&well.name)) {
         let parts = runs(well.path.iter().map(|voxel| near(*voxel)));
         let Some(head) = parts.iter().flatten().copied().next() else { continue };
+        let ink = well.colour.map_or(INK, |own| Color32::from_rgb(own.rgb[0], own.rgb[1], own.rgb[2]));
         if kind == SectionKind::Slice {
-            painter.circle(head, 3.5, Color32::WHITE, Stroke::new(1.5, INK));
+            painter.circle(head, 3.5, Color32::WHITE, Stroke::new(1.5, ink));
         } else {
             for part in parts.into_iter().filter(|part| part.len() > 1) {
                 painter.line(part.clone(), Stroke::new(4.0, RIM));
-                painter.line(part, Stroke::new(2.0, INK));
+                painter.line(part, Stroke::new(2.0, ink));
             }
             for (top, name) in well.tops.iter().zip(&well.top_names) {
                 let Some(at) = near(*top) else { continue };

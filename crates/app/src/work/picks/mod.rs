@@ -21,6 +21,8 @@ use interp::assembly::{ClimbSettings, highest_valid, selected_leaves};
 use interp::faults::Proposal;
 use interp::holes::{Hole, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon, reassemble};
+use model::picked_share;
+use pictures::PickedShare;
 use project::Project;
 use project::command::{Command, Effect, Extract, ProposeFaults};
 use project::content;
@@ -50,6 +52,8 @@ pub struct InterpretedHorizon {
     pub leaves: Vec<u32>,
     /// Coverage and overlap; places in line numbers.
     pub report: AssemblyReport,
+    /// Share of the traces on which it was picked, or near them.
+    pub picked: PickedShare,
     /// Share of its nodes that were filled, not picked.
     pub filled: f64,
     /// Its holes, largest first.
@@ -430,6 +434,10 @@ impl Keeper {
                     .zip(candidates)
                     .map_or_else(Vec::new, |(chosen, candidates)| selected_leaves(&candidates.forest, chosen)),
                 report: AssemblyReport { overlap, ..report_on(sheets, geometry) },
+                picked: PickedShare {
+                    name: entry.name.clone(),
+                    share: picked_share([nx, ny], on_data(sheets, nx * ny)),
+                },
                 filled: filled(sheets),
                 holes: find_holes(sheets, [nx, ny]),
                 conflicts: mine.map(sentence).collect(),
@@ -448,6 +456,12 @@ impl Keeper {
         let key = candidates.map(|candidates| candidates.key.clone());
         Ok(Interpreted { root, step, number: self.number, horizons, faults, extraction, key, proposals, unit })
     }
+}
+
+/// The traces at which one of these sheets lies on data.
+fn on_data(sheets: &[VoxelSheet], traces: usize) -> Vec<bool> {
+    let is_on = |sheet: &VoxelSheet, n: usize| sheet.z[n].is_finite() && sheet.quality[n].is_on_data();
+    (0..traces).map(|n| sheets.iter().any(|sheet| is_on(sheet, n))).collect()
 }
 
 /// The share of the nodes of these sheets that do not lie on data.
