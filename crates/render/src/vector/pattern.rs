@@ -39,6 +39,9 @@ const CURVE_PARTS: u32 = 2;
 const DOT: f64 = 0.12;
 /// Where dots are left out: so much narrower than in the middle of the area.
 const SQUEEZED: f64 = 0.3;
+/// Areas thinner than this have no pattern, heights of a tile that is as wide as those in its middle: less than a row of
+/// bricks.
+const SCRAP: f64 = 0.06;
 /// A line is torn where its places still lie this far apart after [`DEEPEST`] divisions, pixels.
 const TORN_PX: f64 = 1.5;
 
@@ -163,10 +166,11 @@ impl Lattice {
 }
 
 impl FacePattern<'_> {
-    /// The pattern over an area, (s, t), back to front.
-    pub(super) fn drawn(&self, rings: &[Vec<DVec2>], tile: &Tile) -> Vec<DrawnPart> {
+    /// The pattern over an area, (s, t), back to front; `None` where the area is so thin, pixels, that signs of the pattern
+    /// would be scraps.
+    pub(super) fn drawn(&self, rings: &[Vec<DVec2>], tile: &Tile, thickness_px: f64) -> Option<Vec<DrawnPart>> {
         let groups = alike(&tile.drawing);
-        let Some(lattice) = Lattice::over(rings).filter(|_| !groups.is_empty()) else { return Vec::new() };
+        let Some(lattice) = Lattice::over(rings).filter(|_| !groups.is_empty()) else { return Some(Vec::new()) };
         let frame = self.frame;
         let mappings = frame.mappings(self.resolved.tables.globals.aspect_j);
         let [horizontal, vertical] = self.frequency.map(f64::from);
@@ -178,10 +182,14 @@ impl FacePattern<'_> {
             let is_mine: Vec<bool> = leading.iter().map(|leading| *leading == Some(n)).collect();
             if is_mine.iter().any(|mine| *mine) {
                 let cells = MappedCells { face: self, mapping, scale, lattice: &lattice, is_mine };
-                parts.extend(cells.drawn(tile, &groups));
+                let px_from_tile = cells.px_from_tile();
+                if thickness_px < SCRAP * px_from_tile.x_axis.length() / tile.aspect {
+                    return None;
+                }
+                parts.extend(cells.drawn(tile, &groups, px_from_tile));
             }
         }
-        parts
+        Some(parts)
     }
 
     /// The mapping with the largest weight in a cell of the area.
@@ -271,9 +279,9 @@ impl MappedCells<'_> {
     }
 
     /// The parts of the pattern in these cells.
-    fn drawn(&self, tile: &Tile, groups: &[std::ops::Range<usize>]) -> Vec<DrawnPart> {
+    fn drawn(&self, tile: &Tile, groups: &[std::ops::Range<usize>], px_from_tile: DMat2) -> Vec<DrawnPart> {
         let copies: Vec<(Copy, DVec2)> = self.copies(&tile.drawing).into_iter().collect();
-        let px_per_tile = self.pixels_per_tile(tile.aspect);
+        let px_per_tile = px_per_tile(px_from_tile, tile.aspect);
         let traced: Vec<(usize, Vec<Polyline>)> = copies
             .par_iter()
             .map(|((shape, m, n), near)| {
@@ -285,8 +293,9 @@ impl MappedCells<'_> {
         for group in groups {
             let lines = traced.iter().filter(|(shape, _)| group.contains(shape));
             let shape = &tile.drawing.shapes[group.start];
+            let px_across = px_across(&tile.drawing.shapes[group.clone()], px_from_tile, tile.aspect);
             let part = |lines: Vec<Polyline>| DrawnPart {
-                paint: paint(&shape.paint, px_per_tile),
+                paint: paint(&shape.paint, [px_across, px_per_tile * px_per_tile / px_across.max(1e-9)]),
                 colour: shape.colour,
                 opacity: shape.opacity,
                 lines,
@@ -384,28 +393,58 @@ impl MappedCells<'_> {
         low.cmple(at).all() && high.cmpge(at).all()
     }
 
-    /// Pixels to the width of an undistorted tile of the size that tiles have in the middle of the area.
-    fn pixels_per_tile(&self, aspect: f64) -> f64 {
+    /// How tiles lie in the middle of the area: pixels from tile units, (u, v).
+    fn px_from_tile(&self) -> DMat2 {
         let mine: Vec<usize> = (0..self.is_mine.len()).filter(|cell| self.is_mine[*cell]).collect();
         let every = mine.len().div_ceil(200).max(1);
-        let size = |cell: &usize| {
+        let map = |cell: &usize| {
             let st = self.lattice.middle(*cell);
             let [s, t] = [DVec2::X, DVec2::Y].map(|axis| (self.face.px(st + 1e-3 * axis) - self.face.px(st)) * 1e3);
-            let (_, change) = self.uv(st);
-            ((s.perp_dot(t) / change.determinant()).abs() * aspect).sqrt()
+            DMat2::from_cols(s, t) * self.uv(st).1.inverse()
         };
-        let mut sizes: Vec<f64> = mine.iter().step_by(every).map(size).filter(|size| size.is_finite()).collect();
-        sizes.sort_by(f64::total_cmp);
-        sizes.get(sizes.len() / 2).copied().unwrap_or(0.0)
+        let mut maps: Vec<DMat2> = mine.iter().step_by(every).map(map).filter(DMat2::is_finite).collect();
+        maps.sort_by(|a, b| a.determinant().abs().total_cmp(&b.determinant().abs()));
+        maps.get(maps.len() / 2).copied().unwrap_or(DMat2::ZERO)
     }
 }
 
-fn paint(paint: &TilePaint, px_per_tile: f64) -> PatternPaint {
+/// Pixels to a stroke's width of a tile: on a face seen aslant lines that run with it are thinner than those across. Of
+/// shapes that run both ways it is the mean.
+fn px_across(shapes: &[TileShape], px_from_tile: DMat2, aspect: f64) -> f64 {
+    // Of tiles as wide as high, in which strokes have one width.
+    let px_from_square = px_from_tile * DMat2::from_diagonal(DVec2::new(1.0, aspect));
+    let area = px_from_square.determinant().abs();
+    let (mut sum, mut long) = (0.0, 0.0);
+    for shape in shapes {
+        let mut at = DVec2::ZERO;
+        for segment in &shape.path {
+            let (TileSegment::Move(to) | TileSegment::Line(to) | TileSegment::Cubic(_, _, to)) = segment else {
+                continue;
+            };
+            let step = (DVec2::from_array(*to) - at) / DVec2::new(1.0, aspect);
+            let is_drawn = !matches!(segment, TileSegment::Move(_)) && step.length() > CLOSE;
+            if is_drawn {
+                sum += area * step.length() / (px_from_square * step.normalize()).length().max(1e-12);
+                long += step.length();
+            }
+            at = DVec2::from_array(*to);
+        }
+    }
+    if long > 0.0 { sum / long } else { area.sqrt() }
+}
+
+/// Pixels to the width of an undistorted tile of the size that tiles have in the middle of the area.
+fn px_per_tile(px_from_tile: DMat2, aspect: f64) -> f64 {
+    (px_from_tile.determinant().abs() * aspect).sqrt()
+}
+
+/// A paint in pixels, by those to a tile's width across strokes and along them.
+fn paint(paint: &TilePaint, [px_across, px_along]: [f64; 2]) -> PatternPaint {
     match paint {
         TilePaint::Area { even_odd } => PatternPaint::Area { even_odd: *even_odd },
         TilePaint::Line { width, dashes, round } => PatternPaint::Line {
-            width_px: width * px_per_tile,
-            dashes_px: dashes.iter().map(|dash| dash * px_per_tile).collect(),
+            width_px: width * px_across,
+            dashes_px: dashes.iter().map(|dash| dash * px_along).collect(),
             round: *round,
         },
     }
