@@ -26,6 +26,9 @@ const SMOOTH_PT: f64 = 8.0;
 /// Where along its line a leader may end, the best place first.
 const FEET: [f64; 5] = [0.5, 0.3, 0.7, 0.15, 0.85];
 
+/// A line of a fault on the page, and whether it is covered.
+type PageLine = (Vec<DVec2>, bool);
+
 /// The lines of faults within the map's outline, covered ones dashed, and the names among what is drawn.
 pub(super) fn faults_drawn(
     cuts: &[FaultCut],
@@ -34,12 +37,12 @@ pub(super) fn faults_drawn(
     outline: &[DVec2],
 ) -> (Vec<Item>, Vec<Text>) {
     let faults: Vec<&[FaultCut]> = cuts.chunk_by(|a, b| a.fault == b.fault).collect();
-    let lines: Vec<Vec<(Vec<DVec2>, bool)>> = faults
+    let lines: Vec<Vec<PageLine>> = faults
         .iter()
         .map(|cuts| cuts.iter().map(|cut| (cut.line.iter().map(|at| page(*at)).collect(), cut.is_covered)).collect())
         .collect();
     let longest: Vec<Measured> = lines.iter().map(|lines| longest(lines)).collect();
-    let sides = |lines: &[(Vec<DVec2>, bool)]| -> Vec<[DVec2; 2]> {
+    let sides = |lines: &[PageLine]| -> Vec<[DVec2; 2]> {
         lines.iter().flat_map(|(line, _)| line.windows(2).map(|pair| [pair[0], pair[1]])).collect()
     };
     let sides: Vec<Vec<[DVec2; 2]>> = lines.iter().map(|lines| sides(lines)).collect();
@@ -60,8 +63,8 @@ pub(super) fn faults_drawn(
         named[n] = named[n].take().or_else(|| leader(&feet, &cuts[0].name, &[], &mut room));
     }
     let stroke = Stroke::new(FAULT_PT, INK).round();
-    let dashed = Stroke { width: 0.6 * FAULT_PT, dashes: COVERED.to_vec(), ..stroke.clone() };
-    let drawn = |lines: &[(Vec<DVec2>, bool)], is_dashed: bool| {
+    let dashed = Stroke { dashes: COVERED.to_vec(), ..Stroke::new(0.6 * FAULT_PT, INK).round() };
+    let drawn = |lines: &[PageLine], is_dashed: bool| {
         let mut path = Path::default();
         lines.iter().filter(|(_, is_covered)| *is_covered == is_dashed).for_each(|(line, _)| path.add_line(line));
         PathItem::stroked(path, if is_dashed { dashed.clone() } else { stroke.clone() }).into()
@@ -74,16 +77,18 @@ pub(super) fn faults_drawn(
         texts.collect()
     };
     let names = named.iter().flat_map(texts).collect();
-    let group = |((cuts, lines), name): ((&&[FaultCut], &Vec<(Vec<DVec2>, bool)>), Option<Group>)| {
+    let mut items = Vec::new();
+    for ((cuts, lines), name) in faults.iter().zip(&lines).zip(named) {
         let strokes = [false, true].map(|is_dashed| drawn(lines, is_dashed));
         let strokes = Group::new(GroupKind::Part, "lines").clipped(Path::polygon(outline)).with(strokes);
-        Group::new(GroupKind::Fault, &cuts[0].name).with([strokes.into()]).with(name.map(Item::from)).into()
-    };
-    (faults.iter().zip(&lines).zip(named).map(group).collect(), names)
+        let group = Group::new(GroupKind::Fault, &cuts[0].name).with([strokes.into()]).with(name.map(Item::from));
+        items.push(group.into());
+    }
+    (items, names)
 }
 
 /// The longest of a fault's lines, one that is not covered where there is one.
-fn longest(lines: &[(Vec<DVec2>, bool)]) -> Measured {
+fn longest(lines: &[PageLine]) -> Measured {
     let measured = lines.iter().map(|(line, is_covered)| (!is_covered, Measured::of(line.clone())));
     let longest = measured.max_by(|(seen, a), (other, b)| seen.cmp(other).then(a.length().total_cmp(&b.length())));
     longest.map_or_else(|| Measured::of(Vec::new()), |(_, line)| line)

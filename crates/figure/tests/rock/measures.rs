@@ -214,7 +214,7 @@ fn joints(aside: f64) -> (usize, f64) {
     let size_px = [1600, 1200];
     let scene = Scene { size_px, camera, background, exaggeration: 1.0, ground: None, outlines, ..Scene::default() };
     let view = scene.view(&geometry);
-    let fold = Fold::of(geometry.clone(), &closed, &["shale", "limestone", "shale"]);
+    let fold = Fold::of(geometry, &closed, &["shale", "limestone", "shale"]);
     let svg = svg(&fold.page(&scene, true), "t").unwrap();
     let points = |voxel: DVec3| view.project(voxel) * 72.0 / 200.0;
     let axis = points(DVec3::new(40.0, 0.0, 36.0 + 40.0 / 35f64.to_radians().sin()));

@@ -165,12 +165,10 @@ impl FacePainter<'_> {
 
 /// How thick a strip within these rings is, a ring and its holes: twice its area by the length of its sides.
 fn thickness(rings: &[Vec<DVec2>]) -> f64 {
-    let sides = |ring: &[DVec2]| (0..ring.len()).map(|n| [ring[n], ring[(n + 1) % ring.len()]]).collect::<Vec<_>>();
-    let area = |ring: &Vec<DVec2>| 0.5 * sides(ring).iter().map(|[a, b]| a.perp_dot(*b)).sum::<f64>().abs();
-    let areas: Vec<f64> = rings.iter().map(area).collect();
-    let round: f64 = rings.iter().flat_map(|ring| sides(ring)).map(|[a, b]| a.distance(b)).sum();
-    let outer = areas.iter().copied().fold(0.0, f64::max);
-    2.0 * (2.0 * outer - areas.iter().sum::<f64>()) / round.max(1e-9)
+    let sides = || rings.iter().flat_map(|ring| (0..ring.len()).map(|n| [ring[n], ring[(n + 1) % ring.len()]]));
+    // Holes turn the other way.
+    let twice: f64 = sides().map(|[a, b]| a.perp_dot(b)).sum();
+    twice.abs() / sides().map(|[a, b]| a.distance(b)).sum::<f64>().max(1e-9)
 }
 
 /// What a layer is filled with.

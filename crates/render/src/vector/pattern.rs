@@ -169,7 +169,7 @@ impl FacePattern<'_> {
     /// The pattern over an area, (s, t), back to front; `None` where the area is so thin, pixels, that signs of the pattern
     /// would be scraps.
     pub(super) fn drawn(&self, rings: &[Vec<DVec2>], tile: &Tile, thickness_px: f64) -> Option<Vec<DrawnPart>> {
-        let groups = alike(&tile.drawing);
+        let groups = tile.drawing.alike();
         let Some(lattice) = Lattice::over(rings).filter(|_| !groups.is_empty()) else { return Some(Vec::new()) };
         let frame = self.frame;
         let mappings = frame.mappings(self.resolved.tables.globals.aspect_j);
@@ -222,23 +222,6 @@ impl FacePattern<'_> {
     fn px(&self, st: DVec2) -> DVec2 {
         self.resolved.view.project(self.plane.voxel(st))
     }
-}
-
-/// Shapes of a tile that follow one another and look alike, as ranges.
-fn alike(drawing: &TileDrawing) -> Vec<std::ops::Range<usize>> {
-    let mut groups: Vec<std::ops::Range<usize>> = Vec::new();
-    for (n, shape) in drawing.shapes.iter().enumerate() {
-        let same = |first: &TileShape| {
-            (&first.paint, first.colour, first.opacity) == (&shape.paint, shape.colour, shape.opacity)
-                // Copies that lie over one another would cancel.
-                && shape.paint != TilePaint::Area { even_odd: true }
-        };
-        match groups.last_mut().filter(|group| same(&drawing.shapes[group.start])) {
-            Some(group) => group.end = n + 1,
-            None => groups.push(n..n + 1),
-        }
-    }
-    groups
 }
 
 impl MappedCells<'_> {
@@ -414,23 +397,10 @@ fn px_across(shapes: &[TileShape], px_from_tile: DMat2, aspect: f64) -> f64 {
     // Of tiles as wide as high, in which strokes have one width.
     let px_from_square = px_from_tile * DMat2::from_diagonal(DVec2::new(1.0, aspect));
     let area = px_from_square.determinant().abs();
-    let (mut sum, mut long) = (0.0, 0.0);
-    for shape in shapes {
-        let mut at = DVec2::ZERO;
-        for segment in &shape.path {
-            let (TileSegment::Move(to) | TileSegment::Line(to) | TileSegment::Cubic(_, _, to)) = segment else {
-                continue;
-            };
-            let step = (DVec2::from_array(*to) - at) / DVec2::new(1.0, aspect);
-            let is_drawn = !matches!(segment, TileSegment::Move(_)) && step.length() > CLOSE;
-            if is_drawn {
-                sum += area * step.length() / (px_from_square * step.normalize()).length().max(1e-12);
-                long += step.length();
-            }
-            at = DVec2::from_array(*to);
-        }
-    }
-    if long > 0.0 { sum / long } else { area.sqrt() }
+    let steps = || shapes.iter().flat_map(|shape| shape.steps(aspect)).map(DVec2::from_array);
+    let across = |step: DVec2| area * step.length_squared() / (px_from_square * step).length().max(1e-12);
+    let (sum, long): (f64, f64) = (steps().map(across).sum(), steps().map(DVec2::length).sum());
+    if long > CLOSE { sum / long } else { area.sqrt() }
 }
 
 /// Pixels to the width of an undistorted tile of the size that tiles have in the middle of the area.
