@@ -166,7 +166,6 @@ impl FacePainter<'_> {
 /// How thick a strip within these rings is, a ring and its holes: twice its area by the length of its sides.
 fn thickness(rings: &[Vec<DVec2>]) -> f64 {
     let sides = || rings.iter().flat_map(|ring| (0..ring.len()).map(|n| [ring[n], ring[(n + 1) % ring.len()]]));
-    // Holes turn the other way.
     let twice: f64 = sides().map(|[a, b]| a.perp_dot(b)).sum();
     twice.abs() / sides().map(|[a, b]| a.distance(b)).sum::<f64>().max(1e-9)
 }

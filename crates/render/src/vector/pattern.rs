@@ -19,7 +19,7 @@ use ttf::{FaceFrame, Mapping, TileDrawing, TilePaint, TileSegment, TileShape};
 const CELL: f64 = 1.0;
 /// Most cells on a side of the lattice.
 const MOST_CELLS: f64 = 1024.0;
-/// A cell over which the pattern changes by more tiles than this is left out: the map folds there.
+/// A cell over which the pattern changes by more tiles is left out: the map folds there.
 const MOST_TILES: f64 = 64.0;
 /// Newton's method stops this close, tile units.
 const CLOSE: f64 = 2e-4;
@@ -39,8 +39,7 @@ const CURVE_PARTS: u32 = 2;
 const DOT: f64 = 0.12;
 /// Where dots are left out: so much narrower than in the middle of the area.
 const SQUEEZED: f64 = 0.3;
-/// Areas thinner than this have no pattern, heights of a tile that is as wide as those in its middle: less than a row of
-/// bricks.
+/// Areas thinner than this have no pattern, heights of a tile: less than a row of bricks.
 const SCRAP: f64 = 0.06;
 /// A line is torn where its places still lie this far apart after [`DEEPEST`] divisions, pixels.
 const TORN_PX: f64 = 1.5;
@@ -166,8 +165,7 @@ impl Lattice {
 }
 
 impl FacePattern<'_> {
-    /// The pattern over an area, (s, t), back to front; `None` where the area is so thin, pixels, that signs of the pattern
-    /// would be scraps.
+    /// The pattern over an area, (s, t), back to front; `None` where that is too thin for it.
     pub(super) fn drawn(&self, rings: &[Vec<DVec2>], tile: &Tile, thickness_px: f64) -> Option<Vec<DrawnPart>> {
         let groups = tile.drawing.alike();
         let Some(lattice) = Lattice::over(rings).filter(|_| !groups.is_empty()) else { return Some(Vec::new()) };
@@ -264,7 +262,7 @@ impl MappedCells<'_> {
     /// The parts of the pattern in these cells.
     fn drawn(&self, tile: &Tile, groups: &[std::ops::Range<usize>], px_from_tile: DMat2) -> Vec<DrawnPart> {
         let copies: Vec<(Copy, DVec2)> = self.copies(&tile.drawing).into_iter().collect();
-        let px_per_tile = px_per_tile(px_from_tile, tile.aspect);
+        let px_per_tile = (px_from_tile.determinant().abs() * tile.aspect).sqrt();
         let traced: Vec<(usize, Vec<Polyline>)> = copies
             .par_iter()
             .map(|((shape, m, n), near)| {
@@ -391,21 +389,14 @@ impl MappedCells<'_> {
     }
 }
 
-/// Pixels to a stroke's width of a tile: on a face seen aslant lines that run with it are thinner than those across. Of
-/// shapes that run both ways it is the mean.
+/// Pixels to a stroke's width of a tile, the mean over all its directions: on a face seen aslant they differ.
 fn px_across(shapes: &[TileShape], px_from_tile: DMat2, aspect: f64) -> f64 {
-    // Of tiles as wide as high, in which strokes have one width.
     let px_from_square = px_from_tile * DMat2::from_diagonal(DVec2::new(1.0, aspect));
     let area = px_from_square.determinant().abs();
     let steps = || shapes.iter().flat_map(|shape| shape.steps(aspect)).map(DVec2::from_array);
     let across = |step: DVec2| area * step.length_squared() / (px_from_square * step).length().max(1e-12);
     let (sum, long): (f64, f64) = (steps().map(across).sum(), steps().map(DVec2::length).sum());
     if long > CLOSE { sum / long } else { area.sqrt() }
-}
-
-/// Pixels to the width of an undistorted tile of the size that tiles have in the middle of the area.
-fn px_per_tile(px_from_tile: DMat2, aspect: f64) -> f64 {
-    (px_from_tile.determinant().abs() * aspect).sqrt()
 }
 
 /// A paint in pixels, by those to a tile's width across strokes and along them.
