@@ -24,10 +24,15 @@ fn geometry() -> SurveyGeometry {
     SurveyGeometry::regular(SIZE, 25.0, 4.0, VerticalUnit::Milliseconds)
 }
 
-/// Two flat horizons, and a fault that moves them.
-fn model(throw: f64) -> StructuralModel {
+/// Two horizons, flat or folded, and a fault that moves them.
+fn model(dip_deg: f64, throw: f64) -> StructuralModel {
     let geometry = geometry();
-    let closed = ClosedForm::flat(&geometry, &[10.0, 26.0]).with_fault(60.0, throw);
+    let depths = [10.0, 26.0];
+    let closed = match dip_deg {
+        0.0 => ClosedForm::flat(&geometry, &depths),
+        dip_deg => ClosedForm::dome(&geometry, &depths, dip_deg),
+    };
+    let closed = closed.with_fault(60.0, throw);
     let (settings, quiet) = (ModelSettings::default(), Progress::silent());
     StructuralModel::build(&geometry, &closed.stratigraphy, &closed.horizons, &closed.faults, &settings, &quiet)
         .unwrap()
@@ -176,7 +181,7 @@ fn no_two_labels_overlap_on_two_hundred_random_pages_of_all_kinds() {
 /// How many of so many random pages have room for their parts, and how many labels these have.
 fn checked(pages: usize, has_all: bool) -> (usize, usize) {
     let library = TextureLibrary::builtin().unwrap();
-    let models = [model(0.0), model(5.0)];
+    let models = [model(0.0, 0.0), model(0.0, 5.0), model(25.0, 5.0)];
     let mut random = Random(16);
     let (mut drawn, mut labels) = (0, 0);
     for n in 0..pages {
@@ -186,7 +191,7 @@ fn checked(pages: usize, has_all: bool) -> (usize, usize) {
             name => LayerStyle::plain(&name, Colour::WHITE),
         };
         let layers: Vec<LayerStyle> = (0..random.below(14)).map(style).collect();
-        let page = match made_of(&models[n % 2], &figure, &layers, Some(&library)) {
+        let page = match made_of(&models[n % 3], &figure, &layers, Some(&library)) {
             Ok(page) => page,
             Err(FigureError::NoRoom { .. }) => continue,
             Err(error) => panic!("page {n}: {error}"),
@@ -194,22 +199,34 @@ fn checked(pages: usize, has_all: bool) -> (usize, usize) {
         drawn += 1;
         let texts = page.texts();
         labels += texts.len();
-        for (index, text) in texts.iter().enumerate() {
+        for text in &texts {
             let letters = lettering(text);
             let is_inside = letters.iter().flatten().all(|corner| page.bounds().contains(*corner));
             assert!(is_inside, "page {n}: {} at {letters:?} leaves {:?}", text.text, page.size);
             assert!((7.0..=12.0).contains(&text.size), "page {n}: {} is set in {} points", text.text, text.size);
-            for other in &texts[..index] {
-                if !other.bounds().meets(&text.bounds()) {
-                    continue;
-                }
-                let others = lettering(other);
-                let is_over = letters.iter().any(|one| others.iter().any(|other| meet(one, other)));
-                assert!(!is_over, "page {n}: {} lies over {}", text.text, other.text);
-            }
+        }
+        let over = overlapping(&texts);
+        assert!(over.is_none(), "page {n}: {over:?}");
+        // A label that is dragged onto another is found.
+        let middle = |text: &Text| lettering(text).first().map(|corners| corners.iter().sum::<DVec2>() / 4.0);
+        if let [first, .., last] = &texts[..]
+            && let (Some(to), Some(from)) = (middle(first), middle(last))
+        {
+            let mut dragged = (*last).clone();
+            dragged.shift(to - from);
+            assert!(overlapping(&[first, &dragged]).is_some(), "page {n}: {} on {}", dragged.text, first.text);
         }
     }
     (drawn, labels)
+}
+
+/// Two texts of which one lies over the other.
+fn overlapping<'a>(texts: &[&'a Text]) -> Option<[&'a str; 2]> {
+    let letters: Vec<Vec<[DVec2; 4]>> = texts.iter().map(|text| lettering(text)).collect();
+    let is_over = |a: usize, b: usize| letters[a].iter().any(|one| letters[b].iter().any(|other| meet(one, other)));
+    let pairs = (0..texts.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+    let mut near = pairs.filter(|(a, b)| texts[*a].bounds().meets(&texts[*b].bounds()));
+    near.find(|(a, b)| is_over(*a, *b)).map(|(a, b)| [texts[a].text.as_str(), texts[b].text.as_str()])
 }
 
 /// The rectangles around a text's letters, turned as they are: one, or one for each letter of a bent text.

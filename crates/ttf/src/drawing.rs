@@ -10,6 +10,7 @@ use resvg::usvg::{self, FillRule, LineCap, Node, Paint};
 
 use crate::TtfError;
 use std::mem::discriminant;
+use std::ops::Range;
 
 /// Pieces of one tile, back to front.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -170,7 +171,42 @@ impl TileSegment {
     }
 }
 
+impl TileDrawing {
+    /// Shapes that follow one another and look alike, as ranges.
+    pub fn alike(&self) -> Vec<Range<usize>> {
+        let mut groups: Vec<Range<usize>> = Vec::new();
+        for (n, shape) in self.shapes.iter().enumerate() {
+            let same = |first: &TileShape| {
+                (&first.paint, first.colour, first.opacity) == (&shape.paint, shape.colour, shape.opacity)
+                    // Copies that lie over one another would cancel.
+                    && shape.paint != TilePaint::Area { even_odd: true }
+            };
+            match groups.last_mut().filter(|group| same(&self.shapes[group.start])) {
+                Some(group) => group.end = n + 1,
+                None => groups.push(n..n + 1),
+            }
+        }
+        groups
+    }
+}
+
 impl TileShape {
+    /// From end to end of its segments, in widths of a tile of this width by height.
+    pub fn steps(&self, aspect: f64) -> Vec<[f64; 2]> {
+        let mut steps = Vec::new();
+        let mut at = [0.0; 2];
+        for segment in &self.path {
+            let (TileSegment::Move(to) | TileSegment::Line(to) | TileSegment::Cubic(_, _, to)) = segment else {
+                continue;
+            };
+            if !matches!(segment, TileSegment::Move(_)) {
+                steps.push([to[0] - at[0], (to[1] - at[1]) / aspect]);
+            }
+            at = *to;
+        }
+        steps
+    }
+
     /// Smallest and largest corner of its points, control points included.
     pub fn bounds(&self) -> [[f64; 2]; 2] {
         bounds(&self.path)

@@ -264,6 +264,9 @@ mod tests {
         ));
         let unknown = error(|style| style.intervals[0].texture = "limstone".to_owned());
         assert!(unknown.to_string().contains("did you mean `limestone`?"), "{unknown}");
+        // Not siltstone.
+        let unknown = error(|style| style.intervals[0].texture = "sandstone".to_owned());
+        assert!(unknown.to_string().contains("did you mean `sandstone-"), "{unknown}");
         let twice = LayerTtf { styles: vec![two_halves(), two_halves()] };
         assert!(matches!(twice.validate(&library), Err(TtfError::DuplicateLayer { .. })));
     }

@@ -184,12 +184,15 @@ impl TextureLibrary {
     /// [`TtfError::UnknownTexture`], with the most similar name there is.
     pub fn index_of(&self, name: &str, place: &str) -> Result<usize, TtfError> {
         self.find(name).ok_or_else(|| {
-            let nearest = self
+            let similar = self
                 .patterns()
                 .map(|pattern| (edit_distance(name, &pattern.name), &pattern.name))
                 .min()
-                .filter(|(distance, nearest)| *distance <= 1 + nearest.len() / 4)
-                .map(|(_, nearest)| nearest.clone());
+                .filter(|(distance, nearest)| *distance <= 1 + nearest.len() / 4);
+            // A kind of what was asked for says more than a name of like letters.
+            let is_kind = |known: &&String| known.strip_prefix(name).is_some_and(|rest| rest.starts_with('-'));
+            let kind = self.patterns().map(|pattern| &pattern.name).find(is_kind);
+            let nearest = kind.or(similar.map(|(_, nearest)| nearest)).cloned();
             TtfError::UnknownTexture { place: place.to_owned(), texture: name.to_owned(), nearest }
         })
     }

@@ -116,6 +116,13 @@ mod tests {
     }
 
     #[test]
+    fn identifiers_of_the_vocabulary_are_names_too() {
+        for id in ["phonolilte", "high_magnesium_fine_grained_igneous_rocks", "alkali-olivine_basalt"] {
+            assert!(rock(id, &["basalt", "dacite", "igneous"]).is_some(), "{id}");
+        }
+    }
+
+    #[test]
     fn broader_terms_are_climbed_step_by_step() {
         let library = TextureLibrary::builtin().unwrap();
         let patterns: Vec<&str> = library.patterns().map(|pattern| pattern.name.as_str()).collect();

@@ -25,6 +25,8 @@ use survey::SurveyGeometry;
 const NARROW: f64 = 1.4;
 /// How far a curve may lie from the straight pieces that stand for it, points.
 const STRAIGHT_PT: f64 = 0.05;
+/// Lengths upright that are foreshortened to less than this share have no scale bar.
+const LEAST_UPRIGHT: f64 = 0.1;
 
 /// Draws pictures of blocks: a renderer with its data, and what watches over it.
 pub trait BlockPainter {
@@ -144,7 +146,7 @@ pub struct DrawnBlock {
     pub group: Group,
     /// The scale on paper in the block's middle, points a metre.
     pub points_per_m: f64,
-    /// The same down, points a unit of depth or time.
+    /// The same down, points a unit of depth or time; 0 where the block is seen from nearly above.
     pub points_down: f64,
     /// East and north in the block's middle ([`north::compass`]).
     pub compass: [DVec2; 2],
@@ -217,7 +219,11 @@ impl BlockPanel<'_> {
             let middle = scene.box_in(self.geometry).centre();
             points_per_m = pixels_per_metre(&view, middle) * POINTS_PER_INCH / self.dpi;
             let sample = view.project(middle + 0.5 * DVec3::Z).distance(view.project(middle - 0.5 * DVec3::Z));
-            points_down = sample / self.geometry.vertical.interval.abs() * POINTS_PER_INCH / self.dpi;
+            let metres = self.geometry.metric_from_voxel().z_axis.length() * scene.exaggeration;
+            // Seen from nearly above, lengths upright cannot be read.
+            let is_seen = sample > LEAST_UPRIGHT * metres * pixels_per_metre(&view, middle);
+            let points = sample / self.geometry.vertical.interval.abs() * POINTS_PER_INCH / self.dpi;
+            points_down = if is_seen { points } else { 0.0 };
             compass = north::compass(&view, self.geometry, middle);
         }
         if let Some(blends) = blends {

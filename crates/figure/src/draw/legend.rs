@@ -224,8 +224,12 @@ fn layer(
 
 fn name(name: &str, beside: DVec2, room: Rect, size_pt: f64) -> Text {
     let at = beside + DVec2::new(GAP_PT, 0.0);
-    let text = Text::new(at, name).sized(size_pt).anchored(Across::Start, Upright::Middle);
-    text.fitted(room.max.x - at.x)
+    let text = |name: &str| Text::new(at, name).sized(size_pt).anchored(Across::Start, Upright::Middle);
+    let fitted = |name: &str| text(name).fitted(room.max.x - at.x);
+    let whole = fitted(name);
+    // What stands in brackets goes first.
+    let short = name.split_once(" (").map(|(short, _)| fitted(short)).filter(|text| !text.text.ends_with('…'));
+    if whole.text.ends_with('…') { short.unwrap_or(whole) } else { whole }
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Maps on a page: a horizon's structure or the thickness below it, north up, with contours, hatching, a
 //! colour bar, a north arrow.
 
-use super::scale;
-use crate::map::{self, HorizonMap, Mapped, Room};
+use super::{map_lines, scale};
+use crate::map::{self, HorizonMap, Mapped};
 use crate::style::{ACCENT, FRAME_PT, INK, NUMBER_PT, QUIET_INK, RULE_INK, TEXT_PT, TITLE_PT};
 use glam::DVec2;
 use image::{Rgba, RgbaImage};
@@ -112,8 +112,7 @@ pub fn contents(shown: &HorizonMap, frame: &MapFrame, room: Rect) -> Group {
         let hatched = Group::new(GroupKind::Annotation, "not picked").clipped(Path::polygon(&outline));
         group.push(hatched.with([PathItem::stroked(path, stroke).into()]));
     }
-    let room = Room { within: room, taken: Vec::new() };
-    let [faults, contours] = map::drawn(shown, |place| frame.page(place), &room);
+    let [faults, contours] = map_lines::drawn(shown, |place| frame.page(place), room, &outline);
     group.push(contours);
     if !faults.items.is_empty() {
         group.push(faults);

@@ -10,6 +10,8 @@ pub mod colour_bar;
 pub mod correlation;
 pub mod legend;
 pub mod map;
+mod map_faults;
+mod map_lines;
 pub mod moved;
 pub mod north;
 pub mod overlay;

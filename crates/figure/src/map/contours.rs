@@ -1,8 +1,8 @@
 //! Contours of round values, cell by cell (marching squares).
 //!
 //! Along each side of a cell a value between its ends is placed by linear interpolation; a cell's two or
-//! four places are joined, and cells' pieces to lines. A cell with corners in different fault blocks has
-//! none: contours end at faults.
+//! four places are joined, and cells' pieces to lines. A cell that a fault passes through has none: contours end at
+//! faults, and go on beyond their tips.
 
 use super::Contour;
 use super::grid::Grid;
@@ -37,13 +37,12 @@ pub(super) fn contours(grid: &Grid, range: [f64; 2], interval: f64) -> Vec<Conto
     let [nx, ny] = grid.size;
     for x in 0..nx.saturating_sub(1) {
         for y in 0..ny.saturating_sub(1) {
-            let corners = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)];
-            let found = corners.map(|(x, y)| grid.at(x, y));
-            let is_whole = found.iter().all(|node| node.value.is_finite() && node.block == found[0].block);
-            if !is_whole {
+            let n = x * ny + y;
+            let sides = [(n, 0), (n, 1), (n + ny, 1), (n + 1, 0)];
+            if !sides.into_iter().all(|(n, way)| grid.is_joined(n, way)) {
                 continue;
             }
-            let values = found.map(|node| node.value);
+            let values = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)].map(|(x, y)| grid.at(x, y).value);
             let low = values.into_iter().fold(f64::INFINITY, f64::min);
             let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
             let mut level = (low.max(range[0]) / interval).ceil() as i64;
@@ -117,7 +116,7 @@ mod tests {
     use super::*;
 
     fn grid_of(size: [usize; 2], value: impl Fn(f64, f64) -> f64 + Sync) -> Grid {
-        Grid::by(size, |x, y| MapNode { value: value(x as f64, y as f64), block: 0, is_open: false })
+        Grid::by(size, |x, y| MapNode { value: value(x as f64, y as f64), is_torn: [false; 2], is_open: false })
     }
 
     #[test]

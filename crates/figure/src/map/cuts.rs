@@ -4,6 +4,7 @@
 //! contours are, and kept where the block ends: of two places beside the line one alone lies in it. The two lines of a
 //! normal fault enclose the gap in the horizon, those of a reverse fault the strip where it lies over itself.
 
+use super::Mapped;
 use super::contours::{Crossing, crossings, joined};
 use glam::{DVec2, DVec3};
 use model::StructuralModel;
@@ -29,13 +30,20 @@ pub struct FaultCut {
     pub is_covered: bool,
 }
 
-/// All lines along which a horizon ends at faults, by fault.
-pub(super) fn cuts(geometry: &SurveyGeometry, model: &StructuralModel, horizon: usize) -> Vec<FaultCut> {
-    let faults = model.faults().surfaces().len();
-    let pairs = (0..faults).flat_map(|fault| (0..model.block_count() as u16).map(move |block| (fault, block)));
-    let pairs: Vec<(usize, u16)> = pairs.collect();
-    let of_pair = |&(fault, block): &(usize, u16)| Sheet { geometry, model, horizon, block }.cuts(fault);
-    pairs.par_iter().flat_map_iter(of_pair).collect()
+/// All lines along which what is mapped ends at faults, by fault.
+pub(super) fn cuts(geometry: &SurveyGeometry, model: &StructuralModel, mapped: Mapped) -> Vec<FaultCut> {
+    let horizons = match mapped {
+        Mapped::Structure(horizon) => vec![horizon],
+        Mapped::Thickness(upper, lower) => vec![upper, lower],
+    };
+    let (faults, blocks) = (model.faults().surfaces().len(), model.block_count() as u16);
+    let sheets = |fault: usize| {
+        let horizons = horizons.iter().copied();
+        horizons
+            .flat_map(move |horizon| (0..blocks).map(move |block| (fault, Sheet { geometry, model, horizon, block })))
+    };
+    let sheets: Vec<(usize, Sheet)> = (0..faults).flat_map(sheets).collect();
+    sheets.par_iter().flat_map_iter(|(fault, sheet)| sheet.cuts(*fault)).collect()
 }
 
 /// A horizon in one fault block.

@@ -9,11 +9,9 @@ mod contours;
 mod cuts;
 mod grid;
 mod hatch;
-mod labels;
 mod smooth;
 
 pub use cuts::FaultCut;
-pub(crate) use labels::{Room, drawn};
 
 use crate::interpretation::DrawnInterpretation;
 use glam::DVec2;
@@ -74,7 +72,7 @@ pub struct HorizonMap {
     pub mapped: Mapped,
     /// Inlines to the right, crosslines down, a pixel or several a trace; transparent where there is no value.
     pub image: RgbaImage,
-    /// Where faults cut the horizon off, or the upper one of two.
+    /// Where faults cut the horizon off, or either of two, by fault.
     pub faults: Vec<FaultCut>,
     /// Contours of the lightly smoothed surface, by value.
     pub contours: Vec<Contour>,
@@ -107,11 +105,10 @@ impl HorizonMap {
             Mapped::Thickness(..) => (value - range[0]) / spread,
         };
         let colours = RgbaFunction::over(ColourMap::Strata, [0.0, 1.0]);
-        let (Mapped::Structure(cut) | Mapped::Thickness(cut, _)) = mapped;
         let (finer, faults) = match source {
             MapSource::Model(model) => {
                 let fine = (FINE_SIDE / grid.size.into_iter().max().unwrap_or(1)).clamp(1, MOST_FINE);
-                (Grid::of_model(geometry, model, mapped, fine)?, cuts::cuts(geometry, model, cut))
+                (Grid::of_model(geometry, model, mapped, fine)?, cuts::cuts(geometry, model, mapped))
             }
             MapSource::Sheets(shown) => (Grid::of_sheets(geometry, shown, mapped)?, Vec::new()),
         };

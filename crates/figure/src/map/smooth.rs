@@ -3,7 +3,7 @@
 //! Picks jitter by parts of a sample from trace to trace, and a contour of gentle ground magnifies that by
 //! the ground's slope: it frays. So contours are those of a smoothed surface: passes of (1, 2, 1)/4 along
 //! inlines and crosslines in turn, n of which are a Gaussian of variance n/2 traces². A trace is averaged
-//! along a line only where both of its neighbours on that line have a value and lie in its fault block.
+//! along a line only where both of its neighbours on that line have a value and no fault lies between.
 //! Nothing is thereby carried across a fault or a hole, rims stay where they were picked across themselves,
 //! and a plane stays that plane up to its rim (plain masked averages would bend it there).
 //!
@@ -26,14 +26,11 @@ pub(super) fn smoothed(grid: &Grid, interval: f64) -> Grid {
     let sigma = (SHARE * nx.max(ny) as f64).clamp(SIGMA[0], SIGMA[1]);
     let passes = (2.0 * sigma * sigma).round() as usize;
     let picked: Vec<f64> = grid.nodes().iter().map(|node| node.value).collect();
-    let joined = |a: &MapNode, b: &MapNode| a.value.is_finite() && b.value.is_finite() && a.block == b.block;
     // Traces that both neighbours along a line belong to, for inlines and crosslines.
-    let lines = [(nx, ny), (ny, 1)].map(|(count, step)| {
-        let nodes = grid.nodes();
+    let lines = [(0, nx, ny), (1, ny, 1)].map(|(way, count, step)| {
         let is_inner = |n: usize| (1..count.saturating_sub(1)).contains(&(n / step % count));
-        let averaged =
-            |&n: &usize| is_inner(n) && joined(&nodes[n], &nodes[n - step]) && joined(&nodes[n], &nodes[n + step]);
-        ((0..nodes.len()).filter(averaged).collect::<Vec<usize>>(), step)
+        let averaged = |&n: &usize| is_inner(n) && grid.is_joined(n - step, way) && grid.is_joined(n, way);
+        ((0..nx * ny).filter(averaged).collect::<Vec<usize>>(), step)
     });
     let mut values = picked.clone();
     let mut before = picked.clone();
@@ -62,7 +59,7 @@ mod tests {
     fn holed(value: impl Fn(f64, f64) -> f64 + Sync) -> Grid {
         Grid::by(SIZE, |x, y| MapNode {
             value: if x.abs_diff(10) < 3 && y.abs_diff(12) < 4 { f64::NAN } else { value(x as f64, y as f64) },
-            block: u16::from(3 * x > 60 + y),
+            is_torn: [[1, 0], [0, 1]].map(|[dx, dy]| (3 * x > 60 + y) != (3 * (x + dx) > 60 + y + dy)),
             is_open: false,
         })
     }
@@ -94,7 +91,7 @@ mod tests {
         let fold = |x: f64, y: f64| 30.0 * (x / 12.0).sin() + y;
         let noisy = Grid::by(SIZE, |x, y| {
             let (x, y) = (x as f64, y as f64);
-            MapNode { value: fold(x, y) + jitter(x, y), block: 0, is_open: false }
+            MapNode { value: fold(x, y) + jitter(x, y), is_torn: [false; 2], is_open: false }
         });
         let smooth = smoothed(&noisy, 1e9);
         let rms = |grid: &Grid| {
@@ -109,7 +106,8 @@ mod tests {
 
     #[test]
     fn a_step_moves_by_half_an_interval_and_no_more() {
-        let step = Grid::by(SIZE, |x, _| MapNode { value: if x < 20 { 0.0 } else { 40.0 }, block: 0, is_open: false });
+        let value = |x: usize| if x < 20 { 0.0 } else { 40.0 };
+        let step = Grid::by(SIZE, |x, _| MapNode { value: value(x), is_torn: [false; 2], is_open: false });
         let moved = apart(&step, &smoothed(&step, 5.0));
         assert!((moved - 2.5).abs() < 1e-9, "{moved}");
     }

@@ -40,3 +40,21 @@ fn a_layer_that_is_thinner_than_letters_takes_none_and_a_wedge_takes_them_where_
     assert!(text.letters.iter().all(|letter| letter.at.x > 120.0));
     assert!(wedge.thickest().unwrap().0.x > 290.0);
 }
+
+/// A layer that thickens towards a face's edge, as far as that edge and beyond it: the name keeps half an em from it.
+#[test]
+fn a_name_keeps_off_the_edges_of_its_face() {
+    let name = Text::new(DVec2::ZERO, "Lower sandstone");
+    let room = LabelRoom::new(Rect::sized(DVec2::ZERO, DVec2::new(300.0, 200.0)));
+    let bend = |x: f64| 100.0 - 40.0 * (x / 300.0 * std::f64::consts::PI).cos();
+    for edge in [300.0, 150.0] {
+        let mut piece = piece(|x| bend(x) - 2.0 - 0.06 * x, |x| bend(x) + 2.0 + 0.06 * x);
+        let corners = [[0.0, 0.0], [edge, 0.0], [edge, 200.0], [0.0, 200.0]].map(DVec2::from_array);
+        piece.seen = vec![corners.to_vec()];
+        piece.lines.iter_mut().flatten().for_each(|place| place.is_seen = place.at.x < edge);
+        let (text, _) = piece.named(&name, &room).unwrap();
+        let letters = text.straight();
+        let last = letters.iter().flat_map(|letter| letter.corners()).map(|p| p.x).fold(0.0, f64::max);
+        assert!(last < edge - 0.4 * text.size, "{last} of {edge}");
+    }
+}

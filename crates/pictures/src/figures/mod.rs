@@ -162,13 +162,16 @@ fn warn_of_boxes(page: &DisplayList, progress: &Progress) {
     texts.sort_unstable();
     texts.dedup();
     if let Some(first) = texts.first() {
-        let more = if texts.len() > 1 { format!(" and {} more", texts.len() - 1) } else { String::new() };
+        let subject = match texts.len() - 1 {
+            0 => format!("\"{first}\" has"),
+            more => format!("\"{first}\" and {more} more have"),
+        };
         let mut lacking: Vec<char> = texts.iter().flat_map(|text| text.chars()).filter(|c| is_box(*c)).collect();
         lacking.sort_unstable();
         lacking.dedup();
         let advice = fonts::advice(lacking);
         progress.warn(format!(
-            "\"{first}\"{more} has letters that the figures' face lacks, and they are drawn as boxes; the face has Latin, \
+            "{subject} letters that the figures' face lacks, and they are drawn as boxes; the face has Latin, \
              Greek and Cyrillic letters: name a font file with the others by --font FILE, or by `fonts = [\"FILE\"]` at the \
              top of project.toml{advice}"
         ));

@@ -143,11 +143,17 @@ impl FacePainter<'_> {
         }
     }
 
+    /// The pattern of an interval in a region, or its mean colour where the region is too thin for it.
     fn drawn(&self, pattern: &FacePattern, interval: &IntervalEntry, rings: &[Vec<DVec2>], tile: &Tile) -> AreaFill {
         let ink = |[r, g, b]: [f32; 3]| self.toned(if interval.ink[3] > 0.5 { interval.ink } else { [r, g, b, 1.0] });
         let rings_px = self.outline(rings);
+        let Some(parts) = pattern.drawn(rings, tile, thickness(&rings_px)) else {
+            let [low, high] = interval.k.map(|k| k.clamp(0.0, 1.0));
+            let [r, g, b] = self.resolved.tables.average_colour(u32::from(pattern.region.layer), 0.5 * (low + high));
+            return AreaFill::Colour(self.toned([r, g, b, 1.0]));
+        };
         let outline = Outline::new(&rings_px);
-        let parts = pattern.drawn(rings, tile).into_iter().map(|part| PatternPart {
+        let parts = parts.into_iter().map(|part| PatternPart {
             lines: outline.cut(&part.paint, part.lines),
             paint: part.paint,
             colour: ink(part.colour),
@@ -155,6 +161,13 @@ impl FacePainter<'_> {
         });
         AreaFill::Pattern(parts.filter(|part| !part.lines.is_empty()).collect())
     }
+}
+
+/// How thick a strip within these rings is, a ring and its holes: twice its area by the length of its sides.
+fn thickness(rings: &[Vec<DVec2>]) -> f64 {
+    let sides = || rings.iter().flat_map(|ring| (0..ring.len()).map(|n| [ring[n], ring[(n + 1) % ring.len()]]));
+    let twice: f64 = sides().map(|[a, b]| a.perp_dot(b)).sum();
+    twice.abs() / sides().map(|[a, b]| a.distance(b)).sum::<f64>().max(1e-9)
 }
 
 /// What a layer is filled with.

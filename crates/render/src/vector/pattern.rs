@@ -19,7 +19,7 @@ use ttf::{FaceFrame, Mapping, TileDrawing, TilePaint, TileSegment, TileShape};
 const CELL: f64 = 1.0;
 /// Most cells on a side of the lattice.
 const MOST_CELLS: f64 = 1024.0;
-/// A cell over which the pattern changes by more tiles than this is left out: the map folds there.
+/// A cell over which the pattern changes by more tiles is left out: the map folds there.
 const MOST_TILES: f64 = 64.0;
 /// Newton's method stops this close, tile units.
 const CLOSE: f64 = 2e-4;
@@ -39,6 +39,8 @@ const CURVE_PARTS: u32 = 2;
 const DOT: f64 = 0.12;
 /// Where dots are left out: so much narrower than in the middle of the area.
 const SQUEEZED: f64 = 0.3;
+/// Areas thinner than this have no pattern, heights of a tile: less than a row of bricks.
+const SCRAP: f64 = 0.06;
 /// A line is torn where its places still lie this far apart after [`DEEPEST`] divisions, pixels.
 const TORN_PX: f64 = 1.5;
 
@@ -163,10 +165,10 @@ impl Lattice {
 }
 
 impl FacePattern<'_> {
-    /// The pattern over an area, (s, t), back to front.
-    pub(super) fn drawn(&self, rings: &[Vec<DVec2>], tile: &Tile) -> Vec<DrawnPart> {
-        let groups = alike(&tile.drawing);
-        let Some(lattice) = Lattice::over(rings).filter(|_| !groups.is_empty()) else { return Vec::new() };
+    /// The pattern over an area, (s, t), back to front; `None` where that is too thin for it.
+    pub(super) fn drawn(&self, rings: &[Vec<DVec2>], tile: &Tile, thickness_px: f64) -> Option<Vec<DrawnPart>> {
+        let groups = tile.drawing.alike();
+        let Some(lattice) = Lattice::over(rings).filter(|_| !groups.is_empty()) else { return Some(Vec::new()) };
         let frame = self.frame;
         let mappings = frame.mappings(self.resolved.tables.globals.aspect_j);
         let [horizontal, vertical] = self.frequency.map(f64::from);
@@ -178,10 +180,14 @@ impl FacePattern<'_> {
             let is_mine: Vec<bool> = leading.iter().map(|leading| *leading == Some(n)).collect();
             if is_mine.iter().any(|mine| *mine) {
                 let cells = MappedCells { face: self, mapping, scale, lattice: &lattice, is_mine };
-                parts.extend(cells.drawn(tile, &groups));
+                let px_from_tile = cells.px_from_tile();
+                if thickness_px < SCRAP * px_from_tile.x_axis.length() / tile.aspect {
+                    return None;
+                }
+                parts.extend(cells.drawn(tile, &groups, px_from_tile));
             }
         }
-        parts
+        Some(parts)
     }
 
     /// The mapping with the largest weight in a cell of the area.
@@ -214,23 +220,6 @@ impl FacePattern<'_> {
     fn px(&self, st: DVec2) -> DVec2 {
         self.resolved.view.project(self.plane.voxel(st))
     }
-}
-
-/// Shapes of a tile that follow one another and look alike, as ranges.
-fn alike(drawing: &TileDrawing) -> Vec<std::ops::Range<usize>> {
-    let mut groups: Vec<std::ops::Range<usize>> = Vec::new();
-    for (n, shape) in drawing.shapes.iter().enumerate() {
-        let same = |first: &TileShape| {
-            (&first.paint, first.colour, first.opacity) == (&shape.paint, shape.colour, shape.opacity)
-                // Copies that lie over one another would cancel.
-                && shape.paint != TilePaint::Area { even_odd: true }
-        };
-        match groups.last_mut().filter(|group| same(&drawing.shapes[group.start])) {
-            Some(group) => group.end = n + 1,
-            None => groups.push(n..n + 1),
-        }
-    }
-    groups
 }
 
 impl MappedCells<'_> {
@@ -271,9 +260,9 @@ impl MappedCells<'_> {
     }
 
     /// The parts of the pattern in these cells.
-    fn drawn(&self, tile: &Tile, groups: &[std::ops::Range<usize>]) -> Vec<DrawnPart> {
+    fn drawn(&self, tile: &Tile, groups: &[std::ops::Range<usize>], px_from_tile: DMat2) -> Vec<DrawnPart> {
         let copies: Vec<(Copy, DVec2)> = self.copies(&tile.drawing).into_iter().collect();
-        let px_per_tile = self.pixels_per_tile(tile.aspect);
+        let px_per_tile = (px_from_tile.determinant().abs() * tile.aspect).sqrt();
         let traced: Vec<(usize, Vec<Polyline>)> = copies
             .par_iter()
             .map(|((shape, m, n), near)| {
@@ -285,8 +274,9 @@ impl MappedCells<'_> {
         for group in groups {
             let lines = traced.iter().filter(|(shape, _)| group.contains(shape));
             let shape = &tile.drawing.shapes[group.start];
+            let px_across = px_across(&tile.drawing.shapes[group.clone()], px_from_tile, tile.aspect);
             let part = |lines: Vec<Polyline>| DrawnPart {
-                paint: paint(&shape.paint, px_per_tile),
+                paint: paint(&shape.paint, [px_across, px_per_tile * px_per_tile / px_across.max(1e-9)]),
                 colour: shape.colour,
                 opacity: shape.opacity,
                 lines,
@@ -384,28 +374,38 @@ impl MappedCells<'_> {
         low.cmple(at).all() && high.cmpge(at).all()
     }
 
-    /// Pixels to the width of an undistorted tile of the size that tiles have in the middle of the area.
-    fn pixels_per_tile(&self, aspect: f64) -> f64 {
+    /// How tiles lie in the middle of the area: pixels from tile units, (u, v).
+    fn px_from_tile(&self) -> DMat2 {
         let mine: Vec<usize> = (0..self.is_mine.len()).filter(|cell| self.is_mine[*cell]).collect();
         let every = mine.len().div_ceil(200).max(1);
-        let size = |cell: &usize| {
+        let map = |cell: &usize| {
             let st = self.lattice.middle(*cell);
             let [s, t] = [DVec2::X, DVec2::Y].map(|axis| (self.face.px(st + 1e-3 * axis) - self.face.px(st)) * 1e3);
-            let (_, change) = self.uv(st);
-            ((s.perp_dot(t) / change.determinant()).abs() * aspect).sqrt()
+            DMat2::from_cols(s, t) * self.uv(st).1.inverse()
         };
-        let mut sizes: Vec<f64> = mine.iter().step_by(every).map(size).filter(|size| size.is_finite()).collect();
-        sizes.sort_by(f64::total_cmp);
-        sizes.get(sizes.len() / 2).copied().unwrap_or(0.0)
+        let mut maps: Vec<DMat2> = mine.iter().step_by(every).map(map).filter(DMat2::is_finite).collect();
+        maps.sort_by(|a, b| a.determinant().abs().total_cmp(&b.determinant().abs()));
+        maps.get(maps.len() / 2).copied().unwrap_or(DMat2::ZERO)
     }
 }
 
-fn paint(paint: &TilePaint, px_per_tile: f64) -> PatternPaint {
+/// Pixels to a stroke's width of a tile, the mean over all its directions: on a face seen aslant they differ.
+fn px_across(shapes: &[TileShape], px_from_tile: DMat2, aspect: f64) -> f64 {
+    let px_from_square = px_from_tile * DMat2::from_diagonal(DVec2::new(1.0, aspect));
+    let area = px_from_square.determinant().abs();
+    let steps = || shapes.iter().flat_map(|shape| shape.steps(aspect)).map(DVec2::from_array);
+    let across = |step: DVec2| area * step.length_squared() / (px_from_square * step).length().max(1e-12);
+    let (sum, long): (f64, f64) = (steps().map(across).sum(), steps().map(DVec2::length).sum());
+    if long > CLOSE { sum / long } else { area.sqrt() }
+}
+
+/// A paint in pixels, by those to a tile's width across strokes and along them.
+fn paint(paint: &TilePaint, [px_across, px_along]: [f64; 2]) -> PatternPaint {
     match paint {
         TilePaint::Area { even_odd } => PatternPaint::Area { even_odd: *even_odd },
         TilePaint::Line { width, dashes, round } => PatternPaint::Line {
-            width_px: width * px_per_tile,
-            dashes_px: dashes.iter().map(|dash| dash * px_per_tile).collect(),
+            width_px: width * px_across,
+            dashes_px: dashes.iter().map(|dash| dash * px_along).collect(),
             round: *round,
         },
     }

@@ -172,6 +172,22 @@ fn lines_have_the_names_of_horizons_and_faults() {
     assert_eq!(traced.lines[2].parts.len(), 1);
 }
 
+/// Beds thinner than a course of bricks are flat tints of the pattern's mean colour; thick ones keep the pattern.
+#[test]
+fn beds_too_thin_for_their_pattern_have_its_mean_colour() {
+    let geometry = SurveyGeometry::regular([41, 31, 61], 10.0, 10.0, VerticalUnit::Metres);
+    let block = bricks(&ClosedForm::flat(&geometry, &[20.0, 20.1]));
+    let traced = traced(&head_on([400, 300]), &block);
+    let of = |layer: u16| -> Vec<&AreaFill> {
+        traced.areas.iter().filter(|area| area.layer == layer).map(|area| &area.fill).collect()
+    };
+    assert!(!lines(&traced, 0).is_empty() && !lines(&traced, 2).is_empty());
+    let [AreaFill::Colour(whole), AreaFill::Colour(tint)] = of(1)[..] else { panic!("it has its pattern") };
+    // Darker than the layer's colour by the ink of its bricks.
+    let darker = whole.luminance() - tint.luminance();
+    assert!((0.02..0.3).contains(&darker), "{whole} and {tint}");
+}
+
 /// A fault that was given a colour is drawn in it, as paths and as pixels, and printed as the preset says.
 #[test]
 fn a_fault_has_the_colour_that_it_was_given() {

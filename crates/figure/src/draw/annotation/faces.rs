@@ -176,7 +176,7 @@ impl FaceWriter<'_> {
 /// page that the block covers.
 ///
 /// Places in rings around each anchor are tried; short leaders are best, and those that run across rather than up.
-fn leader(anchors: &[DVec2], name: &str, faces: &[Vec<DVec2>], room: &mut LabelRoom) -> Option<Group> {
+pub(crate) fn leader(anchors: &[DVec2], name: &str, faces: &[Vec<DVec2>], room: &mut LabelRoom) -> Option<Group> {
     // The name right and left of (0, 0), and its outline there.
     let sides = [(Across::Start, 2.0), (Across::End, -2.0)].map(|(across, aside)| {
         let text = Text::new(DVec2::new(aside, 0.0), name).sized(TEXT_PT - 0.5).anchored(across, Upright::Middle);

@@ -14,7 +14,9 @@ mod queries;
 pub(crate) mod room;
 mod wells;
 
-pub(crate) use faces::{FaceLabels, FaceWriter};
+pub(crate) use faces::{FaceLabels, FaceWriter, leader};
+pub(crate) use names::turning;
+pub(crate) use room::{LabelRoom, outlines};
 
 use super::moved::ON_BLOCK;
 use super::seen::Sight;
@@ -26,7 +28,6 @@ use page::Rect;
 use page::list::{Group, GroupKind, Item, POINTS_PER_INCH, Text};
 use render::vector::seen_sections;
 use render::{FaceData, Faces, Scene, Unpicked, View};
-use room::LabelRoom;
 use survey::{SurveyGeometry, Well};
 
 /// Most of its width and height that a picture gives up for labels beside it.

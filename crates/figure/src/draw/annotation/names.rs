@@ -29,8 +29,12 @@ const OVER_CAPITALS: f64 = 0.1;
 const RIMS: [f64; 4] = [1.0, 0.85, 0.7, 0.5];
 /// How far before an edge a leader ends in a layer that reaches it, points.
 const BEFORE_PT: [f64; 2] = [2.5, 8.0];
+/// What is seen thinner than this is not named, points: a face seen along its plane.
+const LEAST_SEEN_PT: f64 = 0.05;
 /// Steeper words are hard to read, degrees.
 const STEEPEST_DEG: f64 = 70.0;
+/// Room before and behind a name in its layer, in sizes of its letters; up to the second a place with more room is better.
+const ENDS_EM: [f64; 2] = [0.5, 2.5];
 
 /// A piece of a layer in one fault block on a face, as it lies on the page.
 pub(super) struct LayerPiece {
@@ -112,19 +116,24 @@ fn middle_lines(rings: &[Vec<DVec2>], extent: f64, placed: &dyn Fn(DVec2) -> DVe
     runs
 }
 
-/// A line with places `STEP_PT` apart, smoothed.
-fn smooth(run: &[(DVec2, f64)]) -> Vec<DVec2> {
+/// Places `STEP_PT` apart along a line.
+fn evenly(line: &[DVec2]) -> Vec<DVec2> {
     let mut even: Vec<DVec2> = Vec::new();
     let mut left = 0.0;
-    for pair in run.windows(2) {
-        let (a, b) = (pair[0].0, pair[1].0);
-        let length = a.distance(b);
+    for pair in line.windows(2) {
+        let length = pair[0].distance(pair[1]);
         while left < length {
-            even.push(a.lerp(b, left / length));
+            even.push(pair[0].lerp(pair[1], left / length));
             left += STEP_PT;
         }
         left -= length;
     }
+    even
+}
+
+/// A line with places `STEP_PT` apart, smoothed.
+fn smooth(run: &[(DVec2, f64)]) -> Vec<DVec2> {
+    let mut even = evenly(&run.iter().map(|(at, _)| *at).collect::<Vec<_>>());
     let reach = (SMOOTH_PT / STEP_PT) as usize;
     for _ in 0..2 {
         let mean = |n: usize| {
@@ -134,7 +143,8 @@ fn smooth(run: &[(DVec2, f64)]) -> Vec<DVec2> {
         };
         even = (0..even.len()).map(mean).collect();
     }
-    even
+    // Smoothing shortens bends.
+    evenly(&even)
 }
 
 impl LayerPiece {
@@ -167,16 +177,21 @@ impl LayerPiece {
     fn along(&self, line: &[LinePlace], text: &Text, room: &LabelRoom) -> Vec<(Text, f64)> {
         let places: Vec<DVec2> = line.iter().map(|place| place.at).collect();
         let (length, width) = (line.len().saturating_sub(1) as f64 * STEP_PT, text.width());
+        let [least, most] = ENDS_EM.map(|em| em * text.size);
         let mut found = Vec::new();
-        let mut middle = 0.5 * width + text.size * 0.5;
-        while middle <= length - 0.5 * width - text.size * 0.5 {
+        let mut middle = 0.5 * width + least;
+        while middle <= length - 0.5 * width - least {
             let [first, last] = [middle - 0.5 * width, middle + 0.5 * width].map(|at| (at / STEP_PT) as usize);
-            let below = &line[first.min(line.len() - 1)..=last.min(line.len() - 1)];
+            let (first, last) = (first.min(line.len() - 1), last.min(line.len() - 1));
+            let below = &line[first..=last];
             let thick = below.iter().map(|place| place.thick).fold(f64::INFINITY, f64::min);
             if thick > 0.9 * text.size && below.iter().all(|place| place.is_seen) {
+                let seen = |places: usize| places as f64 * STEP_PT;
+                let before = seen(line[..first].iter().rev().take_while(|place| place.is_seen).count());
+                let behind = seen(line[last + 1..].iter().take_while(|place| place.is_seen).count());
                 let bent = text.clone().along(&places, middle);
-                if let Some(turn) = readable(&bent).filter(|_| self.holds(&bent) && room.is_free(&bent)) {
-                    found.push((bent, thick.min(5.0 * text.size) - 0.6 * turn));
+                if let Some(turn) = readable(&bent).filter(|_| self.holds(&bent, least) && room.is_free(&bent)) {
+                    found.push((bent, thick.min(5.0 * text.size) - 0.6 * turn + before.min(behind).min(most)));
                 }
             }
             middle += 2.0 * STEP_PT;
@@ -184,10 +199,21 @@ impl LayerPiece {
         found
     }
 
-    /// Whether all letters lie within the piece, and are seen.
-    fn holds(&self, text: &Text) -> bool {
-        text.straight().iter().map(letter_box).all(|letter| {
-            !self.is_crossed(&letter) && self.is_inside(letter[0]) && letter.iter().all(|corner| self.is_seen(*corner))
+    /// Whether all letters lie within the piece, and are seen, with so much room before the first and behind the last.
+    fn holds(&self, text: &Text, ends: f64) -> bool {
+        let mut areas: Vec<[DVec2; 4]> = text.straight().iter().map(letter_box).collect();
+        areas.sort_by(|a, b| a[0].x.total_cmp(&b[0].x));
+        // Room for the middle of letters: the layer may bend.
+        let beyond = |[a, b, c, d]: [DVec2; 4], by: f64| {
+            let step = (b - a).normalize_or_zero() * by;
+            let side = if by < 0.0 { [a.lerp(d, 0.3), a.lerp(d, 0.7)] } else { [b.lerp(c, 0.3), b.lerp(c, 0.7)] };
+            [side[0], side[0] + step, side[1] + step, side[1]]
+        };
+        let before = areas.first().map(|first| beyond(*first, -ends));
+        let behind = areas.last().map(|last| beyond(*last, ends));
+        areas.extend(before.into_iter().chain(behind));
+        areas.iter().all(|area| {
+            !self.is_crossed(area) && self.is_inside(area[0]) && area.iter().all(|corner| self.is_seen(*corner))
         })
     }
 
@@ -239,7 +265,8 @@ impl LayerPiece {
     }
 
     fn seen_places(&self) -> impl Iterator<Item = &LinePlace> {
-        self.lines.iter().flatten().filter(|place| place.is_seen && self.is_inside(place.at))
+        let places = self.lines.iter().flatten();
+        places.filter(|place| place.thick >= LEAST_SEEN_PT && place.is_seen && self.is_inside(place.at))
     }
 }
 
@@ -266,14 +293,19 @@ fn is_near(side: &[DVec2; 2], letter: &[DVec2]) -> bool {
     side[0].min(side[1]).cmple(high).all() && side[0].max(side[1]).cmpge(low).all()
 }
 
-/// How much a bent text turns from its first letter to its last, degrees; `None` where it is hard to read.
+/// How much a bent text turns from its first letter to its last, degrees; `None` where it is too steep or bent to be read.
 fn readable(text: &Text) -> Option<f64> {
+    let is_upright = text.straight().iter().all(|letter| letter.turn_deg.abs() < STEEPEST_DEG);
+    turning(text).filter(|_| is_upright)
+}
+
+/// How much a bent text turns from its first letter to its last, degrees; `None` where it is too bent to be read.
+pub(crate) fn turning(text: &Text) -> Option<f64> {
     let turns: Vec<f64> = text.straight().iter().map(|letter| letter.turn_deg).collect();
     let jump = turns.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
     let low = turns.iter().copied().fold(f64::INFINITY, f64::min);
     let high = turns.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let is_upright = low > -STEEPEST_DEG && high < STEEPEST_DEG;
-    (is_upright && jump < MOST_TURN_DEG[0] && high - low < MOST_TURN_DEG[1]).then_some(high - low)
+    (jump < MOST_TURN_DEG[0] && high - low < MOST_TURN_DEG[1]).then_some(high - low)
 }
 
 #[cfg(test)]

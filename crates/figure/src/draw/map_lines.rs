@@ -1,10 +1,11 @@
-//! Values on index contours, after cartographers' habits (Imhof, 1975).
+//! Contours with their values on a map, after cartographers' habits (Imhof, 1975), and the faults over them.
 //!
 //! A value stands in its line, which is broken for it, along it, upright, where the line is straightest;
 //! none over another, none where there is no room. Space: points of the page.
 
-use super::{FaultCut, HorizonMap};
-use crate::style::{FAULT_PT, INK, NUMBER_PT};
+use super::map_faults::faults_drawn;
+use crate::map::HorizonMap;
+use crate::style::{INK, NUMBER_PT};
 use glam::DVec2;
 use page::Rect;
 use page::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright, width_of};
@@ -22,18 +23,8 @@ const AGAIN: f64 = 230.0;
 const WIDTH: [f64; 2] = [0.9, 0.4];
 /// Their opacity.
 const OPACITY: [f32; 2] = [0.9, 0.6];
-/// Dashes of faults that are covered, points.
-const COVERED: [f64; 2] = [3.5, 2.0];
 /// Height of a line of figures, font sizes.
 const LINE: f64 = 1.1;
-
-/// Where labels may stand.
-pub(crate) struct Room {
-    /// Within this.
-    pub within: Rect,
-    /// But not here.
-    pub taken: Vec<Rect>,
-}
 
 /// A place for a label on a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,13 +37,13 @@ struct Label {
 }
 
 /// A line with the distance of each of its places from the first.
-struct Measured {
+pub(super) struct Measured {
     places: Vec<DVec2>,
     along: Vec<f64>,
 }
 
 impl Measured {
-    fn of(places: Vec<DVec2>) -> Self {
+    pub(super) fn of(places: Vec<DVec2>) -> Self {
         let mut along = vec![0.0; places.len()];
         for n in 1..places.len() {
             along[n] = along[n - 1] + places[n].distance(places[n - 1]);
@@ -60,18 +51,18 @@ impl Measured {
         Self { places, along }
     }
 
-    fn length(&self) -> f64 {
+    pub(super) fn length(&self) -> f64 {
         self.along.last().copied().unwrap_or(0.0)
     }
 
-    fn at(&self, s: f64) -> DVec2 {
+    pub(super) fn at(&self, s: f64) -> DVec2 {
         let n = self.along.partition_point(|&along| along < s).clamp(1, self.places.len() - 1);
         let step = (self.along[n] - self.along[n - 1]).max(1e-9);
         self.places[n - 1].lerp(self.places[n], ((s - self.along[n - 1]) / step).clamp(0.0, 1.0))
     }
 
     /// The places from one distance to another.
-    fn part(&self, [from, to]: [f64; 2]) -> Vec<DVec2> {
+    pub(super) fn part(&self, [from, to]: [f64; 2]) -> Vec<DVec2> {
         let inner = self.places.iter().zip(&self.along).filter(|(_, along)| (from..to).contains(*along));
         std::iter::once(self.at(from)).chain(inner.map(|(place, _)| *place)).chain([self.at(to)]).collect()
     }
@@ -90,18 +81,14 @@ impl Measured {
     }
 
     /// Where labels of a size go: the straightest free place first, then others at a distance from it.
-    fn labels(&self, size: DVec2, room: &Room, taken: &mut Vec<Label>) -> Vec<Label> {
+    fn labels(&self, size: DVec2, within: Rect, taken: &mut Vec<Label>) -> Vec<Label> {
         if self.places.len() < 2 {
             return Vec::new();
         }
         let steps = ((self.length() - size.x - 2.0 * GAP) / STEP).floor().max(-1.0) as i64;
-        let inner = room.within.grown(-0.5 * size.x);
-        let is_free = |label: &Label| {
-            let reach = 0.5 * size.x.max(size.y);
-            inner.contains(label.middle) && !room.taken.iter().any(|rect| rect.grown(reach).contains(label.middle))
-        };
+        let inner = within.grown(-0.5 * size.x);
         let tried = (0..=steps).filter_map(|n| self.label(n as f64 * STEP, size));
-        let mut tried: Vec<(f64, Label)> = tried.filter(|(_, label)| is_free(label)).collect();
+        let mut tried: Vec<(f64, Label)> = tried.filter(|(_, label)| inner.contains(label.middle)).collect();
         tried.sort_by(|a, b| b.0.total_cmp(&a.0));
         let closed = self.places.first() == self.places.last();
         let mut own: Vec<Label> = Vec::new();
@@ -120,6 +107,15 @@ impl Measured {
 }
 
 impl Label {
+    /// A text that stands elsewhere, letter by letter.
+    fn of_text(text: &Text) -> Vec<Self> {
+        let of_line = |line: Text| {
+            let [a, b, c, d] = line.corners();
+            Self { part: [0.0; 2], middle: (a + b + c + d) / 4.0, half: 0.5 * (b - a) }
+        };
+        text.straight().into_iter().map(of_line).collect()
+    }
+
     fn ends(&self) -> [DVec2; 2] {
         [self.middle - self.half, self.middle + self.half]
     }
@@ -141,33 +137,6 @@ fn off(p: DVec2, [a, b]: [DVec2; 2]) -> f64 {
     p.distance(a + way * share)
 }
 
-/// The lines of faults, each with its name in the longest of them where there is room; covered ones are dashed.
-fn faults_drawn(cuts: &[FaultCut], page: &impl Fn(DVec2) -> DVec2, room: &Room, taken: &mut Vec<Label>) -> Vec<Item> {
-    let mut groups = Vec::new();
-    for cuts in cuts.chunk_by(|a, b| a.fault == b.fault) {
-        let name = &cuts[0].name;
-        let mut group = Group::new(GroupKind::Fault, name);
-        let (mut seen, mut covered) = (Path::default(), Path::default());
-        let mut longest: Option<Measured> = None;
-        for cut in cuts {
-            let line = Measured::of(cut.line.iter().map(|place| page(*place)).collect());
-            if cut.is_covered { &mut covered } else { &mut seen }.add_line(&line.places);
-            if !cut.is_covered && longest.as_ref().is_none_or(|known| known.length() < line.length()) {
-                longest = Some(line);
-            }
-        }
-        let stroke = Stroke::new(FAULT_PT, INK).round();
-        group.push(PathItem::stroked(seen, stroke.clone()));
-        group.push(PathItem::stroked(covered, Stroke { width: 0.6 * FAULT_PT, dashes: COVERED.to_vec(), ..stroke }));
-        let size = DVec2::new(width_of(name, NUMBER_PT), LINE * NUMBER_PT);
-        if let Some(label) = longest.and_then(|line| line.labels(size, room, taken).into_iter().next()) {
-            group.push(in_line(&label, name.clone()).haloed(1.4, Ink::glass(Colour::WHITE, 0.9)));
-        }
-        groups.push(group.into());
-    }
-    groups
-}
-
 /// A text in a line.
 fn in_line(label: &Label, text: String) -> Text {
     let text = Text::new(label.middle, text).sized(NUMBER_PT).inked(INK);
@@ -175,14 +144,15 @@ fn in_line(label: &Label, text: String) -> Text {
     text.haloed(0.9, Ink::glass(Colour::WHITE, 0.75))
 }
 
-/// The faults and contours, and over all of them the names of faults and the values of index contours where there is room.
-pub(crate) fn drawn(shown: &HorizonMap, page: impl Fn(DVec2) -> DVec2, room: &Room) -> [Group; 2] {
+/// The faults and contours, and over all of them the names of faults and the values of index contours where there is room
+/// within a rectangle; `outline` is that of the map.
+pub(super) fn drawn(shown: &HorizonMap, page: impl Fn(DVec2) -> DVec2, within: Rect, outline: &[DVec2]) -> [Group; 2] {
     let stroke = |is_index: bool| {
         let n = usize::from(!is_index);
         Stroke::new(WIDTH[n], Ink::glass(Colour::BLACK, OPACITY[n]))
     };
-    let mut taken = Vec::new();
-    let faults = faults_drawn(&shown.faults, &page, room, &mut taken);
+    let (faults, names) = faults_drawn(&shown.faults, &page, within, outline);
+    let mut taken: Vec<Label> = names.iter().flat_map(Label::of_text).collect();
     let (mut plain, mut index) = (Path::default(), Path::default());
     let mut texts: Vec<Item> = Vec::new();
     for contour in &shown.contours {
@@ -192,7 +162,7 @@ pub(crate) fn drawn(shown: &HorizonMap, page: impl Fn(DVec2) -> DVec2, room: &Ro
             continue;
         }
         let text = format!("{}", contour.value);
-        let labels = line.labels(DVec2::new(width_of(&text, NUMBER_PT), LINE * NUMBER_PT), room, &mut taken);
+        let labels = line.labels(DVec2::new(width_of(&text, NUMBER_PT), LINE * NUMBER_PT), within, &mut taken);
         let mut from = 0.0;
         for label in &labels {
             index.add_line(&line.part([from, label.part[0]]));
@@ -223,15 +193,15 @@ mod tests {
         Measured::of((0..=length).map(|n| at(n as f64)).collect())
     }
 
-    fn room() -> Room {
-        Room { within: Rect::new(DVec2::ZERO, DVec2::new(400.0, 300.0)), taken: Vec::new() }
+    fn room() -> Rect {
+        Rect::new(DVec2::ZERO, DVec2::new(400.0, 300.0))
     }
 
     #[test]
     fn a_label_lies_along_its_line_and_upright_whichever_way_it_goes() {
         for sign in [1.0, -1.0] {
             let slanted = line(200, |s| DVec2::new(200.0 + sign * 0.8 * (s - 100.0), 150.0 + sign * 0.6 * (s - 100.0)));
-            let labels = slanted.labels(SIZE, &room(), &mut Vec::new());
+            let labels = slanted.labels(SIZE, room(), &mut Vec::new());
             assert_eq!(labels.len(), 1);
             assert!((labels[0].half.to_angle() - 0.6f64.atan2(0.8)).abs() < 1e-9);
             assert!((labels[0].part[1] - labels[0].part[0] - 30.0 - 2.0 * GAP).abs() < 1e-9);
@@ -242,20 +212,23 @@ mod tests {
     fn labels_keep_off_bends_rims_taken_places_and_one_another() {
         // A right angle: straight on both sides of its corner at 100.
         let bent = line(200, |s| if s < 100.0 { DVec2::new(100.0 + s, 100.0) } else { DVec2::new(200.0, s) });
-        for label in bent.labels(SIZE, &room(), &mut Vec::new()) {
+        for label in bent.labels(SIZE, room(), &mut Vec::new()) {
             assert!(label.part[1] <= 107.0 || label.part[0] >= 93.0, "{label:?}");
         }
         let ring = line(60, |s| DVec2::new(200.0, 150.0) + 9.0 * DVec2::from_angle(s * PI / 30.0));
-        assert!(ring.labels(SIZE, &room(), &mut Vec::new()).is_empty(), "no room on a ring of 9 points");
+        assert!(ring.labels(SIZE, room(), &mut Vec::new()).is_empty(), "no room on a ring of 9 points");
         let outside = line(200, |s| DVec2::new(s, 3.0));
-        assert!(outside.labels(SIZE, &room(), &mut Vec::new()).is_empty());
-        let legend = Room { taken: vec![Rect::new(DVec2::new(0.0, 80.0), DVec2::new(400.0, 120.0))], ..room() };
-        let under = line(200, |s| DVec2::new(100.0 + s, 100.0));
-        assert!(under.labels(SIZE, &legend, &mut Vec::new()).is_empty());
+        assert!(outside.labels(SIZE, room(), &mut Vec::new()).is_empty());
+        // A name of a fault beside the line.
+        let name =
+            Text::new(DVec2::new(90.0, 106.0), "A fault with a name as long as the line beside it").sized(NUMBER_PT);
+        let under = line(60, |s| DVec2::new(100.0 + s, 100.0));
+        assert!(!under.labels(SIZE, room(), &mut Vec::new()).is_empty());
+        assert!(under.labels(SIZE, room(), &mut Label::of_text(&name)).is_empty());
         // Lines every 4 points: a label and its gap need more.
         let mut taken = Vec::new();
         for n in 0..12 {
-            line(200, |s| DVec2::new(100.0 + s, 100.0 + 4.0 * f64::from(n))).labels(SIZE, &room(), &mut taken);
+            line(200, |s| DVec2::new(100.0 + s, 100.0 + 4.0 * f64::from(n))).labels(SIZE, room(), &mut taken);
         }
         assert!(taken.len() >= 3);
         for (n, label) in taken.iter().enumerate() {
