@@ -12,10 +12,9 @@
 //! On the continuation of a fault both have the same mean, and a pattern goes on. Along the fault it begins to break within
 //! L of the tip line. On a horizon that the fault breaks nothing changes.
 
-use crate::LayerModel;
-use crate::RegionGrid;
 use crate::plan::horizons;
 use crate::touched::RegionColumns;
+use crate::{LayerModel, RegionGrid};
 use glam::Vec3;
 use model::{FaultNetwork, FaultSurface};
 use rayon::prelude::*;
@@ -28,7 +27,6 @@ pub const GROWN: usize = 12;
 const LENGTH: usize = GROWN + 3;
 /// Columns and samples between the places at which blocks are looked for that meet.
 const MEETS_EVERY: usize = 3;
-
 /// Levels between those at which the distance from faults is measured; between them it is interpolated.
 const WEIGHED_EVERY: usize = 4;
 /// A throw that does not count, voxels.
@@ -45,8 +43,8 @@ fn falling(x: f32) -> f32 {
     1.0 - x * x * (3.0 - 2.0 * x)
 }
 
-/// The mean of the calm sheets of one horizon, `[block]`, over the blocks whose `drawn` sheets are one surface: another counts by (1 − t²)² where they are
-/// t < 1 voxels apart.
+/// The mean of the calm sheets of one horizon, `[block]`, over the blocks whose `drawn` sheets are one surface: another
+/// counts by (1 − t²)² where they are t < 1 voxels apart.
 pub fn mean_of_sheets(drawn: &[&HeightField], calm: Vec<HeightField>) -> Vec<HeightField> {
     if calm.len() < 2 {
         return calm;
