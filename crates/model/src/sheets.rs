@@ -48,7 +48,7 @@ impl ExtendedSheet {
     }
 }
 
-/// The share of the nodes of a grid that are data or within [`SOLID_NODES`] nodes of it, which counts as picked everywhere.
+/// The share of the nodes of a grid that are data or within four nodes of it, which counts as picked everywhere.
 ///
 /// ```
 /// // One trace of a line of nine, in its middle.
