@@ -1870,8 +1870,9 @@ def pick(
     up : value, optional
         Climb this many levels above the leaf [default: 0].
     highest_valid : bool
-        Climb to the highest node that has no two depths at one trace but for a few: at most 2 % of its points over
-        itself, as noise leaves them, and 10 % over the horizon, as beside a fault that is not drawn.
+        Climb to the highest node that is a single sheet: at most 2 % of its points lie over itself, as noise leaves
+        them, and are left out of the horizon; at most 10 % lie over the rest of the horizon, as beside a fault that
+        is not drawn, which is then said.
     by_time : bool
         Add a new horizon that is the level of geologic time through the place, over the whole survey and across its
         faults, or correct one that was made so around the place; `petroglyph time` first.
@@ -1915,8 +1916,8 @@ def climb(
     levels : value, optional
         Levels.
     highest_valid : bool
-        Climb to the highest node that has no two depths at one trace but for a few: at most 2 % of its points over
-        itself, and 10 % over the rest of the horizon.
+        Climb to the highest node that is a single sheet: at most 2 % of its points lie over itself, as noise leaves
+        them, and are left out of the horizon; at most 10 % lie over the rest of it, which is then said.
     progress : callable, optional
         Called as ``progress(stage, done, total)``.
     """
