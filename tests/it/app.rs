@@ -1,7 +1,7 @@
 //! The window: told clearly where there can be none, and driven for real where there is a display to be had.
 
 use crate::program::{Run, command, project, run_in};
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -23,6 +23,19 @@ fn without_a_display_there_is_a_reason_and_a_way() {
 
 /// Ends a process however the test ends.
 struct Ended(Child);
+
+impl Ended {
+    /// Panics, with what the process said last, if it has ended by itself.
+    fn is_there(&mut self) {
+        if let Some(status) = self.0.try_wait().unwrap() {
+            let mut said = String::new();
+            if let Some(mut stderr) = self.0.stderr.take() {
+                stderr.read_to_string(&mut said).unwrap();
+            }
+            panic!("the window ended with {status}: {said}");
+        }
+    }
+}
 
 impl Drop for Ended {
     fn drop(&mut self) {
@@ -75,13 +88,13 @@ fn the_real_window_undoes_on_a_key_and_is_remembered_when_killed() {
     let start = Instant::now();
     // Its title begins with the project's name once that is open.
     while !tool(&["search", "--onlyvisible", "--name", "Petroglyph$", "windowfocus"]).status.success() {
-        assert!(window.0.try_wait().unwrap().is_none(), "the window ended");
+        window.is_there();
         assert!(start.elapsed() < PATIENCE, "no window shows");
         std::thread::sleep(Duration::from_millis(200));
     }
     // The key is given until the project is open and obeys it.
     while step(at) != before {
-        assert!(window.0.try_wait().unwrap().is_none(), "the window ended");
+        window.is_there();
         assert!(start.elapsed() < PATIENCE, "the window does not undo");
         tool(&["key", "ctrl+z"]);
         std::thread::sleep(Duration::from_secs(2));
