@@ -174,7 +174,30 @@ fn overshoots(patches: &[SheetPatch], mesh: &Mesh, trace_of: impl Fn(u32) -> usi
     for (p, patch) in patches.iter().enumerate() {
         patch.vertices.iter().for_each(|&v| patch_of[v as usize] = p as u32);
     }
-    // Traces of the larger patches of the block; blocks are done one after the other.
+    left_out(patches, trace_of, traces, |p, under, is_largest| {
+        let patch = &patches[p];
+        // Vertices at the fault: next to a larger patch of another block.
+        let at_fault = |v: &u32| {
+            mesh.neighbours(*v).iter().any(|&m| {
+                let across = &patches[patch_of[m as usize] as usize];
+                across.block != patch.block && across.vertices.len() > patch.vertices.len()
+            })
+        };
+        let fault: Vec<u32> = patch.vertices.iter().copied().filter(at_fault).collect();
+        let over = under as f64 >= OVERSHOT * patch.vertices.len() as f64;
+        !fault.is_empty() && !is_largest && (over || is_fringe(mesh, &patch_of, p as u32, fault))
+    })
+}
+
+/// Decides on the patches of each block, the largest first: `is_left_out` is told the patch, how many of its vertices lie
+/// over or under those that were kept, and whether it is the largest.
+fn left_out(
+    patches: &[SheetPatch],
+    trace_of: impl Fn(u32) -> usize,
+    traces: usize,
+    is_left_out: impl Fn(usize, usize, bool) -> bool,
+) -> Vec<bool> {
+    // Traces of what was kept in the block; blocks are done one after the other.
     let mut covered = vec![false; traces];
     let mut order: Vec<usize> = (0..patches.len()).collect();
     order.sort_by_key(|&p| (patches[p].block, std::cmp::Reverse(patches[p].vertices.len()), p));
@@ -182,21 +205,11 @@ fn overshoots(patches: &[SheetPatch], mesh: &Mesh, trace_of: impl Fn(u32) -> usi
     for of_block in order.chunk_by(|&a, &b| patches[a].block == patches[b].block) {
         covered.fill(false);
         for &p in of_block {
-            let patch = &patches[p];
-            let under = patch.vertices.iter().filter(|&&v| covered[trace_of(v)]).count();
-            // Vertices at the fault: next to a larger patch of another block.
-            let at_fault = |v: &u32| {
-                mesh.neighbours(*v).iter().any(|&m| {
-                    let across = &patches[patch_of[m as usize] as usize];
-                    across.block != patch.block && across.vertices.len() > patch.vertices.len()
-                })
-            };
-            let fault: Vec<u32> = patch.vertices.iter().copied().filter(at_fault).collect();
-            let over = under as f64 >= OVERSHOT * patch.vertices.len() as f64;
-            let second = p != of_block[0];
-            found[p] = !fault.is_empty() && second && (over || is_fringe(mesh, &patch_of, p as u32, fault));
+            let vertices = &patches[p].vertices;
+            let under = vertices.iter().filter(|&&v| covered[trace_of(v)]).count();
+            found[p] = is_left_out(p, under, p == of_block[0]);
             if !found[p] {
-                patch.vertices.iter().for_each(|&v| covered[trace_of(v)] = true);
+                vertices.iter().for_each(|&v| covered[trace_of(v)] = true);
             }
         }
     }
@@ -232,21 +245,10 @@ fn doubles(
     trace_of: impl Fn(u32) -> usize,
     traces: usize,
 ) -> Vec<bool> {
-    let mut covered = vec![false; traces];
-    let mut order: Vec<usize> = (0..patches.len()).collect();
-    order.sort_by_key(|&p| (patches[p].block, std::cmp::Reverse(patches[p].vertices.len()), p));
-    let mut found = vec![false; patches.len()];
-    for of_block in order.chunk_by(|&a, &b| patches[a].block == patches[b].block) {
-        covered.fill(false);
-        for &p in of_block {
-            let vertices = &patches[p].vertices;
-            let under = vertices.iter().filter(|&&v| covered[trace_of(v)]).count();
-            found[p] = under > 0 && under as f64 >= OVER * vertices.len() as f64 && !vertices.iter().any(&is_picked);
-            if !found[p] {
-                vertices.iter().for_each(|&v| covered[trace_of(v)] = true);
-            }
-        }
-    }
+    let mut found = left_out(patches, trace_of, traces, |p, under, _| {
+        let vertices = &patches[p].vertices;
+        under > 0 && under as f64 >= OVER * vertices.len() as f64 && !vertices.iter().any(&is_picked)
+    });
     let all: usize = patches.iter().map(|patch| patch.vertices.len()).sum();
     let doubled: usize = patches.iter().zip(&found).filter(|(_, found)| **found).map(|(p, _)| p.vertices.len()).sum();
     if doubled as f64 > DOUBLED * all as f64 { vec![false; patches.len()] } else { found }
