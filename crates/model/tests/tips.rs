@@ -9,14 +9,7 @@ use survey::{Fault, Horizon, Progress, SurveyGeometry, TriangleMesh, VerticalUni
 use synth::elliptic::EllipticFault;
 
 const SIZE: [usize; 3] = [80, 90, 70];
-/// It dips by some 60 degrees.
-const FAULT: EllipticFault = EllipticFault {
-    centre: DVec3::new(40.0, 45.0, 35.0),
-    axes: DVec2::new(26.0, 22.0),
-    lean: 0.24,
-    throw: 8.0,
-    width: 22.0,
-};
+const FAULT: EllipticFault = EllipticFault::EXAMPLE;
 const CENTRE: DVec3 = FAULT.centre;
 const AXES: DVec2 = FAULT.axes;
 /// Heights of the horizons in the absence of the fault.

@@ -1,6 +1,6 @@
 //! Beyond the tip of a fault rock is not broken, and neither are patterns.
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::Vec3;
 use model::{ModelSettings, StructuralModel};
 use param::{KDefinition, ParamSettings, Parameterization, Region};
 use survey::horizon::{NodeGrid, Quality, Sheet};
@@ -9,14 +9,7 @@ use survey::{Horizon, Progress, SurveyGeometry, VerticalUnit};
 use synth::elliptic::EllipticFault;
 
 const SIZE: [usize; 3] = [80, 90, 70];
-/// It dips by some 60 degrees and ends on all sides within the survey.
-const FAULT: EllipticFault = EllipticFault {
-    centre: DVec3::new(40.0, 45.0, 35.0),
-    axes: DVec2::new(26.0, 22.0),
-    lean: 0.24,
-    throw: 8.0,
-    width: 22.0,
-};
+const FAULT: EllipticFault = EllipticFault::EXAMPLE;
 /// Heights of the horizons at the middle of the survey, without the fault.
 const LEVELS: [f64; 3] = [20.0, 34.0, 50.0];
 

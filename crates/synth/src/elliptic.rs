@@ -24,6 +24,15 @@ pub struct EllipticFault {
 }
 
 impl EllipticFault {
+    /// One in the middle of 80 × 90 × 70 voxels of 25 × 25 × 10 m; it dips by some 60 degrees and ends on all sides within.
+    pub const EXAMPLE: Self = Self {
+        centre: DVec3::new(40.0, 45.0, 35.0),
+        axes: DVec2::new(26.0, 22.0),
+        lean: 0.24,
+        throw: 8.0,
+        width: 22.0,
+    };
+
     /// x of the fault at a depth.
     pub fn x_at(&self, z: f64) -> f64 {
         self.centre.x + self.lean * (z - self.centre.z)
