@@ -22,7 +22,7 @@ use survey::{Cancelled, HeightField, Progress};
 
 /// Columns by which the grid of a block reaches beyond it, so that its neighbours can take the mean with it. Over these
 /// its weight dies out.
-pub const GROWN: usize = 12;
+pub const GROWN: usize = 6;
 /// L in columns: a block is computed for three columns beyond it in any case.
 const LENGTH: usize = GROWN + 3;
 /// Columns and samples between the places at which blocks are looked for that meet.
