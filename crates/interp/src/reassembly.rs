@@ -245,7 +245,7 @@ fn doubles(
     trace_of: impl Fn(u32) -> usize,
     traces: usize,
 ) -> Vec<bool> {
-    let mut found = left_out(patches, trace_of, traces, |p, under, _| {
+    let found = left_out(patches, trace_of, traces, |p, under, _| {
         let vertices = &patches[p].vertices;
         under > 0 && under as f64 >= OVER * vertices.len() as f64 && !vertices.iter().any(&is_picked)
     });
