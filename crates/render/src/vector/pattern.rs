@@ -39,8 +39,10 @@ const CURVE_PARTS: u32 = 2;
 const DOT: f64 = 0.12;
 /// Where dots are left out: so much narrower than in the middle of the area.
 const SQUEEZED: f64 = 0.3;
-/// Areas thinner than this have no pattern, heights of a tile: less than a row of bricks.
+/// Beds thinner than this have no pattern, heights of a tile: less than a row of bricks.
 const SCRAP: f64 = 0.06;
+/// An area over less than this share of its layer's thickness is no bed but a corner of one.
+const ACROSS: f64 = 0.5;
 /// A line is torn where its places still lie this far apart after [`DEEPEST`] divisions, pixels.
 const TORN_PX: f64 = 1.5;
 
@@ -181,7 +183,8 @@ impl FacePattern<'_> {
             if is_mine.iter().any(|mine| *mine) {
                 let cells = MappedCells { face: self, mapping, scale, lattice: &lattice, is_mine };
                 let px_from_tile = cells.px_from_tile();
-                if thickness_px < SCRAP * px_from_tile.x_axis.length() / tile.aspect {
+                let is_thin = thickness_px < SCRAP * px_from_tile.x_axis.length() / tile.aspect;
+                if is_thin && self.is_across(rings) {
                     return None;
                 }
                 parts.extend(cells.drawn(tile, &groups, px_from_tile));
@@ -201,13 +204,26 @@ impl FacePattern<'_> {
         (0..3).max_by(|a, b| weights[*a].total_cmp(&weights[*b]))
     }
 
+    /// Whether an area reaches over most of its layer's thickness.
+    fn is_across(&self, rings: &[Vec<DVec2>]) -> bool {
+        let depths = rings.iter().flatten().map(|at| self.depth(*at));
+        let ends = [f64::INFINITY, f64::NEG_INFINITY];
+        let [low, high] = depths.fold(ends, |[low, high], depth| [low.min(depth), high.max(depth)]);
+        high - low > ACROSS
+    }
+
+    /// k at a place of the face.
+    fn depth(&self, st: DVec2) -> f64 {
+        f64::from(self.interpretation.flat_at(self.plane.voxel(st).as_vec3(), Some(self.region)).0.k)
+    }
+
     /// The rings, pixels, of the part of an area whose depth in the layer lies in an interval.
     pub(super) fn band(&self, rings: &[Vec<DVec2>], k: [f32; 2]) -> Vec<Vec<DVec2>> {
         let Some(lattice) = Lattice::over(rings) else { return Vec::new() };
         let [columns, rows] = lattice.cells;
         let depth = |n: usize| {
             let st = lattice.low + lattice.step * DVec2::new((n / (rows + 1)) as f64, (n % (rows + 1)) as f64);
-            f64::from(self.interpretation.flat_at(self.plane.voxel(st).as_vec3(), Some(self.region)).0.k)
+            self.depth(st)
         };
         let depths: Vec<f64> = (0..(columns + 1) * (rows + 1)).into_par_iter().map(depth).collect();
         let value = |x: usize, y: usize| depths[x * (rows + 1) + y];

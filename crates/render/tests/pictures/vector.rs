@@ -186,6 +186,11 @@ fn beds_too_thin_for_their_pattern_have_its_mean_colour() {
     // Darker than the layer's colour by the ink of its bricks.
     let darker = whole.luminance() - tint.luminance();
     assert!((0.02..0.3).contains(&darker), "{whole} and {tint}");
+    // The corner of a thick layer is as thin, and has its pattern.
+    let dipping = bricks(&ClosedForm::dipping(&geometry, &[57.6], 25.0, 240.0));
+    let traced = self::traced(&head_on([400, 300]), &dipping);
+    let corner: Vec<&AreaFill> = traced.areas.iter().filter(|area| area.layer == 0).map(|area| &area.fill).collect();
+    assert!(matches!(corner[..], [AreaFill::Colour(_), AreaFill::Pattern(_)]), "{}", corner.len());
 }
 
 /// A fault that was given a colour is drawn in it, as paths and as pixels, and printed as the preset says.
