@@ -178,7 +178,7 @@ impl VolumeRendering {
         scene.ground = None;
         if scene.background == Scene::default().background {
             scene.background = Background::Colour(BEHIND_VOLUMES);
-            if scene.outlines == Outlines::default() {
+            if scene.outlines.edges == Outlines::default().edges {
                 scene.outlines.edges = Stroke { width_px: 1.4, colour: EDGES_OF_VOLUMES };
             }
         }

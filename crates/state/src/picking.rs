@@ -14,7 +14,6 @@ use interp::faults::Proposal;
 use project::command::{Climb, Command, DrawHorizon, PickNode};
 use project::document::{Document, Drawn, HorizonEntry};
 use project::error::Noun;
-use project::interpretation::assembly::next_colour;
 use refine::TrackSettings;
 use render::{FaceData, Scene};
 use serde::{Deserialize, Serialize};
@@ -294,7 +293,7 @@ impl Picking {
     pub fn colour_in(&self, document: &Document) -> Colour {
         let entry = document.horizons.iter().find(|entry| Some(&entry.name) == self.horizon.as_ref());
         let known = entry.and_then(HorizonEntry::own_colour);
-        known.or(self.colour).unwrap_or_else(|| next_colour(document))
+        known.or(self.colour).unwrap_or_else(|| document.next_colour())
     }
 
     pub(super) fn accept(&mut self) -> Option<Task> {

@@ -137,7 +137,7 @@ fn a_horizon_is_renamed_filled_and_removed_in_the_panel() {
     assert!((8.0..12.0).contains(&slices[0]) && (7.0..10.0).contains(&slices[1]), "{slices:?}");
     // A smooth surface is no pick: 12 of 480 traces.
     click_last(&mut harness, "Fill holes");
-    let filled = |harness: &Driven| harness.query_by_label_contains("2.5 % of the nodes filled").is_some();
+    let filled = |harness: &Driven| harness.query_by_label_contains("12 nodes filled").is_some();
     wait(&mut harness, "it is said how much is filled", filled);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     wait(&mut harness, "the hole is back", |harness| harness.query_by_label("1 hole with 12 traces").is_some());

@@ -118,7 +118,7 @@ impl AddHorizon {
             colour: None,
             seeds: Vec::new(),
         };
-        draft.document.split_layer(position, |document| document.horizons.insert(position, entry));
+        draft.document.insert_horizon(position, entry);
         Ok(Effect::HorizonAdded(Box::new(HorizonAdded { position, report })))
     }
 
@@ -278,7 +278,7 @@ pub(super) fn insert_among(
         colour: None,
         seeds: Vec::new(),
     };
-    draft.document.split_layer(position, |document| document.horizons.insert(position, entry));
+    draft.document.insert_horizon(position, entry);
     others.insert(position, horizon.clone());
     Ok(position)
 }

@@ -104,13 +104,13 @@ pub struct HorizonEntry {
     /// The places in geologic time that it was picked through: inline, crossline, vertical value.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub seeds: Vec<[f64; 3]>,
-    /// Its colour if it was imported and given one.
+    /// Its colour if it has no picks, which keep one of their own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colour: Option<Colour>,
 }
 
 impl HorizonEntry {
-    /// The colour that it was given, by its picks or by hand; `None`: it is drawn in the one of its place in the list.
+    /// The colour that it was given; `None` in projects of old: it is drawn in the one of its place in the list.
     pub fn own_colour(&self) -> Option<Colour> {
         self.assembly.as_ref().map(|log| log.colour).or(self.colour)
     }

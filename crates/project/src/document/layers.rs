@@ -4,9 +4,11 @@
 //! keeps the name and the style, the part above the new horizon starts without them. Removing a horizon joins
 //! two layers into one, which keeps the name and the style of the lower one.
 
-use super::Document;
+use super::{Document, HorizonEntry};
 use crate::error::{Noun, ProjectError};
+use figure::style::{HORIZON_COLOURS, horizon_colour};
 use param::KDefinition;
+use ttf::Colour;
 
 impl Document {
     /// The layer names, youngest first.
@@ -32,8 +34,31 @@ impl Document {
         Ok(())
     }
 
+    /// Puts a horizon at `position` (0 = youngest). It gets a colour of its own unless it has one, and the others keep
+    /// those in which they were drawn until now.
+    pub fn insert_horizon(&mut self, position: usize, mut entry: HorizonEntry) {
+        if entry.own_colour().is_none() {
+            entry.colour = Some(self.next_colour());
+        }
+        for (index, other) in self.horizons.iter_mut().enumerate() {
+            if other.own_colour().is_none() {
+                other.colour = Some(horizon_colour(None, index));
+            }
+        }
+        self.split_layer(position, |document| document.horizons.insert(position, entry));
+    }
+
+    /// A colour for the next horizon: the first of those that the fewest horizons have.
+    pub fn next_colour(&self) -> Colour {
+        let taken = |colour: &Colour| {
+            let shown = self.horizons.iter().enumerate().map(|(index, entry)| horizon_colour(entry.own_colour(), index));
+            shown.filter(|shown| shown == colour).count()
+        };
+        HORIZON_COLOURS.into_iter().min_by_key(taken).unwrap_or(HORIZON_COLOURS[0])
+    }
+
     /// Inserts the layer boundary of a horizon at `position` (0 = youngest); `insert` adds the horizon itself.
-    pub fn split_layer(&mut self, position: usize, insert: impl FnOnce(&mut Self)) {
+    fn split_layer(&mut self, position: usize, insert: impl FnOnce(&mut Self)) {
         let before = self.layers();
         insert(self);
         if !self.layer_names.is_empty() {
@@ -98,9 +123,9 @@ impl Document {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::{HorizonEntry, Source};
+    use crate::document::Source;
     use survey::Contact;
-    use ttf::{Colour, LayerStyle};
+    use ttf::LayerStyle;
 
     fn horizon(name: &str) -> HorizonEntry {
         HorizonEntry {
@@ -132,11 +157,31 @@ mod tests {
     fn the_part_with_the_old_base_keeps_the_style_and_joining_undoes_it() {
         let mut document = styled();
         let before = document.clone();
-        document.split_layer(1, |document| document.horizons.insert(1, horizon("N")));
+        document.insert_horizon(1, horizon("N"));
         assert_eq!(document.layers(), ["above A", "A - N", "N - B", "below B"]);
         assert_eq!(reds(&document), [Some(0), None, Some(1), Some(2)]);
         document.join_layers(1, |document| drop(document.horizons.remove(1)));
-        assert_eq!(document, before);
+        assert_eq!((document.layers(), &document.style), (before.layers(), &before.style));
+    }
+
+    #[test]
+    fn horizons_keep_their_colours_when_another_comes_between() {
+        let mut document = styled();
+        let shown = |document: &Document| {
+            let all = document.horizons.iter().enumerate();
+            all.map(|(index, entry)| horizon_colour(entry.own_colour(), index)).collect::<Vec<_>>()
+        };
+        let before = shown(&document);
+        document.insert_horizon(0, horizon("N"));
+        assert_eq!(shown(&document)[1..], before);
+        assert!(!before.contains(&shown(&document)[0]));
+        for number in 3..HORIZON_COLOURS.len() {
+            document.insert_horizon(1, horizon(&format!("N{number}")));
+        }
+        let all = shown(&document);
+        assert!(HORIZON_COLOURS.iter().all(|colour| all.contains(colour)));
+        // All are taken once: it begins anew.
+        assert_eq!(document.next_colour(), HORIZON_COLOURS[0]);
     }
 
     #[test]
@@ -152,7 +197,7 @@ mod tests {
         assert_eq!(document.layers(), ["above Top", "Chalk", "below B"]);
         assert_eq!(reds(&document), [Some(0), Some(1), Some(2)]);
         assert!(document.name_layer(2, "chalk").is_err());
-        document.split_layer(0, |document| document.horizons.insert(0, horizon("Sea floor")));
+        document.insert_horizon(0, horizon("Sea floor"));
         assert_eq!(document.layers(), ["above Sea floor", "Sea floor - Top", "Chalk", "below B"]);
     }
 }

@@ -10,7 +10,6 @@ use crate::folder::Draft;
 use crate::interpretation::candidates::Candidates;
 use crate::interpretation::drawn;
 use crate::weak_cache::WeakCache;
-use figure::style::horizon_colour;
 use interp::Forest;
 use interp::assembly::{
     AssemblyError, Conflict, ConflictSettings, NamedSheets, Overlap, Selection, assemble, conflicts, node_above,
@@ -23,7 +22,6 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use survey::{Contact, Horizon, Progress, SurveyGeometry};
-use ttf::Colour;
 
 /// The state of a horizon after its picks.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -273,12 +271,6 @@ pub fn picked_selection(log: &Assembly, forest: &Forest) -> Result<Selection, As
     Ok(assemble(forest, nodes))
 }
 
-/// A colour for the next horizon.
-pub fn next_colour(document: &Document) -> Colour {
-    let assembled = document.horizons.iter().filter(|entry| entry.assembly.is_some()).count();
-    horizon_colour(None, assembled)
-}
-
 /// The candidates that a log needs: none where nothing was picked on them.
 ///
 /// # Errors
@@ -450,9 +442,9 @@ pub(crate) fn put(
         Some(old) if old == position => document.horizons[old] = entry,
         Some(old) => {
             document.join_layers(old, |document| drop(document.horizons.remove(old)));
-            document.split_layer(position, |document| document.horizons.insert(position, entry));
+            document.insert_horizon(position, entry);
         }
-        None => document.split_layer(position, |document| document.horizons.insert(position, entry)),
+        None => document.insert_horizon(position, entry),
     }
     Ok(())
 }
@@ -551,7 +543,7 @@ pub(crate) fn log_or_new(draft: &Draft, name: &str) -> Result<Assembly, ProjectE
         return log_of(draft, name);
     }
     draft.document.check_new_name(Noun::Horizon, name)?;
-    let colour = next_colour(&draft.document);
+    let colour = draft.document.next_colour();
     Ok(Assembly { colour, fill: None, smooth: None, picks: Vec::new(), drawn: Vec::new() })
 }
 

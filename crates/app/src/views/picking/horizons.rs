@@ -131,8 +131,8 @@ impl HorizonList {
         let report = &facts.report;
         let plural = |count: usize| if count == 1 { "" } else { "s" };
         let filled = match facts.filled {
-            0.0 => String::new(),
-            share => format!(", {:.1} % of the nodes filled", 100.0 * share),
+            0 => String::new(),
+            count => format!(", {count} node{} filled", plural(count)),
         };
         ui.label(format!(
             "{} nodes on {:.1} % of the traces, {} sheet{}{filled}",
@@ -262,13 +262,23 @@ pub fn swatch(ui: &mut Ui, entry: &HorizonEntry, index: usize, actions: &mut Vec
     }
 }
 
-/// The picks of a horizon, first to last.
+/// The picks of a horizon, first to last, or the clicks that it was found by in geologic time.
 fn picks(ui: &mut Ui, entry: &HorizonEntry, geometry: &SurveyGeometry, actions: &mut Vec<Action>) {
+    let unit = geometry.vertical.unit.symbol();
     let Some(log) = &entry.assembly else {
-        ui.weak("Imported: it has no picks.");
+        if entry.seeds.is_empty() {
+            ui.weak("Not picked: it was imported or computed.");
+        }
+        for (index, &at) in entry.seeds.iter().enumerate() {
+            let ([inline, crossline, z], number) = (at, index + 1);
+            let text = format!("click {number}: {inline:.0}, {crossline:.0}, {z:.0} {unit}");
+            let hint = format!("Go to click {number}: inline, crossline, {unit}");
+            if ui.selectable_label(false, text).on_hover_text(hint).clicked() {
+                go(geometry, at, actions);
+            }
+        }
         return;
     };
-    let unit = geometry.vertical.unit.symbol();
     let only = log.picks.len() + log.drawn.len() == 1;
     for pick in &log.picks {
         let [inline, crossline, z] = pick.at;

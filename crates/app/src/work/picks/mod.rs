@@ -54,8 +54,8 @@ pub struct InterpretedHorizon {
     pub report: AssemblyReport,
     /// Share of the traces on which it was picked, or near them.
     pub picked: PickedShare,
-    /// Share of its nodes that were filled, not picked.
-    pub filled: f64,
+    /// Number of its nodes that were filled, not picked.
+    pub filled: usize,
     /// Its holes, largest first.
     pub holes: Vec<Hole>,
     /// Its conflicts with other horizons, in words.
@@ -464,12 +464,10 @@ fn on_data(sheets: &[VoxelSheet], traces: usize) -> Vec<bool> {
     (0..traces).map(|n| sheets.iter().any(|sheet| is_on(sheet, n))).collect()
 }
 
-/// The share of the nodes of these sheets that do not lie on data.
-fn filled(sheets: &[VoxelSheet]) -> f64 {
-    let nodes = sheets.iter().flat_map(|sheet| sheet.z.iter().zip(&sheet.quality)).filter(|(z, _)| z.is_finite());
-    let (all, filled) =
-        nodes.fold((0, 0), |(all, filled), (_, quality)| (all + 1, filled + usize::from(!quality.is_on_data())));
-    filled as f64 / all.max(1) as f64
+/// The number of nodes of these sheets that do not lie on data.
+fn filled(sheets: &[VoxelSheet]) -> usize {
+    let nodes = sheets.iter().flat_map(|sheet| sheet.z.iter().zip(&sheet.quality));
+    nodes.filter(|(z, quality)| z.is_finite() && !quality.is_on_data()).count()
 }
 
 /// The triangles that reassembly starts from.
