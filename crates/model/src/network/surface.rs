@@ -8,6 +8,9 @@
 use glam::{DMat3, DVec3};
 use survey::height_field::HeightField;
 
+/// Width of the rim of a fault's extent, cells: places on a stick are on it in spite of rounding.
+const RIM_CELLS: f64 = 0.1;
+
 /// One fault, continued through the whole volume.
 ///
 /// `frame_from_voxel · p + frame_offset` is (u, v, w) of voxel position p: u and v in cells of the grids, w
@@ -53,6 +56,12 @@ impl FaultSurface {
     pub fn extent_at(&self, p: DVec3) -> f64 {
         let q = self.frame(p);
         f64::from(self.extent.z_at(q.x as f32, q.y as f32))
+    }
+
+    /// Whether the fault was interpreted at the place that is reached along the plane's normal: within its rim, which
+    /// counts as part of it, so that a section through the last stick shows the fault.
+    pub fn is_interpreted_at(&self, p: DVec3) -> bool {
+        self.extent_at(p) >= -RIM_CELLS * self.spacing_m
     }
 
     /// An upper bound of |∂g| along the plane, m per m.

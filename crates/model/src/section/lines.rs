@@ -20,7 +20,7 @@ pub(super) fn is_real_fault(model: &StructuralModel, plane: &SectionPlane, posit
     if is_in_body(model, edge) {
         return false;
     }
-    model.faults().surfaces()[usize::from(fault)].extent_at(middle(plane, positions, edge)) >= 0.0
+    model.faults().surfaces()[usize::from(fault)].is_interpreted_at(middle(plane, positions, edge))
 }
 
 /// Whether an edge lies in a body, which cuts the faults, too.
@@ -71,16 +71,16 @@ pub(super) fn lines(
                     }
                 };
                 let surface = &model.faults().surfaces()[fault];
-                let extent = |p: DVec2| surface.extent_at(plane.voxel(p));
+                let is_real = |p: DVec2| surface.is_interpreted_at(plane.voxel(p));
                 let [a, b] = [edge.from, edge.to].map(|v| positions[v as usize]);
-                let real = [extent(a) >= 0.0, extent(b) >= 0.0];
+                let real = [is_real(a), is_real(b)];
                 if real[0] == real[1] {
                     add(real[0], [edge.from, edge.to]);
                 } else {
                     let (mut low, mut high) = (0.0, 1.0);
                     for _ in 0..TIP_STEPS {
                         let t = 0.5 * (low + high);
-                        if (extent(a.lerp(b, t)) >= 0.0) == real[0] { low = t } else { high = t }
+                        if is_real(a.lerp(b, t)) == real[0] { low = t } else { high = t }
                     }
                     let tip = positions.len() as u32;
                     positions.push(a.lerp(b, low));
