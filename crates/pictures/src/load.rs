@@ -122,6 +122,11 @@ fn is_of(parameterization: &Parameterization, model: &StructuralModel) -> bool {
 }
 
 impl Rock {
+    /// Whether this is the rock of a project's state.
+    pub fn is_of(&self, document: &Document) -> bool {
+        self.key == rock_key(document)
+    }
+
     /// The parameterization sampled on a lattice: the stored one, otherwise sampled now.
     ///
     /// # Errors
@@ -306,7 +311,7 @@ pub fn load_with(
     let document = project.document();
     let geometry = document.frame()?.clone();
     // Raw data alone needs no interpretation, but outlines and ground do.
-    let rock = match known.filter(|rock| rock.key == rock_key(document)) {
+    let rock = match known.filter(|rock| rock.is_of(document)) {
         Some(rock) => Some(rock),
         None => rock(project, progress)?.map(Arc::new),
     };

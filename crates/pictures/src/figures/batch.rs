@@ -69,9 +69,11 @@ fn stage(
     progress: &Progress,
 ) -> Result<Vec<WrittenFigure>, ProjectError> {
     let mut staged = Vec::new();
+    let fonts = fonts.to_vec();
+    let mut settings = FigureSettings { device, volume_bytes, fonts, picture_dpi: None, rock: None };
     for (file, format, figure) in meant {
-        let settings = FigureSettings { device, volume_bytes, fonts: fonts.to_vec(), picture_dpi: None, rock: None };
         let made = make(project, figure, &InterpreterView::default(), &settings, progress).map_err(of_figure(file))?;
+        settings.rock = made.rock.or(settings.rock);
         let path = out.join(file);
         let replacement = Replacement::of(&path)?;
         write(&made.page, *format, replacement.path(), figure.dpi, &title(project))?;

@@ -50,6 +50,8 @@ pub struct MadeFigure {
     pub stages: Vec<Stage>,
     /// The neighbouring layers of its blocks that cannot be told apart.
     pub confusions: Vec<NamedConfusion>,
+    /// The model and its parameterization, if they were needed: the next figure may have them.
+    pub rock: Option<Arc<Rock>>,
 }
 
 /// Settings for making a figure.
@@ -98,7 +100,7 @@ fn lettered(
     let document = project.document();
     let figure = &settled(figure, document);
     memory::check("the page", &figure.size_px().map(|side| side.min(LONGEST_SIDE) as usize), PIXEL_BYTES)?;
-    let (loaded, model, stages) = load(project, figure, settings, progress)?;
+    let FigureData { loaded, model, stages } = FigureData::load(project, figure, settings, progress)?;
     let picks = if figure.interpretation { Some(InterpreterPicks::read(project, view, progress)?) } else { None };
     let shown = picks.as_ref().map(|picks| {
         let mut shown = picks.borrowed();
@@ -113,8 +115,10 @@ fn lettered(
     layers.iter_mut().for_each(|style| *style = figure.printed_in().layer(style));
     let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
     let mut data = loaded.inputs(&volumes, &wells);
-    if let Some(model) = &model {
-        data.model = Some(model);
+    match &model {
+        Some(ModelAlone::Known(rock)) => data.model = Some(&rock.model),
+        Some(ModelAlone::Built(model)) => data.model = Some(model),
+        None => {}
     }
     let inputs = FigureInputs {
         source: SectionSource { data, raw: loaded.raw.as_ref() },
@@ -138,7 +142,7 @@ fn lettered(
     let stages = painter.stages;
     let scene = Scene { preset, ..needs(figure) };
     let confusions = confusions(project.root(), document, loaded.rock.as_deref(), &scene)?;
-    Ok(MadeFigure { page, device, stages, confusions })
+    Ok(MadeFigure { page, device, stages, confusions, rock: loaded.rock.clone() })
 }
 
 /// The figure with what its sections show: measured data where there are some, and the rock otherwise.
@@ -234,29 +238,44 @@ impl BlockPainter for FigurePainter<'_> {
     }
 }
 
-/// The data of a figure: a model of its own where no block brings one.
-fn load(
-    project: &Project,
-    figure: &Figure,
-    settings: &FigureSettings,
-    progress: &Progress,
-) -> Result<(Loaded, Option<StructuralModel>, Vec<Stage>), ProjectError> {
-    let scene = Scene { preset: figure.printed_in(), ..needs(figure) };
-    let has_block = figure.parts.iter().any(|part| matches!(part, Part::Block(_)));
-    if (has_block || figure.has_rock_sections()) && !figure.interpretation {
-        let loaded = load::load_with(project, settings.rock.clone(), &scene, settings.volume_bytes, progress)?;
-        let made =
-            loaded.rock.as_ref().filter(|rock| settings.rock.as_ref().is_none_or(|known| !Arc::ptr_eq(known, rock)));
-        let stages = made.map(|rock| rock.stages.clone()).unwrap_or_default();
-        return Ok((loaded, None, stages));
+/// What a figure is made of.
+struct FigureData {
+    loaded: Loaded,
+    model: Option<ModelAlone>,
+    stages: Vec<Stage>,
+}
+
+/// The model of a figure without blocks or rock on its sections, which need no parameterization.
+enum ModelAlone {
+    Known(Arc<Rock>),
+    Built(Box<StructuralModel>),
+}
+
+impl FigureData {
+    fn load(
+        project: &Project,
+        figure: &Figure,
+        settings: &FigureSettings,
+        progress: &Progress,
+    ) -> Result<Self, ProjectError> {
+        let scene = Scene { preset: figure.printed_in(), ..needs(figure) };
+        let has_block = figure.parts.iter().any(|part| matches!(part, Part::Block(_)));
+        let known = settings.rock.as_ref().filter(|rock| rock.is_of(project.document()));
+        if (has_block || figure.has_rock_sections()) && !figure.interpretation {
+            let loaded = load::load_with(project, known.cloned(), &scene, settings.volume_bytes, progress)?;
+            let made = loaded.rock.as_ref().filter(|_| known.is_none());
+            let stages = made.map(|rock| rock.stages.clone()).unwrap_or_default();
+            return Ok(Self { loaded, model: None, stages });
+        }
+        let loaded = load::load_bare(project, &scene, settings.volume_bytes, progress)?;
+        let (model, stages) = match known {
+            _ if figure.interpretation => (None, Vec::new()),
+            Some(rock) => (Some(ModelAlone::Known(rock.clone())), Vec::new()),
+            None => load::structural_model(project, progress)?
+                .map_or((None, Vec::new()), |(model, stage)| (Some(ModelAlone::Built(Box::new(model))), vec![stage])),
+        };
+        Ok(Self { loaded, model, stages })
     }
-    let loaded = load::load_bare(project, &scene, settings.volume_bytes, progress)?;
-    if figure.interpretation {
-        return Ok((loaded, None, Vec::new()));
-    }
-    let made = load::structural_model(project, progress)?;
-    let (model, stages) = made.map_or((None, Vec::new()), |(model, stage)| (Some(model), vec![stage]));
-    Ok((loaded, model, stages))
 }
 
 /// A scene that needs everything that the parts of a figure need.
