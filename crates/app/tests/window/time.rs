@@ -28,6 +28,16 @@ fn one_click_makes_a_horizon_and_a_second_corrects_it() {
     click_in(&mut harness, "Inline section", [60.0, 10.0], Modifiers::NONE);
     wait(&mut harness, "it is corrected", |harness| seeds(harness) == Some(2));
     assert_eq!(document(&harness).horizons.len(), 3);
+    // The places that were clicked lead to their sections.
+    wait(&mut harness, "both clicks are listed", |h| h.query_by_label_contains("click 2: ").is_some());
+    harness.get_by_label_contains("click 1: ").click_accesskit();
+    harness.run_steps(3);
+    let seeds = document(&harness).horizons.iter().map(|entry| entry.seeds.clone()).find(|seeds| !seeds.is_empty());
+    let geometry = document(&harness).geometry.clone().unwrap();
+    let [inline, crossline, _] = seeds.unwrap()[0];
+    let at = geometry.voxel_from_lines(inline, crossline);
+    let slices = state(&harness).session.as_ref().unwrap().view.slices;
+    assert!((slices[0] - at.x).abs() < 0.51 && (slices[1] - at.y).abs() < 0.51, "{slices:?} {at}");
     // The project has layers already: a button that says so.
     let button = harness.get_by_label("Illustrate now");
     assert!(button.accesskit_node().is_disabled());
