@@ -136,8 +136,8 @@ fn a_fault_is_drawn_to_its_tip_and_its_layers_are_joined_beyond() {
     let end = section.lines.iter().filter(|l| l.kind == real).flat_map(|l| &l.points).map(|p| p.y).fold(0.0, f64::max);
     assert!((end - 26.0).abs() < 0.2, "{end}");
     // A section through its end shows all of it.
-    let section = Section::new(&model, &SectionPlane::crossline(26.0, low, high));
-    let lines = section.lines.iter().filter(|line| line.kind == real);
+    let last = Section::new(&model, &SectionPlane::crossline(26.0, low, high));
+    let lines = last.lines.iter().filter(|line| line.kind == real);
     let length: f64 = lines.flat_map(|line| line.points.windows(2)).map(|ends| ends[0].distance(ends[1])).sum();
     assert!(length >= high.z - low.z, "{length}");
     // Regions stop at the extended fault, layers do not.
