@@ -51,7 +51,8 @@ impl Document {
     /// A colour for the next horizon: the first of those that the fewest horizons have.
     pub fn next_colour(&self) -> Colour {
         let taken = |colour: &Colour| {
-            let shown = self.horizons.iter().enumerate().map(|(index, entry)| horizon_colour(entry.own_colour(), index));
+            let shown =
+                self.horizons.iter().enumerate().map(|(index, entry)| horizon_colour(entry.own_colour(), index));
             shown.filter(|shown| shown == colour).count()
         };
         HORIZON_COLOURS.into_iter().min_by_key(taken).unwrap_or(HORIZON_COLOURS[0])
