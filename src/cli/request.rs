@@ -77,7 +77,12 @@ pub(super) enum Request {
     /// Write the values of volumes along a horizon.
     ExportValues { project: PathBuf, out: PathBuf, horizon: String, values: Vec<String>, window: usize },
     /// Compute i, j, k.
-    Parameterize { project: PathBuf, size: Option<[usize; 3]>, change: Option<SetParameterization> },
+    Parameterize {
+        project: PathBuf,
+        size: Option<[usize; 3]>,
+        change: Option<SetParameterization>,
+        memory: Option<u64>,
+    },
     /// Draw a picture.
     Render(RenderRequest),
     /// Draw an animation.
@@ -190,7 +195,8 @@ impl TryFrom<Action> for Request {
                 let size = typed.size.as_deref().map(|size| counts::<3>("--size", size)).transpose()?;
                 let changes = typed.from.is_some() || typed.computed || typed.by_time;
                 let change = changes.then_some(SetParameterization { from: typed.from, by_time: typed.by_time });
-                Self::Parameterize { project: typed.project, size, change }
+                let memory = interpretation::bytes("--memory", typed.memory.as_deref())?;
+                Self::Parameterize { project: typed.project, size, change, memory }
             }
             Action::Render(typed) => Self::Render(render_request(*typed)?),
             Action::Animate(typed) => Self::Animate((*typed).try_into()?),

@@ -46,6 +46,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(stored::volume_info, module)?)?;
     module.add_function(wrap_pyfunction!(stored::read_box, module)?)?;
     module.add_function(wrap_pyfunction!(stored::read_live, module)?)?;
+    module.add_function(wrap_pyfunction!(project::finish_parameterization, module)?)?;
     module.add_function(wrap_pyfunction!(stored::write_volume, module)?)?;
     module.add_function(wrap_pyfunction!(arrays::handed_over, module)?)?;
     module.add_function(wrap_pyfunction!(arrays::seen_at, module)?)?;

@@ -159,15 +159,28 @@ def test_extrema_are_named_arrays(large, tmp_path):
         petroglyph.dask.extrema(path, tmp_path / "peaks.zarr")
 
 
-@pytest.mark.parametrize("inlines", [7, 40])
-def test_layer_coordinates_do_not_depend_on_the_slabs(project, tmp_path, inlines):
+def test_layer_coordinates_of_tasks_are_those_of_the_program(project, tmp_path):
     xarray = pytest.importorskip("xarray")
-    petroglyph.dask.parameterize(project, tmp_path / "p.zarr", inlines=inlines, scheduler="threads")
-    found, whole = xarray.open_zarr(tmp_path / "p.zarr", consolidated=False), project.parameterization()
-    for name in whole.data_vars:
-        assert found[name].values.tobytes() == whole[name].values.tobytes(), name
-    project.set_parameterization(tmp_path / "p.zarr")
+    for name, size in (("survey", None), ("odd", (140, 131, 129))):
+        out = tmp_path / f"{name}.zarr"
+        petroglyph.dask.parameterize(project, out, size=size, scheduler="threads")
+        text = "x".join(map(str, size or project.geometry.shape))
+        project.parameterize(size=text, memory="64M")
+        for array in ("i", "j", "k", "layer", "block"):
+            whole = contents(project.path / "derived" / "parameterization.zarr" / array)
+            assert contents(out / array) == whole, (name, array)
+        assert not (out / ".apart").exists()
+    found = xarray.open_zarr(tmp_path / "survey.zarr", consolidated=False)
+    assert found["k"].sizes["inline"] == found["inline"].size == project.geometry.shape[0]
+    project.set_parameterization(tmp_path / "survey.zarr")
     assert "parameterization" in project.document
+
+
+def test_layer_coordinates_with_a_file_missing_are_refused(project, tmp_path):
+    project._native.begin_parameterization(tmp_path / "p.zarr", (140, 20, 30))
+    project._native.write_parameterization(tmp_path / "p.zarr", (0, 0))
+    with pytest.raises(petroglyph.PetroglyphError, match="not written to its end"):
+        petroglyph._native.finish_parameterization(tmp_path / "p.zarr")
 
 
 def test_pictures_are_drawn_side_by_side(project):

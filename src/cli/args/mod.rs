@@ -172,7 +172,7 @@ pub(super) enum Action {
     Scene(SceneAction),
     /// Compute the layer coordinates i, j, k and keep them in the project
     #[command(after_help = "Examples:\n  petroglyph parameterize north.petro --size 128x128x128\n  petroglyph \
-                      parameterize north.petro --from geochron.zarr")]
+                      parameterize north.petro --memory 1G\n  petroglyph parameterize north.petro --from geochron.zarr")]
     Parameterize(ParameterizeArgs),
     /// Draw a picture
     #[command(after_help = "Examples:\n  petroglyph render north.petro block.png\

@@ -683,21 +683,12 @@ def extrema(
         shutil.rmtree(partial, ignore_errors=True)
 
 
-def _parameters_slab(
-    path: str, out: str, size: Place, start: int, count: int, version: tuple[str, int]
-) -> int:
-    import zarr
-
+def _parameters_column(path: str, out: str, column: tuple[int, int], version: tuple[str, int]) -> tuple[int, int]:
     from petroglyph import open as open_project
 
     _same_version(version)
-    group = zarr.open_group(_at_hand(out), mode="r+")
-    project = open_project(_at_hand(path))
-    part = (count, size[1], size[2])
-    fields, ids = project._native.parameterization(size, (start, 0, 0), part, None, 1)
-    for name, values in zip(("i", "j", "k", "layer", "block"), (*fields, *ids), strict=True):
-        group[name][start : start + count] = values
-    return count
+    open_project(_at_hand(path))._native.write_parameterization(_at_hand(out), column)
+    return column
 
 
 def parameterize(
@@ -705,51 +696,47 @@ def parameterize(
     out: Path,
     *,
     size: Place | None = None,
-    inlines: int = 32,
     scheduler: Scheduler = None,
     retries: int = RETRIES,
 ) -> Path:
-    """Samples i, j, k, layer and block at every sample, slab by slab, into a Zarr v3 group.
+    """Samples i, j, k, layer and block at every sample, a column of files a task, into a Zarr v3 group.
 
     Parameters
     ----------
     project : Project
         The project; its model and the grids of its parameterization are made first, and are read by every task.
     out : path
-        Folder to write: arrays ``i``, ``j``, ``k`` (float32) and ``layer``, ``block`` (uint16), which other projects take in
-        by :meth:`petroglyph.Project.set_parameterization`.
+        Folder to write: arrays ``i``, ``j``, ``k`` (float32) and ``layer``, ``block`` (uint8, or uint16 where there are more
+        than 255), which other projects take in by :meth:`petroglyph.Project.set_parameterization`. Their bytes are those
+        that ``petroglyph parameterize`` keeps in the project.
     size : tuple of int, optional
         Samples along each axis; by default those of the survey.
-    inlines : int
-        Inlines of a task: its memory is that of the model and of 28 bytes for each sample of the slab.
     scheduler, retries
         As of :func:`attribute`.
+
+    Notes
+    -----
+    A task holds the model, its grids, and one file of each array (128³ samples: 64 MB).
     """
-    import numpy as np
     import zarr
 
-    project._native.keep_parameterization()
     size = size or project.geometry.shape
     folder = os.path.abspath(out)
     partial = _fresh(folder)
     try:
-        group = zarr.create_group(partial)
-        axes = ("inline", "crossline", "sample")
-        chunks = (min(inlines, size[0]), min(FILE_LINES, size[1]), min(FILE_LINES, size[2]))
-        for name in ("i", "j", "k", "layer", "block"):
-            floats = name in "ijk"
-            dtype, fill = (np.float32, np.nan) if floats else (np.uint16, 65535)
-            group.create_array(name, shape=size, chunks=chunks, dtype=dtype, fill_value=fill, dimension_names=axes)
+        columns = project._native.begin_parameterization(partial, size)[:2]
         if size == project.geometry.shape:
-            _write_lines(group, project.geometry)
+            _write_lines(zarr.open_group(partial, mode="r+"), project.geometry)
         path = os.path.abspath(project.path)
-        graph = _Graph(_token(path, partial, size, inlines))
+        graph = _Graph(_token(path, partial, size))
         version = (__version__, STORE_VERSION)
         tasks = [
-            graph.add("sample-ijk", (x,), (_parameters_slab, path, partial, size, x, min(inlines, size[0] - x), version))
-            for x in range(0, size[0], inlines)
+            graph.add("sample-ijk", (x, y), (_parameters_column, path, partial, (x, y), version))
+            for x in range(columns[0])
+            for y in range(columns[1])
         ]
         _run(graph, tasks, scheduler, retries)
+        _native.finish_parameterization(partial)
         _publish(partial, folder)
         return out
     finally:
