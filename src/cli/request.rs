@@ -70,6 +70,8 @@ pub(super) enum Request {
     Export { project: PathBuf, out: PathBuf, surface: (SurfaceKind, String), format: Format, options: ExportOptions },
     /// Write a volume as SEG-Y, by default in the type it is stored in.
     ExportVolume { project: PathBuf, out: PathBuf, volume: String, format: Option<WriteFormat> },
+    /// Write a volume to object storage.
+    UploadVolume { project: PathBuf, url: String, volume: String },
     /// Write a scene's block as a 3D model.
     ExportModel(ModelRequest),
     /// Write a page for browsers.

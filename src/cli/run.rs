@@ -112,6 +112,9 @@ pub(super) fn carry_out(request: Request, wait: Duration, progress: &Progress) -
         Request::ExportVolume { project, out, volume, format } => {
             told(exports::volume::write(&open(&project)?, &out, &volume, format, progress)?)
         }
+        Request::UploadVolume { project, url, volume } => {
+            told(exports::volume::upload(&open(&project)?, &url, &volume, progress)?)
+        }
         Request::Parameterize { project, size, change, memory } => {
             parameterize(open(&project)?, (size, memory), change, progress)?
         }

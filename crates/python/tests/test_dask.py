@@ -191,6 +191,29 @@ def test_pictures_are_drawn_side_by_side(project):
     assert drawn[0]._repr_png_() != drawn[1]._repr_png_()
 
 
+# Geologic time.
+
+
+@pytest.mark.parametrize("memory", [1, 1 << 40])
+def test_geologic_time_in_slabs_is_that_of_the_program(large, whole, memory, cluster):
+    """Two slabs, and one; on one thread after the other, and on two processes."""
+    large.extract(memory=1 << 40)
+    # What is stated to the program is a whole number of bytes too.
+    told = large.time(name="whole", memory=memory)
+    for name, scheduler in (("parted", "synchronous"), ("spread", cluster)):
+        done = petroglyph.dask.time(large, name, memory=memory, scheduler=scheduler)
+        assert same(large, "whole", name)
+        assert done["slabs"] == told["slabs"] == (2 if memory == 1 else 1)
+        assert done["known"] == pytest.approx(told["known"]) and done["known"] > 0.5
+    assert sorted(path.name for path in large.path.parent.iterdir()) == ["large.petro"]
+
+
+def test_geologic_time_without_candidates_is_a_sentence(large):
+    with pytest.raises(petroglyph.PetroglyphError, match="candidates"):
+        petroglyph.dask.time(large)
+    assert [path.name for path in large.path.parent.iterdir()] == ["large.petro"]
+
+
 # Horizon candidates.
 
 

@@ -38,8 +38,7 @@ pub(in crate::cli) enum VolumeAction {
                       The volume is one of this program (volumes/NAME.zarr of a project), copied there. Credentials come\n\
                       from the environment alone: AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY, AWS_REGION, AWS_ENDPOINT_URL;\n\
                       GOOGLE_APPLICATION_CREDENTIALS; AZURE_STORAGE_ACCOUNT_NAME, AZURE_STORAGE_ACCOUNT_KEY. Blocks are\n\
-                      cached in PETROGLYPH_CACHE [default: ~/.cache/petroglyph], up to PETROGLYPH_CACHE_BYTES [10 GiB].\n\
-                      The program must be built with `--features remote`.")]
+                      cached in PETROGLYPH_CACHE [default: ~/.cache/petroglyph], up to PETROGLYPH_CACHE_BYTES [10 GiB].")]
     Link {
         /// Project folder; made if there is none
         project: PathBuf,
@@ -369,7 +368,7 @@ pub(in crate::cli) struct FaultAddArgs {
 pub(in crate::cli) struct ExportArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
-    /// File to write
+    /// File to write; for a volume also an address in object storage: s3://, gs://, az://, https://
     pub(in crate::cli) out: PathBuf,
     /// Horizon to write
     #[arg(long, value_name = "NAME", required_unless_present_any = ["candidates", "fault", "volume", "model"], conflicts_with_all = ["fault", "volume"])]
