@@ -132,6 +132,37 @@ def test_a_worker_that_is_killed_in_the_middle_changes_nothing(large, cluster, t
     assert same(large, "whole", "parted")
 
 
+def with_a_killer(monkeypatch, cluster, stage, marker):
+    """Kills the worker that is about to do the last task of a stage, once."""
+    original = petroglyph.dask._run
+
+    def run(graph, *args):
+        key = [key for key in graph.tasks if key[0].startswith(stage)][-1]
+        killer = (f"killer-{stage}", 0)
+        graph.tasks[killer] = (kill_once, str(marker))
+        graph.tasks[key] = (*graph.tasks[key], killer)
+        return original(graph, *args)
+
+    monkeypatch.setattr(petroglyph.dask, "_run", run)
+    cluster.register_plugin(_Importable(str(Path(__file__).parent)))
+
+
+def test_layer_coordinates_and_time_survive_a_killed_worker(project, large, cluster, tmp_path, monkeypatch):
+    project.parameterize(size="140x131x129")
+    large.extract(memory=1 << 40)
+    large.time(name="whole", memory=1)
+    with monkeypatch.context() as patch:
+        with_a_killer(patch, cluster, "sample-ijk", tmp_path / "first")
+        petroglyph.dask.parameterize(project, tmp_path / "p.zarr", size=(140, 131, 129), scheduler=cluster)
+    whole = contents(project.path / "derived" / "parameterization.zarr")
+    assert contents(tmp_path / "p.zarr") == whole
+    with monkeypatch.context() as patch:
+        with_a_killer(patch, cluster, "time-join", tmp_path / "second")
+        petroglyph.dask.time(large, "parted", memory=1, scheduler=cluster)
+    assert same(large, "whole", "parted")
+    assert os.path.exists(tmp_path / "first") and os.path.exists(tmp_path / "second"), "workers were killed"
+
+
 class _Importable(distributed.WorkerPlugin):
     """Lets workers, and those that take the place of lost ones, import this file."""
 

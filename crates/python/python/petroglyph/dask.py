@@ -816,7 +816,9 @@ def extrema(
         shutil.rmtree(partial, ignore_errors=True)
 
 
-def _parameters_column(path: str, out: str, column: tuple[int, int], version: tuple[str, int]) -> tuple[int, int]:
+def _parameters_column(
+    path: str, out: str, column: tuple[int, int], version: tuple[str, int], *_: Any
+) -> tuple[int, int]:
     from petroglyph import open as open_project
 
     _same_version(version)
