@@ -11,6 +11,8 @@ use survey::Progress;
 use time::JoinedSlabs;
 
 type Array3<'py> = Bound<'py, PyArray3<f32>>;
+/// A volume, facts as JSON, and ranges of inlines.
+type Told = (String, String, Vec<(usize, usize)>);
 
 fn open(project: &Project, memory: u64, settings: &str) -> Result<TimeSlabs, ProjectError> {
     let settings = serde_json::from_str(settings).unwrap_or_default();
@@ -21,12 +23,7 @@ fn open(project: &Project, memory: u64, settings: &str) -> Result<TimeSlabs, Pro
 /// The volume that geologic time is solved from, what its own volume says of itself, as JSON, and the first inline of each
 /// slab and the one after its last.
 #[pyfunction]
-pub fn time_slabs(
-    py: Python<'_>,
-    project: &Project,
-    memory: u64,
-    settings: &str,
-) -> PyResult<(String, String, Vec<(usize, usize)>)> {
+pub fn time_slabs(py: Python<'_>, project: &Project, memory: u64, settings: &str) -> PyResult<Told> {
     serde_json::from_str::<time::TimeSettings>(settings).map_err(wrong)?;
     let slabs = task(py, || open(project, memory, settings))?;
     let info = serde_json::to_string(&slabs.info()).map_err(wrong)?;

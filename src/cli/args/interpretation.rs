@@ -35,10 +35,11 @@ pub(in crate::cli) enum VolumeAction {
     /// Take in a volume that stays in object storage: its bricks are read, and cached, as they are needed
     #[command(after_help = "Examples:\n  petroglyph volume link north.petro s3://surveys/north.zarr --name seismic\
                       \n  petroglyph volume link north.petro https://example.org/surveys/north.zarr\n\n\
-                      The volume is one of this program (volumes/NAME.zarr of a project), copied there. Credentials come\n\
+                      The volume is one of this program, written there by `petroglyph export` or copied. Credentials come\n\
                       from the environment alone: AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY, AWS_REGION, AWS_ENDPOINT_URL;\n\
                       GOOGLE_APPLICATION_CREDENTIALS; AZURE_STORAGE_ACCOUNT_NAME, AZURE_STORAGE_ACCOUNT_KEY. Blocks are\n\
-                      cached in PETROGLYPH_CACHE [default: ~/.cache/petroglyph], up to PETROGLYPH_CACHE_BYTES [10 GiB].")]
+                      cached in PETROGLYPH_CACHE [default: ~/.cache/petroglyph], up to PETROGLYPH_CACHE_BYTES [10 GiB].\n\
+                      The program must be built with `--features remote`.")]
     Link {
         /// Project folder; made if there is none
         project: PathBuf,

@@ -229,7 +229,7 @@ mod tests {
             }
             (0..parts.table_files()).rev().for_each(|file| parts.write_rows(file, &rows).unwrap());
             // What a lost process has left.
-            fs::create_dir_all(parts.apart()).unwrap();
+            fs::create_dir_all(new_apart(&parts.path)).unwrap();
             parts.finish(&info(size, leaves)).unwrap();
             let (mut one, mut other) = (BTreeMap::new(), BTreeMap::new());
             contents(&whole, &whole, &mut one);
