@@ -235,7 +235,17 @@ pub(super) fn export(typed: ExportArgs) -> Result<Request, Usage> {
     if typed.model {
         return Ok(Request::ExportModel(typed.try_into()?));
     }
+    let address = typed.out.to_str().filter(|out| out.contains("://")).map(str::to_owned);
+    if let (Some(url), None) = (&address, &typed.volume) {
+        return Err(format!("{url}: only volumes are written to object storage; name one by --volume"));
+    }
     if let Some(volume) = typed.volume {
+        if let Some(url) = address {
+            return match typed.format_code {
+                Some(_) => Err(format!("{url}: --format-code is for SEG-Y files; object storage takes Zarr")),
+                None => Ok(Request::UploadVolume { project: typed.project, url, volume }),
+            };
+        }
         let formats = [
             (1, WriteFormat::Ibm32),
             (3, WriteFormat::Int16),

@@ -70,6 +70,8 @@ pub(super) enum Request {
     Export { project: PathBuf, out: PathBuf, surface: (SurfaceKind, String), format: Format, options: ExportOptions },
     /// Write a volume as SEG-Y, by default in the type it is stored in.
     ExportVolume { project: PathBuf, out: PathBuf, volume: String, format: Option<WriteFormat> },
+    /// Write a volume to object storage.
+    UploadVolume { project: PathBuf, url: String, volume: String },
     /// Write a scene's block as a 3D model.
     ExportModel(ModelRequest),
     /// Write a page for browsers.
@@ -77,7 +79,12 @@ pub(super) enum Request {
     /// Write the values of volumes along a horizon.
     ExportValues { project: PathBuf, out: PathBuf, horizon: String, values: Vec<String>, window: usize },
     /// Compute i, j, k.
-    Parameterize { project: PathBuf, size: Option<[usize; 3]>, change: Option<SetParameterization> },
+    Parameterize {
+        project: PathBuf,
+        size: Option<[usize; 3]>,
+        change: Option<SetParameterization>,
+        memory: Option<u64>,
+    },
     /// Draw a picture.
     Render(RenderRequest),
     /// Draw an animation.
@@ -190,7 +197,8 @@ impl TryFrom<Action> for Request {
                 let size = typed.size.as_deref().map(|size| counts::<3>("--size", size)).transpose()?;
                 let changes = typed.from.is_some() || typed.computed || typed.by_time;
                 let change = changes.then_some(SetParameterization { from: typed.from, by_time: typed.by_time });
-                Self::Parameterize { project: typed.project, size, change }
+                let memory = interpretation::bytes("--memory", typed.memory.as_deref())?;
+                Self::Parameterize { project: typed.project, size, change, memory }
             }
             Action::Render(typed) => Self::Render(render_request(*typed)?),
             Action::Animate(typed) => Self::Animate((*typed).try_into()?),

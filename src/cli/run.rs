@@ -112,7 +112,12 @@ pub(super) fn carry_out(request: Request, wait: Duration, progress: &Progress) -
         Request::ExportVolume { project, out, volume, format } => {
             told(exports::volume::write(&open(&project)?, &out, &volume, format, progress)?)
         }
-        Request::Parameterize { project, size, change } => parameterize(open(&project)?, size, change, progress)?,
+        Request::UploadVolume { project, url, volume } => {
+            told(exports::volume::upload(&open(&project)?, &url, &volume, progress)?)
+        }
+        Request::Parameterize { project, size, change, memory } => {
+            parameterize(open(&project)?, (size, memory), change, progress)?
+        }
         Request::Render(request) => draw::draw(&request, progress)?,
         Request::Animate(request) => animate::animate(&request, progress)?,
         Request::Review(request) => review::review(&request, progress)?,
@@ -240,26 +245,26 @@ fn export(
 /// Computes i, j, k and keeps them, for lookups and as arrays for other programs.
 fn parameterize(
     mut project: Project,
-    size: Option<[usize; 3]>,
+    (size, memory): (Option<[usize; 3]>, Option<u64>),
     change: Option<SetParameterization>,
     progress: &Progress,
 ) -> anyhow::Result<Report> {
     let mut report = Report::default();
-    if let Some(change) = change {
-        report.say(project.apply(&Command::SetParameterization(change), progress)?.summary());
-    }
     let size = match size {
         Some(size) => size,
         None => project.document().frame()?.size(),
     };
+    pictures::sampling_threads(size, memory).map_err(ProjectError::from)?;
+    if let Some(change) = change {
+        report.say(project.apply(&Command::SetParameterization(change), progress)?.summary());
+    }
     let Some(mut rock) = load::rock(&project, progress)? else {
         return Err(ProjectError::NoLayers.into());
     };
-    let fresh = derived::load_volumes(project.root(), &rock.key, Some(size), progress).is_none();
+    let fresh = !derived::holds_volumes(project.root(), &rock.key, size, progress);
     if fresh {
         let start = Instant::now();
-        let voxels = rock.voxels(&project, size, progress)?;
-        derived::write_volumes(project.root(), &rock.key, voxels, progress)?;
+        rock.keep_voxels(&project, size, memory, progress)?;
         rock.stages.push(Stage::new("sampling", start.elapsed()));
     }
     let out = derived::volumes_path(project.root());

@@ -2,8 +2,11 @@
 
 use crate::program::{HORIZONS, bytes, project, run_in, survey};
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use store::{StoredParameterization, write_parameterization};
+use survey::Progress;
 
 fn names(list: &Value) -> Vec<&str> {
     list.as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect()
@@ -167,6 +170,38 @@ fn parameterizing_is_done_once_and_again_when_something_changed() {
     // Everything derived may be deleted.
     fs::remove_dir_all(at.join("p.petro/derived")).unwrap();
     assert_eq!(go()["computed"], true);
+}
+
+/// All files of a folder, by their paths in it.
+fn within(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let files = bytes(folder).into_iter();
+    files.map(|(path, content)| (path.strip_prefix(folder).unwrap().to_owned(), content)).collect()
+}
+
+#[test]
+fn i_j_k_are_the_same_bytes_in_any_stated_memory() {
+    let folder = project();
+    let at = folder.path();
+    let zarr = at.join("p.petro/derived/parameterization.zarr");
+    let sampled = |options: &str| {
+        let _ = fs::remove_dir_all(&zarr);
+        run_in(at, &format!("parameterize p.petro --size 150x131x257 {options}")).done();
+        within(&zarr)
+    };
+    let whole = sampled("");
+    assert_eq!(whole.keys().filter(|file| file.starts_with("k/c")).count(), 2 * 2 * 3);
+    assert!(sampled("--memory 64M") == whole);
+    assert!(sampled("--memory 1G") == whole);
+    // And they are those that are written in one piece.
+    let stored = StoredParameterization::open(&zarr).unwrap();
+    let volumes = stored.read(&Progress::silent()).unwrap();
+    write_parameterization(&at.join("whole.zarr"), &volumes, stored.key(), &Progress::silent()).unwrap();
+    assert!(within(&at.join("whole.zarr")) == whole);
+    // Less than a file takes is refused, before anything changes.
+    let before = state(at);
+    run_in(at, "parameterize p.petro --size 150x131x257 --memory 63M --computed").failed(&["64M", "too few"]);
+    assert_eq!(state(at), before);
+    assert!(within(&zarr) == whole);
 }
 
 #[test]

@@ -115,3 +115,16 @@ fn import_and_attributes_keep_to_the_memory_they_are_given() {
         assert!(peak > MEMORY_MIB / 2.0 && peak < limit, "{line}: {peak:.1} MiB, at most {limit:.1}");
     }
 }
+
+/// A lattice that is finer than the survey: what its model takes is little beside the arrays, 256 MiB.
+#[test]
+fn sampling_i_j_k_keeps_to_the_memory_it_is_given() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    peak_mib(at, "synth s --size 48x48x48 --seed 5");
+    peak_mib(at, "import s/survey.sgy p.petro");
+    peak_mib(at, "horizon add p.petro s/horizons/Alpha.csv --name Alpha");
+    let model = peak_mib(at, "parameterize p.petro --size 8x8x8");
+    let peak = peak_mib(at, "parameterize p.petro --size 256x256x256 --memory 64M");
+    assert!(peak > MEMORY_MIB / 2.0 && peak < model + MEMORY_MIB * TOLERANCE, "{peak:.1} MiB, the model {model:.1}");
+}

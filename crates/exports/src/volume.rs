@@ -1,5 +1,5 @@
-//! Writes a volume of a project as a SEG-Y file: it is streamed by as many inlines at a time as a shard holds, so that
-//! a volume of any size can be written.
+//! Writes a volume of a project to object storage, or as a SEG-Y file, which is streamed by as many inlines at a time as a
+//! shard holds, so that a volume of any size can be written.
 
 use project::error::{Noun, ProjectError};
 use project::{Project, content, folder};
@@ -48,6 +48,35 @@ impl std::fmt::Display for VolumeWritten {
         }
         Ok(())
     }
+}
+
+/// The report of a volume that was written to object storage.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VolumeUploaded {
+    /// Its address.
+    pub url: String,
+    /// The volume.
+    pub volume: String,
+    /// Bytes of its objects.
+    pub bytes: u64,
+}
+
+impl std::fmt::Display for VolumeUploaded {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: volume '{}', {} bytes, Zarr v3", self.url, self.volume, self.bytes)
+    }
+}
+
+/// Writes the volume `name` of a project to object storage, as the Zarr v3 group that it is stored as.
+///
+/// # Errors
+/// There is no such volume, it is damaged, there is something under the address, or the storage does not take it; nothing
+/// that opens as a volume is then there.
+pub fn upload(project: &Project, url: &str, name: &str, progress: &Progress) -> Result<VolumeUploaded, ProjectError> {
+    let document = project.document();
+    let entry = &document.volumes[document.position(Noun::Volume, name)?];
+    let bytes = content::open_recorded(project.root(), entry, document.frame()?)?.upload(url, progress)?;
+    Ok(VolumeUploaded { url: url.to_owned(), volume: name.to_owned(), bytes })
 }
 
 /// Writes the volume `name` of a project; `format` is by default the one in which its samples are stored.

@@ -66,4 +66,17 @@ pub enum ParamError {
         /// The requested size, `[inlines, crosslines, samples]`.
         size: [usize; 3],
     },
+    /// The stated memory is too small for a single file.
+    #[error("{stated} bytes of memory are too few to sample i, j, k; state at least {}", size(*least))]
+    TooLittleMemory {
+        /// Bytes stated.
+        stated: u64,
+        /// Bytes needed.
+        least: u64,
+    },
+}
+
+/// Bytes as `--memory` takes them, rounded up.
+fn size(bytes: u64) -> String {
+    if bytes < 1 << 20 { format!("{}K", bytes.div_ceil(1 << 10)) } else { format!("{}M", bytes.div_ceil(1 << 20)) }
 }

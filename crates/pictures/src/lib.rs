@@ -17,10 +17,12 @@ mod horizon_distance;
 pub mod load;
 mod motion;
 mod painter;
+mod sampled;
 pub mod scene;
 mod shown_candidates;
 
 pub use certainty::{PickedShare, sparse_sentences};
 pub use motion::Motion;
 pub use painter::{Device, Painter, write_png};
+pub use sampled::sampling_threads;
 pub use shown_candidates::{LeafFacts, ShownCandidates};

@@ -137,7 +137,7 @@ impl Rock {
         size: [usize; 3],
         progress: &Progress,
     ) -> Result<VoxelParameterization, ProjectError> {
-        match derived::load_volumes(project.root(), &self.key, Some(size), progress) {
+        match derived::load_volumes(project.root(), &self.key, size, progress) {
             Some(kept) => Ok(kept),
             None => {
                 memory::check("i, j and k for each voxel", &size, VOXEL_BYTES)?;

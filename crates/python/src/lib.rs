@@ -24,6 +24,7 @@ mod program;
 mod project;
 mod refusal;
 mod schema;
+mod slabs;
 mod stored;
 mod work;
 
@@ -46,6 +47,10 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(stored::volume_info, module)?)?;
     module.add_function(wrap_pyfunction!(stored::read_box, module)?)?;
     module.add_function(wrap_pyfunction!(stored::read_live, module)?)?;
+    module.add_function(wrap_pyfunction!(project::finish_parameterization, module)?)?;
+    module.add_function(wrap_pyfunction!(slabs::time_slabs, module)?)?;
+    module.add_function(wrap_pyfunction!(slabs::time_slab, module)?)?;
+    module.add_function(wrap_pyfunction!(slabs::join_times, module)?)?;
     module.add_function(wrap_pyfunction!(stored::write_volume, module)?)?;
     module.add_function(wrap_pyfunction!(arrays::handed_over, module)?)?;
     module.add_function(wrap_pyfunction!(arrays::seen_at, module)?)?;

@@ -3,7 +3,7 @@
 use crate::arrays::{array, wrong};
 use crate::refusal;
 use crate::stored::{box_of, info_of};
-use crate::work::{long, long_of, on};
+use crate::work::{long, long_of, on, task};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods};
 use pictures::load::{self, Rock};
 use project::command::Command;
@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
-use store::StoredVolume;
+use store::{ParameterizationWriter, StoredVolume};
 use survey::{Progress, SurveyGeometry, TriangleMesh};
 
 /// An open project.
@@ -252,13 +252,38 @@ impl Project {
         Ok(([i, j, k], [array(py, sampled.layer)?, array(py, sampled.block)?]))
     }
 
-    /// Makes sure that the grids from which i, j, k are sampled are kept in the project, so that others find them.
-    #[pyo3(signature = (progress=None))]
-    fn keep_parameterization(&self, py: Python<'_>, progress: Option<Bound<'_, PyAny>>) -> PyResult<String> {
-        long(py, progress.as_ref(), |progress| {
-            Self::rock(&self.lock(), progress).map(|rock| rock.key).map_err(petroglyph::explain)
+    /// Begins i, j, k, layer and block on a lattice of `size`, in the new folder `out`; the grids from which they are
+    /// sampled are kept in the project, so that others find them. Returns the counts of files along each axis.
+    #[pyo3(signature = (out, size, progress=None))]
+    fn begin_parameterization(
+        &self,
+        py: Python<'_>,
+        out: PathBuf,
+        size: [usize; 3],
+        progress: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<[usize; 3]> {
+        let begin = |progress: &Progress| -> Result<_, ProjectError> {
+            Ok(Self::rock(&self.lock(), progress)?.begin_voxels(&out, size)?.file_counts())
+        };
+        long(py, progress.as_ref(), |progress| begin(progress).map_err(petroglyph::explain))
+    }
+
+    /// Samples and writes a column of files of what was begun, one file after the other, on one thread.
+    fn write_parameterization(&self, py: Python<'_>, out: PathBuf, column: [usize; 2]) -> PyResult<()> {
+        task(py, || -> Result<_, ProjectError> {
+            let progress = Progress::silent();
+            let (rock, writer) = (Self::rock(&self.lock(), &progress)?, ParameterizationWriter::open(&out)?);
+            let [x, y] = column;
+            (0..writer.file_counts()[2]).try_for_each(|z| rock.write_voxels(&writer, [x, y, z], [1; 3], &progress))
         })
     }
+}
+
+/// Makes sure that every file of a sampled parameterization was written.
+#[pyfunction]
+pub fn finish_parameterization(py: Python<'_>, out: PathBuf) -> PyResult<()> {
+    py.detach(|| Ok(ParameterizationWriter::open(&out)?.finish()?))
+        .map_err(|error: ProjectError| refusal::of(py, error))
 }
 
 /// A command from JSON, with what is not recorded of it.

@@ -132,6 +132,37 @@ def test_a_worker_that_is_killed_in_the_middle_changes_nothing(large, cluster, t
     assert same(large, "whole", "parted")
 
 
+def with_a_killer(monkeypatch, cluster, stage, marker):
+    """Kills the worker that is about to do the last task of a stage, once."""
+    original = petroglyph.dask._run
+
+    def run(graph, *args):
+        key = [key for key in graph.tasks if key[0].startswith(stage)][-1]
+        killer = (f"killer-{stage}", 0)
+        graph.tasks[killer] = (kill_once, str(marker))
+        graph.tasks[key] = (*graph.tasks[key], killer)
+        return original(graph, *args)
+
+    monkeypatch.setattr(petroglyph.dask, "_run", run)
+    cluster.register_plugin(_Importable(str(Path(__file__).parent)))
+
+
+def test_layer_coordinates_and_time_survive_a_killed_worker(project, large, cluster, tmp_path, monkeypatch):
+    project.parameterize(size="140x131x129")
+    large.extract(memory=1 << 40)
+    large.time(name="whole", memory=1)
+    with monkeypatch.context() as patch:
+        with_a_killer(patch, cluster, "sample-ijk", tmp_path / "first")
+        petroglyph.dask.parameterize(project, tmp_path / "p.zarr", size=(140, 131, 129), scheduler=cluster)
+    whole = contents(project.path / "derived" / "parameterization.zarr")
+    assert contents(tmp_path / "p.zarr") == whole
+    with monkeypatch.context() as patch:
+        with_a_killer(patch, cluster, "time-join", tmp_path / "second")
+        petroglyph.dask.time(large, "parted", memory=1, scheduler=cluster)
+    assert same(large, "whole", "parted")
+    assert os.path.exists(tmp_path / "first") and os.path.exists(tmp_path / "second"), "workers were killed"
+
+
 class _Importable(distributed.WorkerPlugin):
     """Lets workers, and those that take the place of lost ones, import this file."""
 
@@ -159,15 +190,28 @@ def test_extrema_are_named_arrays(large, tmp_path):
         petroglyph.dask.extrema(path, tmp_path / "peaks.zarr")
 
 
-@pytest.mark.parametrize("inlines", [7, 40])
-def test_layer_coordinates_do_not_depend_on_the_slabs(project, tmp_path, inlines):
+def test_layer_coordinates_of_tasks_are_those_of_the_program(project, tmp_path):
     xarray = pytest.importorskip("xarray")
-    petroglyph.dask.parameterize(project, tmp_path / "p.zarr", inlines=inlines, scheduler="threads")
-    found, whole = xarray.open_zarr(tmp_path / "p.zarr", consolidated=False), project.parameterization()
-    for name in whole.data_vars:
-        assert found[name].values.tobytes() == whole[name].values.tobytes(), name
-    project.set_parameterization(tmp_path / "p.zarr")
+    for name, size in (("survey", None), ("odd", (140, 131, 129))):
+        out = tmp_path / f"{name}.zarr"
+        petroglyph.dask.parameterize(project, out, size=size, scheduler="threads")
+        text = "x".join(map(str, size or project.geometry.shape))
+        project.parameterize(size=text, memory="64M")
+        for array in ("i", "j", "k", "layer", "block"):
+            whole = contents(project.path / "derived" / "parameterization.zarr" / array)
+            assert contents(out / array) == whole, (name, array)
+        assert not (out / ".apart").exists()
+    found = xarray.open_zarr(tmp_path / "survey.zarr", consolidated=False)
+    assert found["k"].sizes["inline"] == found["inline"].size == project.geometry.shape[0]
+    project.set_parameterization(tmp_path / "survey.zarr")
     assert "parameterization" in project.document
+
+
+def test_layer_coordinates_with_a_file_missing_are_refused(project, tmp_path):
+    project._native.begin_parameterization(tmp_path / "p.zarr", (140, 20, 30))
+    project._native.write_parameterization(tmp_path / "p.zarr", (0, 0))
+    with pytest.raises(petroglyph.PetroglyphError, match="not written to its end"):
+        petroglyph._native.finish_parameterization(tmp_path / "p.zarr")
 
 
 def test_pictures_are_drawn_side_by_side(project):
@@ -176,6 +220,29 @@ def test_pictures_are_drawn_side_by_side(project):
     drawn = petroglyph.dask.render(project, options, scheduler="threads")
     assert [one._repr_png_() for one in drawn] == [project.render(**option)._repr_png_() for option in options]
     assert drawn[0]._repr_png_() != drawn[1]._repr_png_()
+
+
+# Geologic time.
+
+
+@pytest.mark.parametrize("memory", [1, 1 << 40])
+def test_geologic_time_in_slabs_is_that_of_the_program(large, whole, memory, cluster):
+    """Two slabs, and one; on one thread after the other, and on two processes."""
+    large.extract(memory=1 << 40)
+    # What is stated to the program is a whole number of bytes too.
+    told = large.time(name="whole", memory=memory)
+    for name, scheduler in (("parted", "synchronous"), ("spread", cluster)):
+        done = petroglyph.dask.time(large, name, memory=memory, scheduler=scheduler)
+        assert same(large, "whole", name)
+        assert done["slabs"] == told["slabs"] == (2 if memory == 1 else 1)
+        assert done["known"] == pytest.approx(told["known"]) and done["known"] > 0.5
+    assert sorted(path.name for path in large.path.parent.iterdir()) == ["large.petro"]
+
+
+def test_geologic_time_without_candidates_is_a_sentence(large):
+    with pytest.raises(petroglyph.PetroglyphError, match="candidates"):
+        petroglyph.dask.time(large)
+    assert [path.name for path in large.path.parent.iterdir()] == ["large.petro"]
 
 
 # Horizon candidates.

@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use survey::progress::Progress;
 use survey::sample::Sample;
 use zarrs::array::codec::{Crc32cCodec, ZstdCodec};
@@ -280,6 +281,18 @@ impl<T: StoredSample> ArrayWriter<T> {
     }
 }
 
+/// Folder of a group for files that are not complete, where several processes write.
+pub(super) const APART: &str = ".apart";
+
+/// A folder for such files that no other writer uses.
+pub(super) fn new_apart(group: &Path) -> PathBuf {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    // Numbers of processes are those of a machine; the time tells machines apart.
+    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default().as_nanos();
+    let own = format!("{}-{now:x}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+    group.join(APART).join(own)
+}
+
 /// How the chunks of everything but volumes are coded.
 fn codec() -> Arc<dyn BytesToBytesCodecTraits> {
     Arc::new(ZstdCodec::new(ZSTD_LEVEL, true))
@@ -354,7 +367,7 @@ impl StoredArray {
         Ok(Self { shards: Some(Shards::of_files(grid, files, group, name)), ..opened })
     }
 
-    fn of_metadata(group: &Path, name: &str) -> Result<Self, StoreError> {
+    pub(super) fn of_metadata(group: &Path, name: &str) -> Result<Self, StoreError> {
         let missing = || StoreError::MissingArray { path: group.to_owned(), array: name.to_owned() };
         capacity::check_metadata(&group.join(name).join("zarr.json"))?;
         let array = match Array::open(file_store(group, "read")?, &format!("/{name}")) {

@@ -92,6 +92,14 @@ pub enum StoreError {
         /// What is wrong, and what to do.
         reason: String,
     },
+    /// Object storage does not take what was to be written.
+    #[error("{url} could not be written: {reason}")]
+    RemoteWrite {
+        /// The object, or the volume.
+        url: String,
+        /// What is wrong, and what to do.
+        reason: String,
+    },
     /// The program was built without object storage.
     #[error("{url} lies in object storage, which this program was built without; build it with `--features remote`")]
     WithoutRemote {

@@ -76,7 +76,9 @@ pub use horizon::{read_horizon, write_horizon};
 pub use ingest::{Ingested, MEMORY_BYTES, resume_blocks, write_blocks, write_volume};
 pub use layout::{ArrayLayout, BRICK};
 pub use linking::link_volume;
-pub use parameterization::{NO_ID, ParameterizationVolumes, StoredParameterization, write_parameterization};
+pub use parameterization::{
+    NO_ID, ParameterizationVolumes, ParameterizationWriter, StoredParameterization, write_parameterization,
+};
 pub use parts::VolumeParts;
 pub use ranges::IndexedRanges;
 pub use replacement::{Replacement, replace_file};

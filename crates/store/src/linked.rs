@@ -17,6 +17,8 @@ mod cache;
 mod remote;
 #[cfg(all(test, feature = "remote"))]
 mod tests;
+#[cfg(feature = "remote")]
+mod upload;
 
 use super::error::StoreError;
 use super::placed::ArrayFiles;
@@ -26,6 +28,8 @@ use std::path::Path;
 use std::sync::Arc;
 #[cfg(feature = "remote")]
 use survey::progress::Progress;
+#[cfg(feature = "remote")]
+pub(super) use upload::upload;
 
 /// The file that says where the bricks are.
 const LINK: &str = "link.json";
@@ -89,6 +93,12 @@ impl Link {
     #[cfg(not(feature = "remote"))]
     pub(super) fn files(&self, _: &str) -> Result<Arc<dyn ArrayFiles>, StoreError> {
         Err(StoreError::WithoutRemote { url: self.record.url.clone() })
+    }
+
+    /// The address of what was linked.
+    #[cfg(feature = "remote")]
+    pub(super) fn url(&self) -> &str {
+        &self.record.url
     }
 
     /// Checksums of what was linked.

@@ -1,4 +1,4 @@
-//! Makes links to volumes in object storage.
+//! Makes links to volumes in object storage, and volumes there.
 
 use super::error::StoreError;
 #[cfg(feature = "remote")]
@@ -31,4 +31,30 @@ pub fn link_volume(path: &Path, url: &str, progress: &Progress) -> Result<Stored
 #[cfg(not(feature = "remote"))]
 pub fn link_volume(_: &Path, url: &str, _: &Progress) -> Result<StoredVolume, StoreError> {
     Err(StoreError::WithoutRemote { url: url.to_owned() })
+}
+
+impl StoredVolume {
+    /// Writes the volume under an address in object storage, where it is whole or not there; returns its bytes.
+    ///
+    /// # Errors
+    /// It is damaged, or lies in object storage itself; [`StoreError::RemoteWrite`] when there is something under the
+    /// address, or the storage does not take it. What was written is then removed again, as far as the storage answers.
+    #[cfg(feature = "remote")]
+    pub fn upload(&self, url: &str, progress: &Progress) -> Result<u64, StoreError> {
+        if let Some(from) = self.linked_url() {
+            let reason = format!("the volume lies in object storage itself; copy the objects from {from}");
+            return Err(StoreError::RemoteWrite { url: url.to_owned(), reason });
+        }
+        self.verify(progress)?;
+        linked::upload(self.path(), url.trim_end_matches('/'), progress)
+    }
+
+    /// Says that the program was built without object storage.
+    ///
+    /// # Errors
+    /// [`StoreError::WithoutRemote`].
+    #[cfg(not(feature = "remote"))]
+    pub fn upload(&self, url: &str, _: &Progress) -> Result<u64, StoreError> {
+        Err(StoreError::WithoutRemote { url: url.to_owned() })
+    }
 }

@@ -2,16 +2,17 @@
 //! (float32, unpacked, NaN outside) and `layer`, `block` (uint8, or uint16 where an id needs it; all ones =
 //! none), all `[inline][crossline][sample]`.
 //!
-//! Memory: 16 bytes per voxel for the volumes themselves, one shard per thread while writing, and one layer
-//! of shards while reading.
+//! Memory: 16 bytes per voxel for the volumes themselves, or for the box that is written at a time, one shard per thread
+//! while writing, and one layer of shards while reading.
 
-use super::array::{StoredArray, write_array};
+use super::array::{APART, ArrayWriter, StoredArray, new_apart};
 use super::error::StoreError;
 use super::header::{read_header, write_header};
-use super::layout::ArrayLayout;
+use super::layout::{ArrayLayout, gather, grid_index};
 use super::replacement::Replacement;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use survey::progress::Progress;
 use survey::volume::Volume;
 
@@ -20,6 +21,9 @@ pub const NO_ID: u16 = u16::MAX;
 
 /// Kind of the group.
 const KIND: &str = "parameterization";
+
+/// Its arrays.
+const ARRAYS: [&str; 5] = ["i", "j", "k", "layer", "block"];
 
 /// Facts of a parameterization.
 #[derive(Serialize, Deserialize)]
@@ -54,28 +58,174 @@ pub fn write_parameterization(
     key: &str,
     progress: &Progress,
 ) -> Result<(), StoreError> {
-    let size = volumes.i.size();
     let replacement = Replacement::of(path)?;
-    let group = replacement.path();
-    write_header(group, KIND, &Header { size, key: key.to_owned() })?;
-    for (name, volume) in [("i", &volumes.i), ("j", &volumes.j), ("k", &volumes.k)] {
-        write_array(group, name, ArrayLayout::volume(size), f32::NAN, volume.samples(), progress)?;
-    }
-    for (name, volume) in [("layer", &volumes.layer), ("block", &volumes.block)] {
-        write_ids(group, name, size, volume.samples(), progress)?;
-    }
+    let counts = [&volumes.layer, &volumes.block].map(|ids| {
+        let most = ids.samples().iter().filter(|&&id| id != NO_ID).max();
+        most.map_or(0, |&most| usize::from(most) + 1)
+    });
+    let writer = ParameterizationWriter::create(replacement.path(), volumes.i.size(), counts, key)?;
+    progress.begin("writing i, j, k", writer.file_counts().iter().product::<usize>() as u64);
+    writer.write([0; 3], volumes, progress)?;
     replacement.commit()
 }
 
-/// Writes ids in one byte where they fit.
-fn write_ids(group: &Path, name: &str, size: [usize; 3], ids: &[u16], progress: &Progress) -> Result<(), StoreError> {
-    let narrow = ids.iter().all(|&id| id == NO_ID || id < u16::from(u8::MAX));
-    if !narrow {
-        return write_array(group, name, ArrayLayout::volume(size), NO_ID, ids, progress);
+/// A parameterization that is being written in boxes of whole files, by one process or several: the bytes are the same
+/// whatever the boxes and whoever writes them.
+///
+/// Memory: a file of an array for each thread, before and after compression.
+pub struct ParameterizationWriter {
+    group: PathBuf,
+    size: [usize; 3],
+    layout: ArrayLayout,
+    fields: [ArrayWriter<f32>; 3],
+    ids: [IdWriter; 2],
+    /// Folder for files that are not complete, where other processes write, too.
+    apart: Option<PathBuf>,
+}
+
+/// Layers or blocks, in one byte where they fit.
+enum IdWriter {
+    Narrow(ArrayWriter<u8>),
+    Wide(ArrayWriter<u16>),
+}
+
+impl ParameterizationWriter {
+    /// Begins one in the folder `group`, of so many layers and fault blocks.
+    ///
+    /// # Errors
+    /// The disk does not take it.
+    pub fn create(group: &Path, size: [usize; 3], counts: [usize; 2], key: &str) -> Result<Self, StoreError> {
+        write_header(group, KIND, &Header { size, key: key.to_owned() })?;
+        let layout = ArrayLayout::volume(size);
+        let field = |name| ArrayWriter::create(group, name, layout.clone(), f32::NAN);
+        let ids = |name, count| -> Result<IdWriter, StoreError> {
+            Ok(if count <= usize::from(u8::MAX) {
+                IdWriter::Narrow(ArrayWriter::create(group, name, layout.clone(), u8::MAX)?)
+            } else {
+                IdWriter::Wide(ArrayWriter::create(group, name, layout.clone(), NO_ID)?)
+            })
+        };
+        let fields = [field("i")?, field("j")?, field("k")?];
+        let ids = [ids("layer", counts[0])?, ids("block", counts[1])?];
+        Ok(Self { group: group.to_owned(), size, layout, fields, ids, apart: None })
     }
-    // The low byte of "none" is "none".
-    let bytes: Vec<u8> = ids.iter().map(|&id| id as u8).collect();
-    write_array(group, name, ArrayLayout::volume(size), u8::MAX, &bytes, progress)
+
+    /// One that was begun, to write some of its files while other processes write others.
+    ///
+    /// # Errors
+    /// It was not begun, or its metadata are damaged.
+    pub fn open(group: &Path) -> Result<Self, StoreError> {
+        let Header { size, .. } = read_header(group, KIND, "a parameterization")?;
+        let (layout, apart) = (ArrayLayout::volume(size), new_apart(group));
+        let field = |name| ArrayWriter::of_created(group, name, layout.clone(), f32::NAN, Some(&apart));
+        let ids = |name| -> Result<IdWriter, StoreError> {
+            Ok(if StoredArray::of_metadata(group, name)?.holds::<u8>() {
+                IdWriter::Narrow(ArrayWriter::of_created(group, name, layout.clone(), u8::MAX, Some(&apart))?)
+            } else {
+                IdWriter::Wide(ArrayWriter::of_created(group, name, layout.clone(), NO_ID, Some(&apart))?)
+            })
+        };
+        let fields = [field("i")?, field("j")?, field("k")?];
+        let ids = [ids("layer")?, ids("block")?];
+        Ok(Self { group: group.to_owned(), size, layout, fields, ids, apart: Some(apart) })
+    }
+
+    /// Samples along each axis.
+    pub fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    /// Files of an array along each axis.
+    pub fn file_counts(&self) -> [usize; 3] {
+        let counts = self.layout.file_counts();
+        [counts[0], counts[1], counts[2]]
+    }
+
+    /// Samples of a file along each axis.
+    pub fn file_shape(&self) -> [usize; 3] {
+        let shape = self.layout.file_shape();
+        [shape[0], shape[1], shape[2]]
+    }
+
+    /// Where the box of `files` files from file `place` begins, and its samples, cut at the end of the arrays.
+    pub fn samples_of(&self, place: [usize; 3], files: [usize; 3]) -> ([usize; 3], [usize; 3]) {
+        let (edge, size) = (self.file_shape(), self.size);
+        let start: [usize; 3] = std::array::from_fn(|axis| place[axis] * edge[axis]);
+        let part = |axis: usize| (files[axis] * edge[axis]).min(size[axis].saturating_sub(start[axis]));
+        (start, std::array::from_fn(part))
+    }
+
+    /// Writes a box of whole files whose first one is at `place` among the files, in parallel; `progress` takes a step for
+    /// each file.
+    ///
+    /// # Errors
+    /// The volumes are no such box, the disk does not take them, or the user cancelled.
+    pub fn write(
+        &self,
+        place: [usize; 3],
+        volumes: &ParameterizationVolumes,
+        progress: &Progress,
+    ) -> Result<(), StoreError> {
+        let (found, edge) = (volumes.i.size(), self.file_shape());
+        let files: [usize; 3] = std::array::from_fn(|axis| found[axis].div_ceil(edge[axis]));
+        let (_, expected) = self.samples_of(place, files);
+        let sizes = [volumes.j.size(), volumes.k.size(), volumes.layer.size(), volumes.block.size()];
+        if let Some(wrong) = sizes.into_iter().chain([found]).find(|&size| size != expected) {
+            let [expected, found] = [expected, wrong].map(|size| size.iter().product());
+            return Err(StoreError::SizeMismatch { what: "a box of the parameterization", expected, found });
+        }
+        let count: usize = files.iter().product();
+        let arrays = self.fields.len() + self.ids.len();
+        (0..count * arrays).into_par_iter().try_for_each(|n| {
+            progress.check()?;
+            let (array, inside) = (n % arrays, grid_index(n / arrays, &files));
+            let index: [usize; 3] = std::array::from_fn(|axis| place[axis] + inside[axis]);
+            let start: [usize; 3] = std::array::from_fn(|axis| inside[axis] * edge[axis]);
+            match array {
+                0 => self.fields[0].write_shard(&index, gather(volumes.i.samples(), &found, &start, &edge))?,
+                1 => self.fields[1].write_shard(&index, gather(volumes.j.samples(), &found, &start, &edge))?,
+                2 => self.fields[2].write_shard(&index, gather(volumes.k.samples(), &found, &start, &edge))?,
+                3 => self.ids[0].write_shard(&index, gather(volumes.layer.samples(), &found, &start, &edge))?,
+                _ => self.ids[1].write_shard(&index, gather(volumes.block.samples(), &found, &start, &edge))?,
+            }
+            if array + 1 == arrays { Ok(progress.step(1)?) } else { Ok(()) }
+        })
+    }
+
+    /// Makes sure that every file was written, and removes what lost processes left.
+    ///
+    /// # Errors
+    /// [`StoreError::Unfinished`].
+    pub fn finish(&self) -> Result<(), StoreError> {
+        let counts = self.file_counts();
+        for n in 0..counts.iter().product() {
+            let key = grid_index(n, &counts).iter().map(usize::to_string).collect::<Vec<_>>().join("/");
+            if !ARRAYS.iter().all(|array| self.group.join(array).join("c").join(&key).is_file()) {
+                return Err(StoreError::Unfinished { path: self.group.clone() });
+            }
+        }
+        let _ = std::fs::remove_dir_all(self.group.join(APART));
+        Ok(())
+    }
+}
+
+impl Drop for ParameterizationWriter {
+    fn drop(&mut self) {
+        if let Some(apart) = &self.apart {
+            // What cannot be removed now is removed at the end.
+            let _ = std::fs::remove_dir_all(apart);
+        }
+    }
+}
+
+impl IdWriter {
+    fn write_shard(&self, index: &[usize], ids: Vec<u16>) -> Result<(), StoreError> {
+        match self {
+            // The low byte of "none" is "none".
+            Self::Narrow(writer) => writer.write_shard(index, ids.iter().map(|&id| id as u8).collect()),
+            Self::Wide(writer) => writer.write_shard(index, ids),
+        }
+    }
 }
 
 /// A parameterization on disk.

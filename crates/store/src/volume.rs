@@ -104,6 +104,12 @@ impl StoredVolume {
         self.link.is_some()
     }
 
+    /// Where its bricks lie in object storage.
+    #[cfg(feature = "remote")]
+    pub(super) fn linked_url(&self) -> Option<&str> {
+        self.link.as_ref().map(linked::Link::url)
+    }
+
     /// Count of levels, the full volume included.
     pub fn level_count(&self) -> usize {
         self.levels.len()

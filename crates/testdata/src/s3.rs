@@ -1,7 +1,8 @@
-//! A tiny object storage on loopback, for tests: enough of S3's GET, HEAD, PUT and LIST, with faults on demand.
+//! A tiny object storage on loopback, for tests: enough of S3's GET, HEAD, PUT, DELETE and LIST, with faults
+//! on demand.
 //!
 //! Objects live in memory. A path is `/BUCKET/KEY`, as S3 has it with path-style addresses, and as plain HTTP has it.
-//! Nothing is signed or checked but that the bucket is there.
+//! Nothing is checked but that the bucket is there, and that a request is signed where that is asked for.
 
 use std::collections::BTreeMap;
 use std::io::{self, BufRead, BufReader, Write};
@@ -26,6 +27,10 @@ pub struct Counters {
     pub delay_ms: AtomicU64,
     /// How many of the next replies are late.
     pub delayed: AtomicUsize,
+    /// Objects beyond this number are not taken; 0 = no limit.
+    pub most_objects: AtomicUsize,
+    /// Whether requests that are not signed are refused.
+    pub private: AtomicBool,
 }
 
 /// Objects by `BUCKET/KEY`.
@@ -106,6 +111,23 @@ impl Server {
         }
     }
 
+    /// Keys of all objects in the bucket, in the order of the alphabet.
+    pub fn keys(&self) -> Vec<String> {
+        let objects = self.objects.lock().unwrap_or_else(PoisonError::into_inner);
+        objects.keys().map(|name| name[self.bucket.len() + 1..].to_owned()).collect()
+    }
+
+    /// The bytes of an object in the bucket.
+    pub fn object(&self, key: &str) -> Option<Vec<u8>> {
+        let objects = self.objects.lock().unwrap_or_else(PoisonError::into_inner);
+        objects.get(&format!("{}/{key}", self.bucket)).cloned()
+    }
+
+    /// Removes an object from the bucket.
+    pub fn remove(&self, key: &str) {
+        self.objects.lock().unwrap_or_else(PoisonError::into_inner).remove(&format!("{}/{key}", self.bucket));
+    }
+
     /// Bytes of all objects.
     pub fn total_bytes(&self) -> u64 {
         self.objects.lock().unwrap_or_else(PoisonError::into_inner).values().map(|bytes| bytes.len() as u64).sum()
@@ -140,6 +162,7 @@ struct Request {
     path: String,
     query: String,
     range: Option<(u64, u64)>,
+    is_signed: bool,
     body: Vec<u8>,
 }
 
@@ -176,9 +199,16 @@ impl Connection {
                 request.method == "HEAD",
             );
         }
+        if self.counters.private.load(Ordering::Relaxed) && !request.is_signed {
+            let is_head = request.method == "HEAD";
+            return reply(out, "403 Forbidden", "", b"<Error><Code>AccessDenied</Code></Error>", is_head);
+        }
         if request.method == "PUT" {
-            self.objects.lock().unwrap_or_else(PoisonError::into_inner).insert(name, request.body.clone());
-            return reply(out, "200 OK", "ETag: \"put\"\r\n", b"", false);
+            return self.take_in(name, request, out);
+        }
+        if request.method == "DELETE" {
+            self.objects.lock().unwrap_or_else(PoisonError::into_inner).remove(&name);
+            return reply(out, "204 No Content", "", b"", false);
         }
         if request.query.contains("list-type=2") {
             return self.list(request, out);
@@ -213,6 +243,21 @@ impl Connection {
         self.counters.gets.fetch_add(1, Ordering::Relaxed);
         self.counters.bytes.fetch_add(part.len() as u64, Ordering::Relaxed);
         reply(out, status, &facts, part, false)
+    }
+
+    fn take_in(&self, name: String, request: &Request, out: &TcpStream) -> io::Result<()> {
+        let most = self.counters.most_objects.load(Ordering::Relaxed);
+        {
+            let mut objects = self.objects.lock().unwrap_or_else(PoisonError::into_inner);
+            if most > 0 && objects.len() >= most {
+                return reply(out, "507 Insufficient Storage", "", b"<Error><Code>Full</Code></Error>", false);
+            }
+            objects.insert(name, request.body.clone());
+        }
+        if take(&self.counters.drops) {
+            return Err(io::ErrorKind::ConnectionAborted.into());
+        }
+        reply(out, "200 OK", "ETag: \"put\"\r\n", b"", false)
     }
 
     fn list(&self, request: &Request, out: &TcpStream) -> io::Result<()> {
@@ -250,7 +295,7 @@ fn read_request(input: &mut impl BufRead) -> Option<Request> {
     let mut words = line.split_whitespace();
     let (method, target) = (words.next()?.to_owned(), words.next()?.to_owned());
     let (path, query) = target.split_once('?').unwrap_or((&target, ""));
-    let (mut range, mut length) = (None, 0);
+    let (mut range, mut length, mut is_signed) = (None, 0, false);
     loop {
         let mut header = String::new();
         input.read_line(&mut header).ok()?;
@@ -262,11 +307,13 @@ fn read_request(input: &mut impl BufRead) -> Option<Request> {
         if name.eq_ignore_ascii_case("range") {
             let (first, last) = value.trim().strip_prefix("bytes=")?.split_once('-')?;
             range = Some((first.parse().ok()?, last.parse().unwrap_or(u64::MAX)));
+        } else if name.eq_ignore_ascii_case("authorization") {
+            is_signed = true;
         } else if name.eq_ignore_ascii_case("content-length") {
             length = value.trim().parse().ok()?;
         }
     }
     let mut body = vec![0; length];
     input.read_exact(&mut body).ok()?;
-    Some(Request { method, path: path.to_owned(), query: query.to_owned(), range, body })
+    Some(Request { method, path: path.to_owned(), query: query.to_owned(), range, is_signed, body })
 }

@@ -100,6 +100,16 @@ pub struct JoinedSlabs {
 }
 
 impl JoinedSlabs {
+    /// Goes on where another one was, whose [`JoinedSlabs::common`] these are.
+    pub fn after(common: Vec<f32>) -> Self {
+        Self { common }
+    }
+
+    /// τ of the last lines of the slab that was taken last, which the next one has too.
+    pub fn common(&self) -> &[f32] {
+        &self.common
+    }
+
     /// Takes τ of the next slab; returns τ of the lines that are done: all but those that the slab after it has too,
     /// or all of them if it is the last.
     pub fn add(&mut self, tau: &Volume<f32>, is_last: bool) -> Vec<f32> {

@@ -35,7 +35,7 @@ pub(in crate::cli) enum VolumeAction {
     /// Take in a volume that stays in object storage: its bricks are read, and cached, as they are needed
     #[command(after_help = "Examples:\n  petroglyph volume link north.petro s3://surveys/north.zarr --name seismic\
                       \n  petroglyph volume link north.petro https://example.org/surveys/north.zarr\n\n\
-                      The volume is one of this program (volumes/NAME.zarr of a project), copied there. Credentials come\n\
+                      The volume is one of this program, written there by `petroglyph export` or copied. Credentials come\n\
                       from the environment alone: AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY, AWS_REGION, AWS_ENDPOINT_URL;\n\
                       GOOGLE_APPLICATION_CREDENTIALS; AZURE_STORAGE_ACCOUNT_NAME, AZURE_STORAGE_ACCOUNT_KEY. Blocks are\n\
                       cached in PETROGLYPH_CACHE [default: ~/.cache/petroglyph], up to PETROGLYPH_CACHE_BYTES [10 GiB].\n\
@@ -369,7 +369,7 @@ pub(in crate::cli) struct FaultAddArgs {
 pub(in crate::cli) struct ExportArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
-    /// File to write
+    /// File to write; for a volume also an address in object storage: s3://, gs://, az://, https://
     pub(in crate::cli) out: PathBuf,
     /// Horizon to write
     #[arg(long, value_name = "NAME", required_unless_present_any = ["candidates", "fault", "volume", "model"], conflicts_with_all = ["fault", "volume"])]

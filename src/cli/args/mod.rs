@@ -140,11 +140,15 @@ pub(super) enum Action {
         /// Folder that `petroglyph synth` wrote
         truth: PathBuf,
     },
-    /// Write a horizon, a fault, the points of all candidates, a volume or a 3D model to a file
+    /// Write a horizon, a fault, the points of all candidates, a volume or a 3D model to a file, or a volume to object
+    /// storage
     #[command(after_help = "Examples:\n  petroglyph export north.petro top.irap --horizon \"Top Chalk\" --format irap\
                       \n  petroglyph export north.petro points.csv --candidates\
                       \n  petroglyph export north.petro out.sgy --volume seismic\
-                      \n  petroglyph export north.petro block.glb --model --scene corner")]
+                      \n  petroglyph export north.petro s3://surveys/coherence.zarr --volume coherence\
+                      \n  petroglyph export north.petro block.glb --model --scene corner\n\n\
+                      In object storage a volume is a Zarr v3 group, whole or not there; `petroglyph volume link` takes it\n\
+                      into another project, and says which variables hold credentials.")]
     Export(Box<ExportArgs>),
     /// State the velocity that turns two-way time into metres
     #[command(after_help = "Example:\n  petroglyph velocity north.petro 2500")]
@@ -172,7 +176,7 @@ pub(super) enum Action {
     Scene(SceneAction),
     /// Compute the layer coordinates i, j, k and keep them in the project
     #[command(after_help = "Examples:\n  petroglyph parameterize north.petro --size 128x128x128\n  petroglyph \
-                      parameterize north.petro --from geochron.zarr")]
+                      parameterize north.petro --memory 1G\n  petroglyph parameterize north.petro --from geochron.zarr")]
     Parameterize(ParameterizeArgs),
     /// Draw a picture
     #[command(after_help = "Examples:\n  petroglyph render north.petro block.png\

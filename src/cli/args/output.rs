@@ -108,6 +108,10 @@ pub(in crate::cli) struct ParameterizeArgs {
     /// Samples of the stored arrays along inlines, crosslines and depth [default: the survey's]
     #[arg(long, value_name = "NxNxN")]
     pub(in crate::cli) size: Option<String>,
+    /// Memory to use beside the model and its grids, such as 2G or 800M: fewer threads sample at a time; the arrays are the
+    /// same [default: 64M for each thread]
+    #[arg(long, value_name = "BYTES")]
+    pub(in crate::cli) memory: Option<String>,
 }
 
 #[derive(Debug, Args)]

@@ -53,6 +53,7 @@ pub use stack::{Spacing, StackHorizons, Stacked};
 pub use survey_frame::SetVelocity;
 pub use texture::AddTexture;
 pub use time::{ComputeTime, TimeComputed};
+pub use time_slabs::TimeSlabs;
 pub use well::{AddWell, RemoveWell, RenameWell, SetWellColour, WellAdded};
 
 use crate::document::{Document, Source};

@@ -1,19 +1,15 @@
 //! Geologic time as a volume of the project.
 
-use super::time_slabs::{SlabTimes, explain};
+use super::time_slabs::{SlabTimes, TimeSlabs, explain};
 use super::{Effect, Noun, ProjectError};
-use crate::content;
 use crate::content::volume_facts::{self, Facts};
 use crate::document::{Polarity, Source};
 use crate::folder::Draft;
-use crate::interpretation::assembly;
-use crate::interpretation::candidates::{Candidates, amplitudes};
-use crate::interpretation::times::{Obeyed, QUANTITY};
+use crate::interpretation::times::QUANTITY;
 use crate::memory_budget;
-use ::time::{Jump, Slabs, TimeSettings, find_faults, geologic_time};
+use ::time::{Jump, TimeSettings};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use store::VolumeInfo;
 use survey::Progress;
 
 /// Computes geologic time from the present extraction, its volume and the interpretation (faults, picked horizons,
@@ -91,44 +87,21 @@ impl std::fmt::Display for TimeComputed {
 impl ComputeTime {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         draft.document.check_new_name(Noun::Volume, &self.name)?;
-        let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
-        let surfaces = &candidates.forest.surfaces;
-        let from = amplitudes(&draft.document)?.clone();
-        let geometry = draft.document.frame()?.clone();
-        let network = assembly::blocks(draft.root(), &draft.document, progress)?;
-        let mut obeyed = Obeyed::load(draft.root(), &draft.document, &network, progress)?;
-        let (file, path) = draft.generation("volumes", &self.name, "zarr")?;
-        let info = VolumeInfo {
-            quantity: Some(QUANTITY.to_owned()),
-            unit: Some("samples".to_owned()),
-            source: Some(format!("{QUANTITY} of {}", from.name)),
-            ..VolumeInfo::of(geometry.clone())
-        };
-        let faults = obeyed.interpretation.cuts.len();
         let memory = self.memory_bytes.unwrap_or_else(memory_budget::half_of_available);
-        let slabs = Slabs::within(geometry.size(), memory);
-        let slab_count = slabs.ranges().len();
-        let (found_count, known, tops_out_of_order);
-        if slab_count == 1 {
-            let volume = content::read_volume(draft.root(), &from, &geometry, progress)?;
-            let found = match faults {
-                0 => find_faults(&volume, surfaces, self.settings.fewest_vertices, progress)?,
-                _ => Vec::new(),
-            };
-            found_count = found.len();
-            obeyed.interpretation.cuts.extend(found.into_iter().map(|fault| fault.cut));
-            let found = geologic_time(&volume, surfaces, &obeyed.interpretation, &self.settings, progress)?;
-            drop(volume);
-            tops_out_of_order = obeyed.order(&found.tau);
-            store::write_volume(&path, &found.tau, &info, progress)?;
-            known = found.known;
+        let slabs = TimeSlabs::open(draft.root(), &draft.document, &self.settings, memory, progress)?;
+        let (file, path) = draft.generation("volumes", &self.name, "zarr")?;
+        let (info, from) = (slabs.info(), &slabs.from);
+        let (found, known, tops_out_of_order);
+        if slabs.ranges().len() == 1 {
+            let tau;
+            (tau, found) = slabs.solve(0, progress)?;
+            known = tau.samples().iter().filter(|time| time.is_finite()).count();
+            tops_out_of_order = slabs.obeyed.order(&tau);
+            store::write_volume(&path, &tau, &info, progress)?;
         } else {
-            let volume = content::open_recorded(draft.root(), &from, &geometry)?;
-            let mut times = SlabTimes::new(&volume, surfaces, &obeyed.interpretation, &self.settings, slabs);
+            let mut times = SlabTimes::new(&slabs);
             store::write_blocks(&path, &mut times, &info, memory / 8, progress).map_err(explain)?;
-            found_count = times.found;
-            known = times.known as f64 / geometry.size().iter().product::<usize>() as f64;
-            tops_out_of_order = [0, 0];
+            (found, known, tops_out_of_order) = (times.found, times.known, [0, 0]);
         }
         let facts = Facts {
             name: self.name.clone(),
@@ -142,17 +115,18 @@ impl ComputeTime {
             geometry: None,
         };
         draft.document.volumes.push(volume_facts::entry(&path, facts, progress)?);
+        let told = &slabs.obeyed.interpretation;
         Ok(Effect::TimeComputed(TimeComputed {
             volume: self.name.clone(),
-            of: from.name,
-            faults,
-            found: found_count,
-            horizons: obeyed.interpretation.horizons.len(),
-            unconformities: obeyed.interpretation.horizons.iter().filter(|known| known.jump != Jump::None).count(),
-            tops: obeyed.interpretation.same.len(),
+            of: from.name.clone(),
+            faults: told.cuts.len(),
+            found,
+            horizons: told.horizons.len(),
+            unconformities: told.horizons.iter().filter(|known| known.jump != Jump::None).count(),
+            tops: told.same.len(),
             tops_out_of_order,
-            slabs: slab_count,
-            known,
+            slabs: slabs.ranges().len(),
+            known: known as f64 / info.geometry.size().iter().product::<usize>() as f64,
         }))
     }
 }

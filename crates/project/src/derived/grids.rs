@@ -274,22 +274,20 @@ pub fn volumes_path(root: &Path) -> PathBuf {
     folder(root).join(VOLUMES)
 }
 
-/// Writes the sampled parameterization for other programs.
+/// Keeps the sampled parameterization that `write` writes into the folder it is given, for other programs.
 ///
 /// # Errors
 /// It could not be written; an earlier one is then still there.
-pub fn write_volumes(
-    root: &Path,
-    key: &str,
-    voxels: VoxelParameterization,
-    progress: &Progress,
-) -> Result<VoxelParameterization, ProjectError> {
-    let VoxelParameterization { i, j, k, layer, block, .. } = voxels;
-    let volumes = ParameterizationVolumes { i, j, k, layer, block };
+pub fn keep_volumes(root: &Path, write: impl FnOnce(&Path) -> Result<(), ProjectError>) -> Result<(), ProjectError> {
     let scratch = Scratch::begin(root)?;
-    store::write_parameterization(&scratch.path(VOLUMES), &volumes, key, progress)?;
-    scratch.publish(VOLUMES)?;
-    Ok(voxels_of(volumes))
+    write(&scratch.path(VOLUMES))?;
+    scratch.publish(VOLUMES)
+}
+
+/// Whether the sampled parameterization of this size and input is there, intact.
+pub fn holds_volumes(root: &Path, key: &str, size: [usize; 3], progress: &Progress) -> bool {
+    StoredParameterization::open(&volumes_path(root))
+        .is_ok_and(|stored| stored.key() == key && stored.size() == size && stored.verify(progress).is_ok())
 }
 
 /// Arrays that were read, as the sampled parameterization.
@@ -298,16 +296,10 @@ pub fn voxels_of(volumes: ParameterizationVolumes) -> VoxelParameterization {
     VoxelParameterization { size: i.size(), i, j, k, layer, block }
 }
 
-/// The sampled parameterization, if the stored one was computed from the same input; with `size` `None` any size will
-/// do.
-pub fn load_volumes(
-    root: &Path,
-    key: &str,
-    size: Option<[usize; 3]>,
-    progress: &Progress,
-) -> Option<VoxelParameterization> {
+/// The sampled parameterization of this size, if the stored one was computed from the same input.
+pub fn load_volumes(root: &Path, key: &str, size: [usize; 3], progress: &Progress) -> Option<VoxelParameterization> {
     let stored = StoredParameterization::open(&volumes_path(root)).ok()?;
-    if stored.key() != key || size.is_some_and(|size| size != stored.size()) {
+    if stored.key() != key || size != stored.size() {
         return None;
     }
     Some(voxels_of(stored.read(progress).ok()?))

@@ -20,7 +20,9 @@ pub mod revision;
 mod scratch;
 
 pub use blocks::{blocks_key, keep_blocks, load_blocks};
-pub use grids::{keep_grids, load_grids, load_volumes, parameterization_key, volumes_path, voxels_of, write_volumes};
+pub use grids::{
+    holds_volumes, keep_grids, keep_volumes, load_grids, load_volumes, parameterization_key, volumes_path, voxels_of,
+};
 
 pub(crate) use kept::verify_kept;
 pub(crate) use scratch::{RESUMABLE, Scratch, abandoned, remove_leftovers, remove_resumable};

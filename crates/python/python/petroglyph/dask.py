@@ -16,6 +16,7 @@ import json
 import os
 import shutil
 import socket
+import uuid
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path as FilePath
@@ -597,6 +598,138 @@ def _as_json(options: Options | None) -> str | None:
     return None if options is None else json.dumps(dict(options))
 
 
+# Geologic time.
+
+
+def _keep(folder: str, name: str, values: npt.NDArray[Any]) -> None:
+    """Writes a named array, which is whole or not there."""
+    import zarr
+
+    partial = os.path.join(folder, f"{name}.{uuid.uuid4().hex}.part")
+    chunks = tuple(max(min(edge, count), 1) for edge, count in zip((FILE_LINES,) * 2 + (1 << 20,), values.shape, strict=True))
+    array = zarr.create_array(partial, shape=values.shape, chunks=chunks, dtype=values.dtype)
+    array[...] = values
+    try:
+        os.rename(partial, os.path.join(folder, name))
+    except OSError:
+        # A task that ran twice has written the same.
+        shutil.rmtree(partial, ignore_errors=True)
+
+
+def _kept(folder: str, name: str) -> Any:
+    import zarr
+
+    return zarr.open_array(os.path.join(_at_hand(folder), name), mode="r")
+
+
+def _time_slab(path: str, arrays: str, slab: int, memory: int, settings: str, version: tuple[str, int]) -> int:
+    from petroglyph import open as open_project
+
+    _same_version(version)
+    tau, found = _native.time_slab(open_project(_at_hand(path))._native, memory, settings, slab)
+    _keep(_at_hand(arrays), f"slab-{slab}", tau)
+    return found
+
+
+def _time_join(arrays: str, slab: int, is_last: bool, *_: Any) -> int:
+    """Sets the clock of a slab by the one before it; the other arguments are what must be done before."""
+    import numpy as np
+
+    common = _kept(arrays, f"common-{slab - 1}")[...] if slab else None
+    lines, common = _native.join_times(common, _kept(arrays, f"slab-{slab}")[...], is_last)
+    _keep(arrays, f"lines-{slab}", lines)
+    if not is_last:
+        _keep(arrays, f"common-{slab}", common)
+    return int(np.isfinite(lines).sum())
+
+
+def _time_column(
+    arrays: str, target: str, starts: list[int], start: tuple[int, int], count: tuple[int, int], *_: Any
+) -> Ranges:
+    """Writes a column of files from the lines of all slabs that it reaches into."""
+    import numpy as np
+
+    parts = []
+    for slab, first in enumerate(starts):
+        lines = _kept(arrays, f"lines-{slab}")
+        own = slice(max(start[0] - first, 0), max(min(start[0] + count[0] - first, lines.shape[0]), 0))
+        if own.start < own.stop:
+            parts.append(lines[own, start[1] : start[1] + count[1]])
+    return _write(_at_hand(target), np.concatenate(parts), start)
+
+
+def time(
+    project: Project,
+    name: str = "time",
+    *,
+    settings: Options | None = None,
+    scheduler: Scheduler = None,
+    memory: int = MEMORY,
+    retries: int = RETRIES,
+) -> dict[str, Any]:
+    """Computes geologic time on a cluster and adds it to the project: slabs of inlines side by side, then joined.
+
+    Parameters
+    ----------
+    project : Project
+        The project with horizon candidates, on a disk that all workers see.
+    name : str
+        Name of the new volume.
+    settings : mapping, optional
+        Settings, as of :meth:`petroglyph.Project.time`.
+    scheduler : str or distributed.Client, optional
+        Where it runs; by default on threads of this process.
+    memory : int
+        Memory that solving a slab may use beside the candidates, bytes. It sets the width of the slabs, of 96 inlines at
+        least, and they the result, by a part of a sample.
+    retries : int
+        How often a task that failed is tried again on a cluster.
+
+    Returns
+    -------
+    dict
+        What was done, with the number of ``slabs``, of faults that were ``found`` where none is drawn, and the share of the
+        samples at which time is ``known``.
+
+    Notes
+    -----
+    The bytes are those of :meth:`petroglyph.Project.time` with the same memory. Slabs are solved independently; joining them
+    goes from one to the next and takes little. If a task fails for good, nothing is added, and what was written is removed.
+    """
+    from petroglyph import _project
+
+    options = json.dumps(dict(settings or {}))
+    source, info, ranges = _native.time_slabs(project._native, memory, options)
+    path, target = os.path.abspath(project.path), os.path.abspath(_project._beside(project.path, name))
+    arrays = f"{target}.slabs"
+    nx, ny, nz = project.volume(source).shape
+    try:
+        for folder in (target, arrays):
+            shutil.rmtree(folder, ignore_errors=True)
+        os.mkdir(arrays)
+        parts = _native.VolumeParts.create(target, info, "float32", None)
+        graph, version = _Graph(_token(path, target, memory, options)), (__version__, STORE_VERSION)
+        solved: list[Any] = []
+        joined: list[Any] = []
+        for n in range(len(ranges)):
+            solved.append(graph.add("time-slab", (n,), (_time_slab, path, arrays, n, memory, options, version)))
+            before = joined[-1:]
+            joined.append(graph.add("time-join", (n,), (_time_join, arrays, n, n + 1 == len(ranges), solved[n], *before)))
+        starts = [first for first, _ in ranges]
+        columns = {
+            at: graph.add("time-column", at, (_time_column, arrays, target, starts, start, count, *joined))
+            for at, start, count in _columns(nx, ny)
+        }
+        wanted = [graph.pyramid(target, parts, columns, "-time"), *solved, *joined]
+        _, *counts = _run(graph, wanted, scheduler, retries)
+        done = project.apply({"import": {"path": target, "name": name}}, _moved=True)
+        found, known = counts[: len(ranges)], counts[len(ranges) :]
+        return {**done, "slabs": len(ranges), "found": sum(found), "known": sum(known) / (nx * ny * nz)}
+    finally:
+        for folder in (target, arrays):
+            shutil.rmtree(folder, ignore_errors=True)
+
+
 # Extrema, i, j, k and pictures.
 
 
@@ -683,21 +816,14 @@ def extrema(
         shutil.rmtree(partial, ignore_errors=True)
 
 
-def _parameters_slab(
-    path: str, out: str, size: Place, start: int, count: int, version: tuple[str, int]
-) -> int:
-    import zarr
-
+def _parameters_column(
+    path: str, out: str, column: tuple[int, int], version: tuple[str, int], *_: Any
+) -> tuple[int, int]:
     from petroglyph import open as open_project
 
     _same_version(version)
-    group = zarr.open_group(_at_hand(out), mode="r+")
-    project = open_project(_at_hand(path))
-    part = (count, size[1], size[2])
-    fields, ids = project._native.parameterization(size, (start, 0, 0), part, None, 1)
-    for name, values in zip(("i", "j", "k", "layer", "block"), (*fields, *ids), strict=True):
-        group[name][start : start + count] = values
-    return count
+    open_project(_at_hand(path))._native.write_parameterization(_at_hand(out), column)
+    return column
 
 
 def parameterize(
@@ -705,51 +831,47 @@ def parameterize(
     out: Path,
     *,
     size: Place | None = None,
-    inlines: int = 32,
     scheduler: Scheduler = None,
     retries: int = RETRIES,
 ) -> Path:
-    """Samples i, j, k, layer and block at every sample, slab by slab, into a Zarr v3 group.
+    """Samples i, j, k, layer and block at every sample, a column of files a task, into a Zarr v3 group.
 
     Parameters
     ----------
     project : Project
         The project; its model and the grids of its parameterization are made first, and are read by every task.
     out : path
-        Folder to write: arrays ``i``, ``j``, ``k`` (float32) and ``layer``, ``block`` (uint16), which other projects take in
-        by :meth:`petroglyph.Project.set_parameterization`.
+        Folder to write: arrays ``i``, ``j``, ``k`` (float32) and ``layer``, ``block`` (uint8, or uint16 where there are more
+        than 255), which other projects take in by :meth:`petroglyph.Project.set_parameterization`. Their bytes are those
+        that ``petroglyph parameterize`` keeps in the project.
     size : tuple of int, optional
         Samples along each axis; by default those of the survey.
-    inlines : int
-        Inlines of a task: its memory is that of the model and of 28 bytes for each sample of the slab.
     scheduler, retries
         As of :func:`attribute`.
+
+    Notes
+    -----
+    A task holds the model, its grids, and one file of each array (128³ samples: 64 MB).
     """
-    import numpy as np
     import zarr
 
-    project._native.keep_parameterization()
     size = size or project.geometry.shape
     folder = os.path.abspath(out)
     partial = _fresh(folder)
     try:
-        group = zarr.create_group(partial)
-        axes = ("inline", "crossline", "sample")
-        chunks = (min(inlines, size[0]), min(FILE_LINES, size[1]), min(FILE_LINES, size[2]))
-        for name in ("i", "j", "k", "layer", "block"):
-            floats = name in "ijk"
-            dtype, fill = (np.float32, np.nan) if floats else (np.uint16, 65535)
-            group.create_array(name, shape=size, chunks=chunks, dtype=dtype, fill_value=fill, dimension_names=axes)
+        columns = project._native.begin_parameterization(partial, size)[:2]
         if size == project.geometry.shape:
-            _write_lines(group, project.geometry)
+            _write_lines(zarr.open_group(partial, mode="r+"), project.geometry)
         path = os.path.abspath(project.path)
-        graph = _Graph(_token(path, partial, size, inlines))
+        graph = _Graph(_token(path, partial, size))
         version = (__version__, STORE_VERSION)
         tasks = [
-            graph.add("sample-ijk", (x,), (_parameters_slab, path, partial, size, x, min(inlines, size[0] - x), version))
-            for x in range(0, size[0], inlines)
+            graph.add("sample-ijk", (x, y), (_parameters_column, path, partial, (x, y), version))
+            for x in range(columns[0])
+            for y in range(columns[1])
         ]
         _run(graph, tasks, scheduler, retries)
+        _native.finish_parameterization(partial)
         _publish(partial, folder)
         return out
     finally:

@@ -2006,14 +2006,15 @@ def export(
     volume_memory: Value | None = None,
     progress: Progress | None = None,
 ) -> Answer:
-    """Write a horizon, a fault, the points of all candidates, a volume or a 3D model to a file.
+    """Write a horizon, a fault, the points of all candidates, a volume or a 3D model to a file, or a volume to object
+    storage.
 
     Parameters
     ----------
     project : value
         Project folder.
     out : value
-        File to write.
+        File to write; for a volume also an address in object storage: s3://, gs://, az://, https://.
     horizon : value, optional
         Horizon to write.
     fault : value, optional
@@ -2620,6 +2621,7 @@ def parameterize(
     by_time: bool = False,
     computed: bool = False,
     size: Value | None = None,
+    memory: Value | None = None,
     progress: Progress | None = None,
 ) -> Answer:
     """Compute the layer coordinates i, j, k and keep them in the project.
@@ -2639,6 +2641,9 @@ def parameterize(
         Compute i, j, k here again, after --from or --by-time.
     size : value, optional
         Samples of the stored arrays along inlines, crosslines and depth [default: the survey's].
+    memory : value, optional
+        Memory to use beside the model and its grids, such as 2G or 800M: fewer threads sample at a time; the arrays
+        are the same [default: 64M for each thread].
     progress : callable, optional
         Called as ``progress(stage, done, total)``.
     """
@@ -2649,6 +2654,7 @@ def parameterize(
         by_time=by_time,
         computed=computed,
         size=size,
+        memory=memory,
         progress=progress,
     )
 

@@ -12,7 +12,7 @@
 //! A file has its place only when it is complete. What a lost process left lies in `.apart`, which `finish` removes.
 //! Memory: a column, or a file and its bytes. Every call works on one thread.
 
-use super::super::array::{ArrayWriter, write_group};
+use super::super::array::{APART, ArrayWriter, new_apart, write_group};
 use super::super::error::StoreError;
 use super::super::header::write_header;
 use super::super::layout::{ArrayLayout, grid_index};
@@ -22,12 +22,8 @@ use serde::Serialize;
 use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
 use survey::candidates::{BEYOND, CandidateInfo, ForestCounts, ForestRows};
 use survey::progress::Progress;
-
-/// Folder for files that are not complete.
-const APART: &str = ".apart";
 
 /// Candidates that are being written file by file. All processes state the same.
 #[derive(Debug, Clone)]
@@ -75,7 +71,7 @@ impl CandidateParts {
     /// # Errors
     /// [`StoreError`], [`StoreError::SizeMismatch`] if the samples are not a column.
     pub fn write_column(&self, lines: [Range<usize>; 2], distance: &[u8], leaf: &[u32]) -> Result<(), StoreError> {
-        let (layout, apart) = (ArrayLayout::volume(self.size), self.apart());
+        let (layout, apart) = (ArrayLayout::volume(self.size), new_apart(&self.path));
         let to_distance = ArrayWriter::of_created(&self.path, "distance", layout.clone(), BEYOND, Some(&apart))?;
         let to_leaf = LeafWriter::open(&self.path, "leaf", layout, self.leaves, Some(&apart))?;
         write_column(&to_distance, &to_leaf, lines, (distance, leaf), &Progress::silent())?;
@@ -88,7 +84,7 @@ impl CandidateParts {
     /// # Errors
     /// A file of the level before is missing or damaged, or the disk does not take it.
     pub fn halve(&self, level: usize, file: usize) -> Result<(), StoreError> {
-        let apart = self.apart();
+        let apart = new_apart(&self.path);
         LevelFiles::open(&self.path, level, self.size, self.leaves, Some(&apart))?.write(file)?;
         remove(&apart);
         Ok(())
@@ -104,7 +100,7 @@ impl CandidateParts {
     /// # Errors
     /// The rows cannot be read, or the disk does not take them.
     pub fn write_rows(&self, mut file: usize, forest: &dyn ForestRows) -> Result<(), StoreError> {
-        let apart = self.apart();
+        let apart = new_apart(&self.path);
         for table in Table::ALL {
             let count = table.file_count(self.counts);
             if file < count {
@@ -134,15 +130,6 @@ impl CandidateParts {
         }
         remove(&self.path.join(APART));
         write_header(&self.path, KIND, info)
-    }
-
-    /// A folder that no other call uses.
-    fn apart(&self) -> PathBuf {
-        static COUNT: AtomicU64 = AtomicU64::new(0);
-        // Numbers of processes are those of a machine; the time tells machines apart.
-        let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default().as_nanos();
-        let own = format!("{}-{now:x}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
-        self.path.join(APART).join(own)
     }
 }
 
@@ -242,7 +229,7 @@ mod tests {
             }
             (0..parts.table_files()).rev().for_each(|file| parts.write_rows(file, &rows).unwrap());
             // What a lost process has left.
-            fs::create_dir_all(parts.apart()).unwrap();
+            fs::create_dir_all(new_apart(&parts.path)).unwrap();
             parts.finish(&info(size, leaves)).unwrap();
             let (mut one, mut other) = (BTreeMap::new(), BTreeMap::new());
             contents(&whole, &whole, &mut one);

@@ -20,7 +20,9 @@ use object_store::azure::MicrosoftAzureBuilder;
 use object_store::gcp::GoogleCloudStorageBuilder;
 use object_store::http::HttpBuilder;
 use object_store::path::Path as ObjectPath;
-use object_store::{BackoffConfig, ClientOptions, GetOptions, GetRange, GetResult, ObjectStore, RetryConfig};
+use object_store::{
+    BackoffConfig, ClientOptions, GetOptions, GetRange, GetResult, ObjectStore, ObjectStoreExt, PutPayload, RetryConfig,
+};
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -127,6 +129,34 @@ impl Remote {
         })
     }
 
+    /// Whether there is such an object.
+    pub(super) fn is_there(&self, key: &str) -> Result<bool, StoreError> {
+        self.tried(key, async || {
+            let options = GetOptions { head: true, ..GetOptions::default() };
+            match self.store.get_opts(&self.path(key), options).await {
+                Ok(_) => Ok(true),
+                Err(object_store::Error::NotFound { .. }) => Ok(false),
+                Err(error) => Err(error),
+            }
+        })
+        .map_err(written)
+    }
+
+    /// Writes an object as a whole; one of this name is replaced.
+    pub(super) fn put(&self, key: &str, bytes: Vec<u8>) -> Result<(), StoreError> {
+        let payload = PutPayload::from(bytes);
+        self.tried(key, async || self.store.put(&self.path(key), payload.clone()).await.map(drop)).map_err(written)
+    }
+
+    /// Removes an object, in one try.
+    pub(super) fn remove(&self, key: &str) -> Result<(), StoreError> {
+        let fail = |reason: String| StoreError::RemoteWrite { url: self.url_of(key), reason };
+        match runtime().map_err(fail)?.block_on(self.store.delete(&self.path(key))) {
+            Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
+            Err(error) => Err(fail(short(&error))),
+        }
+    }
+
     fn path(&self, key: &str) -> ObjectPath {
         key.split('/').fold(self.prefix.clone(), |path, part| path.join(part))
     }
@@ -154,6 +184,14 @@ impl Remote {
             wait *= 2;
         }
         unreachable!("the last try returns")
+    }
+}
+
+/// The same error of an object that was to be written.
+fn written(error: StoreError) -> StoreError {
+    match error {
+        StoreError::Remote { url, reason } => StoreError::RemoteWrite { url, reason },
+        other => other,
     }
 }
 
@@ -210,7 +248,8 @@ fn store_of(url: &Url) -> object_store::Result<Arc<dyn ObjectStore>> {
             let builder =
                 AmazonS3Builder::from_env().with_url(url.as_str()).with_client_options(client).with_retry(retry);
             let unsigned = !has(&["AWS_ACCESS_KEY_ID"]);
-            Arc::new(builder.with_skip_signature(unsigned).build()?)
+            // One by one, as every storage of this kind can.
+            Arc::new(builder.with_skip_signature(unsigned).with_disable_bulk_delete(true).build()?)
         }
         "gs" => {
             let unsigned = !has(&[
