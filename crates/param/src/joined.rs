@@ -9,7 +9,8 @@
 //!
 //! d is the distance from a fault between the two, e how far inside its tip line a place lies (negative beyond), L the
 //! length of [`LENGTH`] columns; h is the vertical distance from a horizon of the layer and t the horizon's throw there.
-//! On the continuation of a fault both have the same mean, and a pattern goes on. Along the fault it begins to break within
+//! On the continuation of a fault both have the same mean, and a pattern goes on. The mean of k bends, so i and j are followed
+//! along it once more ([`crate::retraced`]): averaged beside it they were up to three degrees off. Along the fault it begins to break within
 //! L of the tip line. On a horizon that the fault breaks nothing changes.
 
 use crate::metric::Metric;
