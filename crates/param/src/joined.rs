@@ -9,9 +9,9 @@
 //!
 //! d is the distance from a fault between the two, e how far inside its tip line a place lies (negative beyond), L the
 //! length of [`LENGTH`] columns; h is the vertical distance from a horizon of the layer and t the horizon's throw there.
-//! On the continuation of a fault both have the same mean, and a pattern goes on. The mean of k bends, so i and j of a
-//! flow are followed along it once more ([`crate::retraced`]): averaged beside it they were up to three degrees off. Along
-//! the fault a pattern begins to break within L of the tip line. On a horizon that the fault breaks nothing changes.
+//! On the continuation of a fault both have the same mean, and a pattern goes on. The mean of k bends, so i and j are followed
+//! along it once more ([`crate::retraced`]): averaged beside it they were up to three degrees off. Along the fault it begins to break within
+//! L of the tip line. On a horizon that the fault breaks nothing changes.
 
 use crate::metric::Metric;
 use crate::plan::{Method, horizons};
@@ -134,8 +134,9 @@ impl<'a> Tips<'a> {
 }
 
 /// Gives the grids of one layer, by block, the mean with the blocks that they meet beyond tips. `columns` are those that the
-/// grids are filled in, and how; where there are none, a grid stays alone. i and j of a flow are followed along the mean k,
-/// which leaves hundredths of a voxel between the blocks.
+/// grids are filled in, and how; where there are none, a grid stays alone. i and j are followed along the mean k, which leaves
+/// hundredths of a voxel between the blocks. Of definitions parallel to a horizon it leaves more, so that they take the mean
+/// of i and j once more.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -147,20 +148,27 @@ pub fn join<M: LayerModel + ?Sized>(
     progress: &Progress,
 ) -> Result<(), Cancelled> {
     let filled: Vec<Option<&RegionColumns>> = columns.iter().map(|of| of.map(|(columns, _)| columns)).collect();
-    let changed = take_means(model, grids, &filled, progress)?;
+    let changed = take_means(model, grids, &filled, None, progress)?;
+    if changed.iter().all(Vec::is_empty) {
+        return Ok(());
+    }
     for ((grid, of), changed) in grids.iter_mut().zip(columns).zip(&changed) {
-        if let &Some((_, Method::Flow(flow))) = of {
-            retraced::retrace(model, metric, grid, flow, changed, progress)?;
+        if let &Some((columns, method)) = of {
+            retraced::retrace(model, metric, grid, method, columns, changed, progress)?;
         }
     }
-    Ok(())
+    let by_distance = |of: &(&RegionColumns, Method)| matches!(of.1, Method::Closest(_));
+    let parallel: Vec<_> = columns.iter().map(|of| of.filter(by_distance).map(|(columns, _)| columns)).collect();
+    take_means(model, grids, &parallel, Some(&changed), progress).map(drop)
 }
 
-/// Gives grids the mean; returns the columns (`[x][y]`) of each grid that have taken it.
+/// Gives grids the mean of i, j and k, or of i and j alone in the columns that have that of k, `changed`. Returns the columns
+/// (`[x][y]`) of each grid that have taken it.
 fn take_means<M: LayerModel + ?Sized>(
     model: &M,
     grids: &mut [&mut RegionGrid],
     columns: &[Option<&RegionColumns>],
+    changed: Option<&[Vec<usize>]>,
     progress: &Progress,
 ) -> Result<Vec<Vec<usize>>, Cancelled> {
     let tips = Tips::of(model);
@@ -174,10 +182,13 @@ fn take_means<M: LayerModel + ?Sized>(
             (!faults.is_empty()).then_some(Other { grid: &*grids[b], columns, faults })
         });
         let others: Vec<Other> = others.collect();
-        let column = Joined { model, tips: &tips, grid, others: &others };
+        let column = Joined { model, tips: &tips, grid, others: &others, keeps_k: changed.is_some() };
         let ny = grid.size[1];
         let at = |n: usize| [grid.origin[0] + (n / ny) as i32, grid.origin[1] + (n % ny) as i32];
-        let wanted: Vec<usize> = (0..grid.size[0] * ny).filter(|&n| columns.depths_at(at(n)).is_some()).collect();
+        let wanted = match changed {
+            Some(changed) => changed[a].clone(),
+            None => (0..grid.size[0] * ny).filter(|&n| columns.depths_at(at(n)).is_some()).collect(),
+        };
         let mean = |n: usize| {
             progress.check()?;
             Ok(column.mean(at(n)).map(|mean| (n, mean)))
@@ -222,6 +233,8 @@ struct Joined<'a, M: ?Sized> {
     tips: &'a Tips<'a>,
     grid: &'a RegionGrid,
     others: &'a [Other<'a>],
+    /// k is not to change.
+    keeps_k: bool,
 }
 
 impl<M: LayerModel + ?Sized> Joined<'_, M> {
@@ -255,7 +268,7 @@ impl<M: LayerModel + ?Sized> Joined<'_, M> {
                 let weight = reach * near * clear.product::<f32>();
                 if weight > 0.0 {
                     let found = other.offsets(z, level as f32 / last as f32);
-                    let is_fixed = (level == 0 && is_fixed[0]) || (level == last && is_fixed[1]);
+                    let is_fixed = self.keeps_k || (level == 0 && is_fixed[0]) || (level == last && is_fixed[1]);
                     *sum += weight * if is_fixed { found.with_z(own[level][2]) } else { found };
                     *weights += weight;
                 }

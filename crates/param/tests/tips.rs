@@ -70,11 +70,9 @@ fn patterns_go_on_beyond_the_tip_and_break_at_the_fault() {
         assert!(beyond.max_element() < 0.1, "{definition:?}: {beyond} voxels beyond the tip");
         let inside = worst(0.0..0.5);
         assert!(inside.z > 5.0, "{definition:?}: {inside} voxels at a throw of 8");
-        if matches!(definition, ParallelToBottom | ParallelToTop) {
-            continue;
-        }
         let [to_i, to_j] = off_perpendicular(&model, &param);
-        assert!(to_i < 0.7 && to_j < 0.7, "{definition:?}: {to_i} and {to_j} degrees beside the tip");
+        let most = if matches!(definition, ParallelToBottom | ParallelToTop) { 1.4 } else { 0.7 };
+        assert!(to_i < most && to_j < most, "{definition:?}: {to_i} and {to_j} degrees beside the tip");
     }
 }
 
