@@ -1,4 +1,5 @@
-//! Measures the rows of `docs/accuracy.md`; `make accuracy` writes them.
+//! Measures the rows of `docs/accuracy.md`; `make accuracy` writes them. `accuracy definitions` and `accuracy shapes` print
+//! the tables of the definitions alone.
 //!
 //! Closed-form models and the synthetic survey, whose truth is a closed form too; the exact lookup and the paper's
 //! packed, extrapolated one (P-illus 3.3 and 3.4) side by side, at the same places, by the same yardstick. Lengths are
@@ -358,6 +359,15 @@ fn determinism(cases: &[Case]) -> Result<()> {
 }
 
 fn main() -> Result<()> {
+    match std::env::args().nth(1).as_deref() {
+        None => everything(),
+        Some("definitions") => definitions(&cases()?),
+        Some("shapes") => shapes::print(&shapes::all()?, ZOOM),
+        Some(other) => anyhow::bail!("there is no table {other:?}: give definitions, shapes, or nothing for all"),
+    }
+}
+
+fn everything() -> Result<()> {
     println!("# Accuracy\n");
     println!(
         "Measured by `make accuracy`. \"Ours\" is the exact lookup, \"paper's\" the packed volume at the same\n\

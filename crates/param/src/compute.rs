@@ -135,18 +135,9 @@ impl<'a> Filler<'a> {
         Ok(filler)
     }
 
-    /// The levels of a column that lie in the wanted depths, and three more on each side.
-    fn level_range(&self, frame: ColumnFrame, thickness: f32, depths: Depths) -> (usize, usize) {
-        let scale = (self.levels - 1) as f32 / thickness;
-        let lowest = ((frame.z - depths[1]) * scale).floor() - 3.0;
-        let highest = ((frame.z - depths[0]) * scale).ceil() + 3.0;
-        let last = self.levels - 1;
-        ((lowest.max(0.0) as usize).min(last), (highest.max(0.0) as usize).min(last))
-    }
-
     fn column(&self, column: [i32; 2], depths: Depths, mut out: TraceColumn) {
         let (frame, thickness) = (self.layer.frame(column), self.layer.thickness(column));
-        let (first, last) = self.level_range(frame, thickness, depths);
+        let (first, last) = level_range(self.levels, frame.z, thickness, depths);
         match (&self.bottom, &self.top) {
             (Some(bottom), Some(top)) => {
                 let tracer = Tracer {
@@ -244,6 +235,16 @@ impl<'a> Filler<'a> {
         }
         self.closest_points.add(clock);
     }
+}
+
+/// The first and last level of a column with this bottom and thickness that lie in the wanted depths, and three more on
+/// each side.
+pub fn level_range(levels: usize, bottom: f32, thickness: f32, depths: Depths) -> (usize, usize) {
+    let last = levels - 1;
+    let scale = last as f32 / thickness;
+    let lowest = ((bottom - depths[1]) * scale).floor() - 3.0;
+    let highest = ((bottom - depths[0]) * scale).ceil() + 3.0;
+    ((lowest.max(0.0) as usize).min(last), (highest.max(0.0) as usize).min(last))
 }
 
 /// Copies the first and last computed level to the levels outside them.

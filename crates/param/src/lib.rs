@@ -100,6 +100,7 @@ mod nearest;
 mod packed;
 mod parameterization;
 mod plan;
+mod retraced;
 mod settings;
 mod surface;
 mod touched;

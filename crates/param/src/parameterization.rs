@@ -119,9 +119,9 @@ impl Parameterization {
             let mut of_layer: Vec<&mut RegionGrid> = grids.iter_mut().skip(layer).step_by(layers).collect();
             let columns: Vec<_> = (layer..layers * blocks)
                 .step_by(layers)
-                .map(|n| planner.is_joined(region(n), methods[n]).then(|| &touched[n]))
+                .map(|n| planner.is_joined(region(n), methods[n]).then(|| (&touched[n], methods[n])))
                 .collect();
-            joined::join(model, &mut of_layer, &columns, progress)?;
+            joined::join(model, &metric, &mut of_layer, &columns, progress)?;
         }
         Ok(Self { size, layers, blocks, grids, cost })
     }

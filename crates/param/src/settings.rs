@@ -13,9 +13,9 @@ pub enum KDefinition {
     /// sheets; i, j are where the curve along ∇k crosses k = 0.5 (P-illus 3.1). An open layer has only one
     /// sheet and uses the parallel definition of that sheet. The sheets are the horizons as they are drawn.
     DistanceRatio,
-    /// ∇²k = 0 between the two sheets; i, j are where the curve along ∇k crosses the middle level. In an open
-    /// layer k is the distance to its horizon, in which the roughness of the horizon dies out: the directions
-    /// are harmonic, the spacing of beds is even.
+    /// ∇²k = 0 between the two sheets; i, j are where the curve along ∇k crosses the middle level, or in an
+    /// open layer one a fifth of the way from its horizon to the far plane. There k is the distance to the horizon, in which
+    /// its roughness dies out: the directions are harmonic, the spacing of beds is even.
     #[default]
     Flow,
     /// The same, with ∇²k = 0 in open layers, too: beds crowd over crests of the horizon and spread in its troughs,

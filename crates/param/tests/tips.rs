@@ -70,5 +70,40 @@ fn patterns_go_on_beyond_the_tip_and_break_at_the_fault() {
         assert!(beyond.max_element() < 0.1, "{definition:?}: {beyond} voxels beyond the tip");
         let inside = worst(0.0..0.5);
         assert!(inside.z > 5.0, "{definition:?}: {inside} voxels at a throw of 8");
+        let [to_i, to_j] = off_perpendicular(&model, &param);
+        let most = if matches!(definition, ParallelToBottom | ParallelToTop) { 1.4 } else { 0.7 };
+        assert!(to_i < most && to_j < most, "{definition:?}: {to_i} and {to_j} degrees beside the tip");
     }
+}
+
+/// Within a few columns of where the fault begins or ends: degrees off 90 of ∇k to ∇i and to ∇j, of which 95 % are less.
+fn off_perpendicular(model: &StructuralModel, param: &Parameterization) -> [f32; 2] {
+    let voxel_m = Vec3::new(25.0, 25.0, 10.0);
+    let places = (4..SIZE[0] - 4).flat_map(|x| (4..SIZE[1] - 4).map(move |y| (x as f32, y as f32)));
+    let places = places.flat_map(|(x, y)| (4..SIZE[2] - 4).step_by(3).map(move |z| Vec3::new(x, y, z as f32 + 0.3)));
+    let is_beside = |p: Vec3| {
+        let from_fault = (f64::from(p.x) - FAULT.x_at(f64::from(p.z))).abs();
+        from_fault < 10.0 && (0.7..1.4).contains(&FAULT.radius(f64::from(p.y), f64::from(p.z)))
+    };
+    let angles = places.filter(|&p| is_beside(p)).filter_map(|p| {
+        let region = model.region_at(p);
+        let around = Vec3::AXES.into_iter().flat_map(|axis| [p + 0.5 * axis, p - 0.5 * axis]);
+        if around.into_iter().any(|q| model.region_at(q) != region) {
+            return None;
+        }
+        let flat = |p: Vec3| {
+            let (flat, _) = param.lookup_in(model, p, region);
+            Vec3::new(flat.i, flat.j, flat.k)
+        };
+        let along = Vec3::AXES.map(|axis| flat(p + 0.5 * axis) - flat(p - 0.5 * axis));
+        let gradient = |n: usize| Vec3::new(along[0][n], along[1][n], along[2][n]) / voxel_m;
+        Some([0, 1].map(|n| (gradient(n).angle_between(gradient(2)).to_degrees() - 90.0).abs()))
+    });
+    let angles: Vec<[f32; 2]> = angles.collect();
+    assert!(angles.len() > 5000, "{} places", angles.len());
+    [0, 1].map(|n: usize| {
+        let mut of: Vec<f32> = angles.iter().map(|both| both[n]).collect();
+        of.sort_by(f32::total_cmp);
+        of[of.len() * 95 / 100]
+    })
 }

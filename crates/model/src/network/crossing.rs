@@ -72,6 +72,10 @@ impl FaultNetwork {
         let mut closest: Option<(f64, DVec3)> = None;
         for &p in places.iter().filter(|p| self.is_real(b, p.as_vec3())) {
             let side = other.side(p);
+            // Beside the rim of a surface that is not continued there is no side.
+            if side.is_nan() {
+                continue;
+            }
             (least, most) = (least.min(side), most.max(side));
             if closest.is_none_or(|(distance, _)| side.abs() < distance) {
                 closest = Some((side.abs(), p));

@@ -112,6 +112,26 @@ fn crossing_faults_make_four_blocks() {
 }
 
 #[test]
+fn faults_in_an_x_are_told_as_they_were_drawn() {
+    // Planes that cross where both were drawn, on different shares of the volume, and one that ends before.
+    let over = |lean: f64, [from, to]: [f64; 2]| {
+        mesh(10, |s, t| {
+            let z = from + (to - from) * t;
+            DVec3::new(24.0 + lean * (z - 30.0), 39.0 * s, z)
+        })
+    };
+    let told = |span: [f64; 2], other: [f64; 2]| {
+        let (a, b) = (fault("A", over(0.4, span), None), fault("B", over(-0.4, other), None));
+        drawn_crossing(&geometry(), &b, &[a]).unwrap().map(|note| note.to_string())
+    };
+    for (span, other) in [([0.0, 59.0], [0.0, 59.0]), ([4.0, 55.0], [0.0, 59.0]), ([0.0, 59.0], [7.3, 51.1])] {
+        let note = told(span, other).unwrap_or_default();
+        assert!(note.starts_with("faults \"A\" and \"B\" cross near inline"), "{span:?} and {other:?}: {note}");
+    }
+    assert_eq!(told([0.0, 59.0], [0.0, 31.0]), None);
+}
+
+#[test]
 fn a_truncated_fault_ends_at_the_other() {
     let main = |z: f64| 14.0 + 0.4 * z;
     let antithetic = |z: f64| 44.0 - 0.5 * z;

@@ -1,13 +1,13 @@
-//! Where the curves along ∇k cross the middle of their layer (P-illus 3.1), for all nodes at once.
+//! Where the curves along ∇k cross one level of their layer (P-illus 3.1: its middle), for all nodes at once.
 //!
-//! In (x, y, v) the curve through a point moves by w = (H∇k)ₓᵧ / (∇v·H∇k) voxels for a unit of v. From the middle level,
-//! where the offset d to the crossing is 0, levels are visited outwards:
+//! In (x, y, v) the curve through a point moves by w = (H∇k)ₓᵧ / (∇v·H∇k) voxels for a unit of v. From the level where the
+//! offset d to the crossing is 0, levels are visited outwards:
 //!
 //! ```text
 //! d(p, v) = δ + d(p + δ, v')        δ = ½ (w(p, v) + w(p + w Δv, v')) Δv
 //! ```
 //!
-//! with v' the next level towards the middle (Heun's method; d is interpolated by cubics). Each level is one lookup a
+//! with v' the next level towards the first (Heun's method; d is interpolated by cubics). Each level is one lookup a
 //! node, where a trace of its own for each node takes one for every level on its way. As the curves of a solved k neither
 //! cross nor jump, there are no creases.
 
@@ -15,44 +15,49 @@ use super::sigma::SigmaLayer;
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
-/// The offset in voxels (x, y) from each node to the crossing of its curve with the middle level.
+/// Puts the offset in voxels (x, y) from each node to the crossing of its curve with the level `first` into `offsets`,
+/// `[x][y][level]`, where `is_traced` (node, level) says so. The others are taken as they are, and so is `first`.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn to_middle(layer: &SigmaLayer, k: &[f32], progress: &Progress) -> Result<Vec<[f32; 2]>, Cancelled> {
-    let (levels, middle) = (layer.levels, layer.levels / 2);
+pub fn trace(
+    layer: &SigmaLayer,
+    k: &[f32],
+    first: usize,
+    is_traced: impl Fn(usize, usize) -> bool + Sync,
+    offsets: &mut [[f32; 2]],
+    progress: &Progress,
+) -> Result<(), Cancelled> {
+    let levels = layer.levels;
     let nodes = layer.lattice.size[0] * layer.lattice.size[1];
-    let speeds: Vec<[f32; 2]> =
-        (0..nodes * levels).into_par_iter().map(|n| speed(layer, k, n / levels, n % levels)).collect();
-    let slice = |values: &[[f32; 2]], level: usize| -> Vec<[f32; 2]> {
-        (0..nodes).map(|node| values[node * levels + level]).collect()
+    let speeds = |level: usize| -> Vec<[f32; 2]> {
+        (0..nodes).into_par_iter().map(|node| speed(layer, k, node, level)).collect()
     };
-    let mut offsets = vec![[0.0f32; 2]; nodes * levels];
-    for outwards in [1isize, -1] {
+    let (above, below) = (first + 1..levels, (0..first).rev());
+    for (outwards, order) in [(1isize, above.collect::<Vec<_>>()), (-1, below.collect())] {
         // Offsets and speeds of the level that was visited last.
-        let mut known = vec![[0.0f32; 2]; nodes];
-        for n in 1..=middle {
+        let mut known: Vec<[f32; 2]> = (0..nodes).map(|node| offsets[node * levels + first]).collect();
+        let mut ahead = speeds(first);
+        let step = -(outwards as f32) * layer.v(1);
+        for level in order {
             progress.check()?;
-            let level = middle.wrapping_add_signed(outwards * n as isize);
-            let inner = level.wrapping_add_signed(-outwards);
-            let step = -(outwards as f32) * layer.v(1);
-            let ahead = slice(&speeds, inner);
-            let here: Vec<[f32; 2]> = (0..nodes)
-                .into_par_iter()
-                .map(|node| {
-                    let w = speeds[node * levels + level];
-                    let first = w.map(|w| w * step);
-                    let second = linear(layer, &ahead, node, first);
-                    let delta: [f32; 2] = std::array::from_fn(|n| 0.5 * (w[n] + second[n]) * step);
-                    let rest = cubic(layer, &known, node, delta);
-                    std::array::from_fn(|n| delta[n] + rest[n])
-                })
-                .collect();
+            let own = speeds(level);
+            let traced = |node: usize| {
+                if !is_traced(node, level) {
+                    return offsets[node * levels + level];
+                }
+                let w = own[node];
+                let second = linear(layer, &ahead, node, w.map(|w| w * step));
+                let delta: [f32; 2] = std::array::from_fn(|n| 0.5 * (w[n] + second[n]) * step);
+                let rest = cubic(layer, &known, node, delta);
+                std::array::from_fn(|n| delta[n] + rest[n])
+            };
+            let here: Vec<[f32; 2]> = (0..nodes).into_par_iter().map(traced).collect();
             here.iter().enumerate().for_each(|(node, offset)| offsets[node * levels + level] = *offset);
-            known = here;
+            (known, ahead) = (here, own);
         }
     }
-    Ok(offsets)
+    Ok(())
 }
 
 /// w at a node: voxels along x and y for a unit of v.

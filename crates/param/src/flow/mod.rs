@@ -1,7 +1,7 @@
 //! k as the flow of a layer: smooth everywhere, and without creases.
 //!
 //! [`fill`] computes k on a lattice in (x, y, v) between the two sheets of a region, by [`harmonic`] or as v itself;
-//! [`lines`] follows the curves along ∇k from every node to the middle; both are interpolated into the region's
+//! [`lines`] follows the curves along ∇k from every node to one level; both are interpolated into the region's
 //! stratigraphic grid. k is 0 and 1 on the sheets by construction, at any resolution of the lattice.
 //!
 //! The sheets are calm: [`calm`] takes off what is smaller than a pattern's tile. The boundary of the layer, where it is
@@ -28,6 +28,10 @@ pub fn stride(wave: f64) -> usize {
     ((wave / 8.0) as usize).clamp(2, 4)
 }
 
+/// Where (i, j) of an open layer are the place itself: the share of the way from its horizon to the far plane. Lines of flow
+/// spread or crowd most at the horizon; a level nearer to it leaves half of that for either side.
+const OPEN_FIRST: f32 = 0.2;
+
 /// How k runs between the sheets of a region.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Flow {
@@ -35,6 +39,19 @@ pub enum Flow {
     Smooth(Ends, Spacing),
     /// k = v, the vertical fraction.
     Vertical,
+}
+
+impl Flow {
+    /// The level, of so many, on which (i, j) are the place itself: the middle one of a closed layer.
+    pub fn first_level(self, levels: usize) -> usize {
+        let last = levels - 1;
+        let from_horizon = (OPEN_FIRST * last as f32).round() as usize;
+        match self {
+            Self::Smooth(Ends::Bottom(_), _) => from_horizon,
+            Self::Smooth(Ends::Top(_), _) => last - from_horizon,
+            Self::Smooth(Ends::Both, _) | Self::Vertical => last / 2,
+        }
+    }
 }
 
 /// Fills `grid.offsets` from a flow between two sheets (bottom, top), given by voxel z at voxel (x, y).
@@ -62,7 +79,8 @@ pub fn fill(
         }
     };
     let solved = Instant::now();
-    let lines = lines::to_middle(&layer, &k, progress)?;
+    let mut lines = vec![[0.0f32; 2]; k.len()];
+    lines::trace(&layer, &k, flow.first_level(levels), |_, _| true, &mut lines, progress)?;
     let nodes: Vec<[f32; 3]> =
         lines.iter().zip(&k).enumerate().map(|(n, (d, k))| [d[0], d[1], k - layer.v(n % levels)]).collect();
     grid.offsets = sampled(grid, &layer.lattice, stride, &nodes, progress)?;
