@@ -13,8 +13,10 @@ use std::collections::{BTreeMap, HashMap};
 const CONTOURS: f64 = 14.0;
 /// Shortest contour that goes around, traces: a ring of radius 2, no more than smoothing averages over.
 const SPECK: f64 = 12.0;
-/// Every so manyeth contour is an index contour: heavier, with its value; of the second where there would be one or none.
+/// Every so manyeth contour is an index contour: heavier, with its value; of the second where too little of the map would be.
 const INDEX_EVERY: [i64; 2] = [5, 2];
+/// Least length of the index contours as a share of all contours' length.
+const INDEX_SHARE: f64 = 0.1;
 
 /// A round distance between contours.
 pub(super) fn interval(spread: f64) -> f64 {
@@ -54,13 +56,20 @@ pub(super) fn contours(grid: &Grid, range: [f64; 2], interval: f64) -> Vec<Conto
             }
         }
     }
-    let of_every = |every: i64| levels.keys().filter(|level| *level % every == 0).count();
-    let every = if of_every(INDEX_EVERY[0]) > 1 { INDEX_EVERY[0] } else { INDEX_EVERY[1] };
+    let counts: BTreeMap<i64, usize> = levels.iter().map(|(level, pieces)| (*level, pieces.len())).collect();
+    let every = index_every(&counts);
     let of_level = |(level, pieces): (i64, Vec<[(Crossing, DVec2); 2]>)| {
         let contour = move |line| Contour { line, value: level as f64 * interval, is_index: level % every == 0 };
         joined(&pieces).into_iter().filter(|line| !is_speck(line)).map(contour)
     };
     levels.into_iter().flat_map(of_level).collect()
+}
+
+/// How many contours there are from one index contour to the next, from the cells through which each contour goes.
+fn index_every(cells: &BTreeMap<i64, usize>) -> i64 {
+    let index = |every: i64| cells.iter().filter(move |(level, _)| **level % every == 0).map(|(_, count)| count);
+    let share = index(INDEX_EVERY[0]).sum::<usize>() as f64 / cells.values().sum::<usize>().max(1) as f64;
+    INDEX_EVERY[usize::from(index(INDEX_EVERY[0]).count() < 2 || share < INDEX_SHARE)]
 }
 
 /// Where the contour of a value crosses the sides of the cell whose first trace is `[x, y]`, two or four times; `ny` traces
@@ -131,6 +140,16 @@ mod tests {
         }
         let index: Vec<f64> = found.iter().filter(|contour| contour.is_index).map(|contour| contour.value).collect();
         assert_eq!(index, [100.0, 150.0]);
+    }
+
+    #[test]
+    fn index_contours_are_no_specks_among_many_lines() {
+        let cells = |of_index: usize| {
+            let along = |level: i64| if level % 5 == 0 { of_index } else { 60 };
+            index_every(&(20..=30).map(|level| (level, along(level))).collect())
+        };
+        assert_eq!([cells(4), cells(60)], [2, 5]);
+        assert_eq!([index_every(&[(3, 9), (5, 9)].into()), index_every(&BTreeMap::new())], [2, 2]);
     }
 
     #[test]
