@@ -4,7 +4,7 @@ use super::args::ViewArgs;
 use super::cut::{self, Cut, LineBox, voxel_box};
 use super::request::{Usage, counts, numbers};
 use project::Project;
-use render::{Background, FaceData, Ground, Lookup, Outlines, PatternSize, Projection, Scene, Unpicked, Water};
+use render::{Background, FaceData, Faces, Ground, Lookup, Outlines, PatternSize, Projection, Scene, Unpicked, Water};
 use survey::SurveyGeometry;
 use ttf::Preset;
 
@@ -166,11 +166,11 @@ impl ViewChanges {
         cut::change(&self.cuts, scene, geometry)
     }
 
-    /// The same for a view that nobody has composed: where it has a corner cut off, that is the nearest one to the camera and
-    /// of the block that were typed, too.
+    /// The same for a view of rock that nobody has composed: where it has a corner cut off, that is the nearest one to the
+    /// camera and of the block that were typed, too.
     pub(super) fn with_nearest_cut(mut self, scene: &Scene) -> Self {
         let is_moved = self.azimuth_deg.is_some() || self.roaming_box.is_some();
-        if is_moved && self.cuts.is_empty() && !scene.cut_outs.is_empty() {
+        if is_moved && self.cuts.is_empty() && !scene.cut_outs.is_empty() && scene.media.faces != Faces::None {
             self.cuts.push(Cut::Corner { corner: None, share: [cut::CUT_SHARE; 2] });
         }
         self

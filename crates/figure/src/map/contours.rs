@@ -13,10 +13,11 @@ use std::collections::{BTreeMap, HashMap};
 const CONTOURS: f64 = 14.0;
 /// Shortest contour that goes around, traces: a ring of radius 2, no more than smoothing averages over.
 const SPECK: f64 = 12.0;
-/// Every so manyeth contour is an index contour: heavier, with its value; of the second where too little of the map would be.
+/// Every so manyeth contour is an index contour: heavier, with its value; of the second where there would be one or none, or
+/// all of them short.
 const INDEX_EVERY: [i64; 2] = [5, 2];
-/// Least length of the index contours as a share of all contours' length.
-const INDEX_SHARE: f64 = 0.1;
+/// The longest index contour has at least this share of the length of the longest contour.
+const INDEX_SHARE: f64 = 0.4;
 
 /// A round distance between contours.
 pub(super) fn interval(spread: f64) -> f64 {
@@ -56,20 +57,28 @@ pub(super) fn contours(grid: &Grid, range: [f64; 2], interval: f64) -> Vec<Conto
             }
         }
     }
-    let counts: BTreeMap<i64, usize> = levels.iter().map(|(level, pieces)| (*level, pieces.len())).collect();
-    let every = index_every(&counts);
-    let of_level = |(level, pieces): (i64, Vec<[(Crossing, DVec2); 2]>)| {
-        let contour = move |line| Contour { line, value: level as f64 * interval, is_index: level % every == 0 };
-        joined(&pieces).into_iter().filter(|line| !is_speck(line)).map(contour)
+    let lines: BTreeMap<i64, Vec<Vec<DVec2>>> = levels
+        .into_iter()
+        .map(|(level, pieces)| (level, joined(&pieces).into_iter().filter(|line| !is_speck(line)).collect()))
+        .collect();
+    let longest = |lines: &Vec<Vec<DVec2>>| lines.iter().map(|line| length(line)).fold(0.0, f64::max);
+    let every = index_every(&lines.iter().map(|(level, lines)| (*level, longest(lines))).collect::<Vec<_>>());
+    let of_level = |(level, lines): (i64, Vec<Vec<DVec2>>)| {
+        lines.into_iter().map(move |line| Contour {
+            line,
+            value: level as f64 * interval,
+            is_index: level % every == 0,
+        })
     };
-    levels.into_iter().flat_map(of_level).collect()
+    lines.into_iter().flat_map(of_level).collect()
 }
 
-/// How many contours there are from one index contour to the next, from the cells through which each contour goes.
-fn index_every(cells: &BTreeMap<i64, usize>) -> i64 {
-    let index = |every: i64| cells.iter().filter(move |(level, _)| **level % every == 0).map(|(_, count)| count);
-    let share = index(INDEX_EVERY[0]).sum::<usize>() as f64 / cells.values().sum::<usize>().max(1) as f64;
-    INDEX_EVERY[usize::from(index(INDEX_EVERY[0]).count() < 2 || share < INDEX_SHARE)]
+/// How many contours there are from one index contour to the next, from the length of the longest line of each value.
+fn index_every(longest: &[(i64, f64)]) -> i64 {
+    let lengths = |every: i64| longest.iter().filter(move |(level, _)| level % every == 0).map(|(_, length)| *length);
+    let [all, index] = [1, INDEX_EVERY[0]].map(|every| lengths(every).fold(0.0, f64::max));
+    let is_rare = lengths(INDEX_EVERY[0]).filter(|length| *length > 0.0).count() < 2;
+    INDEX_EVERY[usize::from(is_rare || index < INDEX_SHARE * all)]
 }
 
 /// Where the contour of a value crosses the sides of the cell whose first trace is `[x, y]`, two or four times; `ny` traces
@@ -86,8 +95,11 @@ pub(super) fn crossings([x, y]: [usize; 2], ny: usize, values: [f64; 4], value: 
 
 /// Whether a contour only goes around a few traces: picks that stand out, and no shape of the horizon.
 fn is_speck(line: &[DVec2]) -> bool {
-    let length: f64 = line.windows(2).map(|step| step[0].distance(step[1])).sum();
-    line.first() == line.last() && length < SPECK
+    line.first() == line.last() && length(line) < SPECK
+}
+
+fn length(line: &[DVec2]) -> f64 {
+    line.windows(2).map(|step| step[0].distance(step[1])).sum()
 }
 
 /// Pieces that meet at a crossing as lines; one that goes around ends where it began.
@@ -143,13 +155,13 @@ mod tests {
     }
 
     #[test]
-    fn index_contours_are_no_specks_among_many_lines() {
-        let cells = |of_index: usize| {
-            let along = |level: i64| if level % 5 == 0 { of_index } else { 60 };
-            index_every(&(20..=30).map(|level| (level, along(level))).collect())
+    fn index_contours_are_no_specks_among_long_lines() {
+        let every = |of_index: f64| {
+            let longest = |level: i64| (level, if level % 5 == 0 { of_index } else { 60.0 });
+            index_every(&(20..=30).map(longest).collect::<Vec<_>>())
         };
-        assert_eq!([cells(4), cells(60)], [2, 5]);
-        assert_eq!([index_every(&[(3, 9), (5, 9)].into()), index_every(&BTreeMap::new())], [2, 2]);
+        assert_eq!([every(4.0), every(0.0), every(60.0)], [2, 2, 5]);
+        assert_eq!([index_every(&[(3, 9.0), (5, 9.0)]), index_every(&[])], [2, 2]);
     }
 
     #[test]
