@@ -68,7 +68,7 @@ mod tests {
         let best = |name: &str| ages_like(name).first().copied();
         let expected = [
             ("Campanien", "Campanian"),
-            ("Kampan", "Campanian"),
+            ("Kampanium", "Campanian"),
             ("Maastricht", "Maastrichtian"),
             ("upper cretacious", "Upper Cretaceous"),
             ("Cretácico", "Cretaceous"),

@@ -182,7 +182,7 @@ mod tests {
             ("black shales", "shale"),
             ("anhydrite", "gypsum"),
             ("halite", "salt"),
-            ("dolerite", "gabbro"),
+            ("dolerite", "basalt"),
             ("volcanic ash", "tuff"),
             ("coal seams", "coal"),
             ("limestone (cherty)", "limestone-cherty"),

@@ -3,20 +3,20 @@
 /// At most this many are offered.
 const OFFERED: usize = 3;
 
-/// Of the known names those whose letters are most like a name's, best first: at most three, of which each differs by
-/// hardly more letters than the best and by at most half of its own. Accents, capitals and spaces do not count.
+/// Of the known names those that are most like a name, best first: at most three, which differ by at most half of their
+/// letters, and by hardly more letters than the best. Accents, capitals and spaces do not count.
 pub(crate) fn alike<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     let asked = plain(name);
     let rated = known.into_iter().filter_map(|known| {
         let letters = plain(known);
         let (apart, longer) = (edit_distance(&asked, &letters), asked.chars().count().max(letters.chars().count()));
-        (2 * apart <= longer).then_some((apart, known))
+        (2 * apart <= longer).then_some((1000 * apart / longer.max(1), apart, known))
     });
-    let mut rated: Vec<(usize, &str)> = rated.collect();
+    let mut rated: Vec<(usize, usize, &str)> = rated.collect();
     rated.sort_unstable();
     rated.dedup();
-    let best = rated.first().map_or(0, |(apart, _)| *apart);
-    rated.into_iter().filter(|(apart, _)| *apart <= best + 1).map(|(_, known)| known).take(OFFERED).collect()
+    let most = rated.first().map_or(0, |(_, apart, _)| apart + 1);
+    rated.into_iter().filter(|(_, apart, _)| *apart <= most).map(|(.., known)| known).take(OFFERED).collect()
 }
 
 /// Names that are alike as a question at the end of a sentence, or else what to do instead.
