@@ -13,11 +13,8 @@ use std::collections::{BTreeMap, HashMap};
 const CONTOURS: f64 = 14.0;
 /// Shortest contour that goes around, traces: a ring of radius 2, no more than smoothing averages over.
 const SPECK: f64 = 12.0;
-/// Every so manyeth contour is an index contour: heavier, with its value; of the second where there would be one or none, or
-/// all of them short.
+/// Every so manyeth contour is an index contour: heavier, with its value; of the second where there would be one or none.
 const INDEX_EVERY: [i64; 2] = [5, 2];
-/// The longest index contour has at least this share of the length of the longest contour.
-const INDEX_SHARE: f64 = 0.4;
 
 /// A round distance between contours.
 pub(super) fn interval(spread: f64) -> f64 {
@@ -57,28 +54,13 @@ pub(super) fn contours(grid: &Grid, range: [f64; 2], interval: f64) -> Vec<Conto
             }
         }
     }
-    let lines: BTreeMap<i64, Vec<Vec<DVec2>>> = levels
-        .into_iter()
-        .map(|(level, pieces)| (level, joined(&pieces).into_iter().filter(|line| !is_speck(line)).collect()))
-        .collect();
-    let longest = |lines: &Vec<Vec<DVec2>>| lines.iter().map(|line| length(line)).fold(0.0, f64::max);
-    let every = index_every(&lines.iter().map(|(level, lines)| (*level, longest(lines))).collect::<Vec<_>>());
-    let of_level = |(level, lines): (i64, Vec<Vec<DVec2>>)| {
-        lines.into_iter().map(move |line| Contour {
-            line,
-            value: level as f64 * interval,
-            is_index: level % every == 0,
-        })
+    let of_every = |every: i64| levels.keys().filter(|level| *level % every == 0).count();
+    let every = if of_every(INDEX_EVERY[0]) > 1 { INDEX_EVERY[0] } else { INDEX_EVERY[1] };
+    let of_level = |(level, pieces): (i64, Vec<[(Crossing, DVec2); 2]>)| {
+        let contour = move |line| Contour { line, value: level as f64 * interval, is_index: level % every == 0 };
+        joined(&pieces).into_iter().filter(|line| !is_speck(line)).map(contour)
     };
-    lines.into_iter().flat_map(of_level).collect()
-}
-
-/// How many contours there are from one index contour to the next, from the length of the longest line of each value.
-fn index_every(longest: &[(i64, f64)]) -> i64 {
-    let lengths = |every: i64| longest.iter().filter(move |(level, _)| level % every == 0).map(|(_, length)| *length);
-    let [all, index] = [1, INDEX_EVERY[0]].map(|every| lengths(every).fold(0.0, f64::max));
-    let is_rare = lengths(INDEX_EVERY[0]).filter(|length| *length > 0.0).count() < 2;
-    INDEX_EVERY[usize::from(is_rare || index < INDEX_SHARE * all)]
+    levels.into_iter().flat_map(of_level).collect()
 }
 
 /// Where the contour of a value crosses the sides of the cell whose first trace is `[x, y]`, two or four times; `ny` traces
@@ -95,11 +77,8 @@ pub(super) fn crossings([x, y]: [usize; 2], ny: usize, values: [f64; 4], value: 
 
 /// Whether a contour only goes around a few traces: picks that stand out, and no shape of the horizon.
 fn is_speck(line: &[DVec2]) -> bool {
-    line.first() == line.last() && length(line) < SPECK
-}
-
-fn length(line: &[DVec2]) -> f64 {
-    line.windows(2).map(|step| step[0].distance(step[1])).sum()
+    let length: f64 = line.windows(2).map(|step| step[0].distance(step[1])).sum();
+    line.first() == line.last() && length < SPECK
 }
 
 /// Pieces that meet at a crossing as lines; one that goes around ends where it began.
@@ -152,16 +131,6 @@ mod tests {
         }
         let index: Vec<f64> = found.iter().filter(|contour| contour.is_index).map(|contour| contour.value).collect();
         assert_eq!(index, [100.0, 150.0]);
-    }
-
-    #[test]
-    fn index_contours_are_no_specks_among_long_lines() {
-        let every = |of_index: f64| {
-            let longest = |level: i64| (level, if level % 5 == 0 { of_index } else { 60.0 });
-            index_every(&(20..=30).map(longest).collect::<Vec<_>>())
-        };
-        assert_eq!([every(4.0), every(0.0), every(60.0)], [2, 2, 5]);
-        assert_eq!([index_every(&[(3, 9.0), (5, 9.0)]), index_every(&[])], [2, 2]);
     }
 
     #[test]
