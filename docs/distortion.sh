@@ -39,7 +39,7 @@ measure() {
 }
 measure claudius "$projects/claudius.petro" --cut min-min,0.45,0.6 --azimuth 35 --elevation 25
 measure penobscot "$projects/penobscot.petro" --azimuth 225 --cut nearest,0.4,0.5
-measure penobscot-picks "$projects/picks.petro" --azimuth 225
+measure penobscot-picks "$projects/picks.petro" --azimuth 225 --cut min-min
 measure f3 "$projects/f3.petro" --azimuth 145 --elevation 25 --box 300,427,756,920,1186.8,1826.4 --cut nearest,0.25,0.6
 measure f3-west "$west" --azimuth 35 --elevation 25 --cut nearest,0.4,0.5
 measure demo "$demo/demo.petro"

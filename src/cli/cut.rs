@@ -32,7 +32,7 @@ pub(super) enum FenceCorner {
 }
 
 /// Share of the block that a corner cut takes by default.
-const CUT_SHARE: f64 = 0.45;
+pub(super) const CUT_SHARE: f64 = 0.45;
 
 /// The cut-outs that were typed.
 pub(super) fn typed(typed: &ViewArgs) -> Result<Vec<Cut>, Usage> {

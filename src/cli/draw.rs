@@ -31,7 +31,11 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     let document = project.document();
     let mut scene = choose(&project, request.scene.as_deref())?;
     request.volume_rendering.change(&mut scene, document)?;
-    request.view.with_wells(&project)?.change(&mut scene, document.frame()?)?;
+    let mut view = request.view.with_wells(&project)?;
+    if request.scene.is_none() && document.scenes.is_empty() {
+        view = view.with_nearest_cut(&scene);
+    }
+    view.change(&mut scene, document.frame()?)?;
     if document.volumes.is_empty() && document.horizons.is_empty() {
         anyhow::bail!(
             "the project has neither horizons nor a volume, so there is nothing to draw; add a horizon or import a volume"

@@ -5,6 +5,7 @@ use param::ParamError;
 use project::ProjectError;
 use std::error::Error;
 use std::io::ErrorKind;
+use ttf::TtfError;
 
 /// What to do next about an error, or about what caused it; `None` where no general advice is possible.
 pub(super) fn of(error: &(dyn Error + 'static)) -> Option<String> {
@@ -77,6 +78,7 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         ProjectError::NoTime => "run `petroglyph time PROJECT` first",
         ProjectError::NotExtracted => "run `petroglyph extract PROJECT` first",
         ProjectError::NoVolume => "import one with `petroglyph import SURVEY.sgy PROJECT`",
+        ProjectError::Style(TtfError::UnknownRock { .. } | TtfError::UnknownAge { .. }) => return error.advice(),
         ProjectError::Style(_) => "`petroglyph patterns OUT.png` draws every pattern with its name",
         ProjectError::Scene(_) => {
             "`petroglyph scene show` prints a scene; `petroglyph render --help` lists what can be set"

@@ -4,7 +4,7 @@ use super::args::ViewArgs;
 use super::cut::{self, Cut, LineBox, voxel_box};
 use super::request::{Usage, counts, numbers};
 use project::Project;
-use render::{Background, FaceData, Ground, Lookup, Outlines, PatternSize, Projection, Scene, Unpicked, Water};
+use render::{Background, FaceData, Faces, Ground, Lookup, Outlines, PatternSize, Projection, Scene, Unpicked, Water};
 use survey::SurveyGeometry;
 use ttf::Preset;
 
@@ -166,6 +166,16 @@ impl ViewChanges {
         cut::change(&self.cuts, scene, geometry)
     }
 
+    /// The same for a view of rock that nobody has composed: where it has a corner cut off, that is the nearest one to the
+    /// camera and of the block that were typed, too.
+    pub(super) fn with_nearest_cut(mut self, scene: &Scene) -> Self {
+        let is_moved = self.azimuth_deg.is_some() || self.roaming_box.is_some();
+        if is_moved && self.cuts.is_empty() && !scene.cut_outs.is_empty() && scene.media.faces != Faces::None {
+            self.cuts.push(Cut::Corner { corner: None, share: [cut::CUT_SHARE; 2] });
+        }
+        self
+    }
+
     /// The same with wells at the corners of fences found in a project.
     pub(super) fn with_wells(&self, project: &Project) -> anyhow::Result<Self> {
         let mut found = self.clone();
@@ -218,6 +228,29 @@ mod tests {
         };
         assert_ne!(cut(30.0), cut(210.0));
         assert_eq!(cut(30.0).extent(), DVec3::new(20.0, 15.0, 20.0));
+    }
+
+    #[test]
+    fn a_view_that_nobody_composed_is_cut_at_the_nearest_corner() {
+        let geometry = geometry();
+        let mut scene = Scene::default();
+        scene.cut_outs = vec![scene.box_in(&geometry).corner_cut(render::Corner::MinMin, [0.45; 2])];
+        let cut = |typed: ViewArgs| {
+            let mut scene = scene.clone();
+            let changes = ViewChanges::try_from(typed).unwrap().with_nearest_cut(&scene);
+            changes.change(&mut scene, &geometry).unwrap();
+            scene.cut_outs
+        };
+        assert_eq!(cut(ViewArgs::default()), scene.cut_outs);
+        for azimuth in [30.0, 120.0, 210.0, 300.0] {
+            let azimuth = Some(azimuth);
+            let nearest = cut(ViewArgs { cut: vec!["nearest".into()], azimuth, ..ViewArgs::default() });
+            assert_eq!(cut(ViewArgs { azimuth, ..ViewArgs::default() }), nearest);
+            let other = cut(ViewArgs { cut: vec!["min-max,0.2,0.2".into()], azimuth, ..ViewArgs::default() });
+            assert_ne!(other, nearest);
+        }
+        let part = cut(ViewArgs { roaming_box: Some("130,110,1,11,8,40".into()), ..ViewArgs::default() });
+        assert!(part[0].min[0] >= 10.0 && part[0].max[0] <= 30.0, "{part:?}");
     }
 
     #[test]

@@ -28,16 +28,44 @@ impl Below {
     /// The same with another answer for one horizon.
     #[must_use]
     pub fn with(mut self, horizon: usize, is_below: bool) -> Self {
+        self.set(horizon, is_below);
+        self
+    }
+
+    /// Changes the answer for one horizon.
+    pub(crate) fn set(&mut self, horizon: usize, is_below: bool) {
         let bit = 1 << (horizon % BITS);
         let word = &mut self.0[horizon / BITS];
         *word = if is_below { *word | bit } else { *word & !bit };
-        self
     }
 
     /// Whether another place lies on the other side of this horizon, and of no other one.
     pub fn differs_only_at(&self, horizon: usize, other: &Self) -> bool {
         let alone = Self::default().with(horizon, true);
         (0..WORDS).all(|n| self.0[n] ^ other.0[n] == alone.0[n])
+    }
+
+    /// The first `count` horizons, the youngest.
+    pub(crate) fn youngest(count: usize) -> Self {
+        Self(std::array::from_fn(|n| bits_before(count, n)))
+    }
+
+    /// The first horizon before `end` that both have.
+    pub(crate) fn first_shared(&self, other: &Self, end: usize) -> Option<usize> {
+        first_bit(end, |n| self.0[n] & other.0[n])
+    }
+
+    /// The first horizon before `end` that this has and the other one has not.
+    pub(crate) fn first_without(&self, other: &Self, end: usize) -> Option<usize> {
+        first_bit(end, |n| self.0[n] & !other.0[n])
+    }
+
+    /// The last horizon before `end` that this has and the other one has not.
+    pub(crate) fn last_without(&self, other: &Self, end: usize) -> Option<usize> {
+        (0..end.div_ceil(BITS)).rev().find_map(|n| {
+            let word = self.0[n] & !other.0[n] & bits_before(end, n);
+            word.checked_ilog2().map(|bit| n * BITS + bit as usize)
+        })
     }
 
     /// The first horizon from `first` on, in order of age, that does not have all of three places on one side.
@@ -57,6 +85,22 @@ impl Below {
             self.0[n] = self.0[n] & !taken | other.0[n] & taken;
         }
     }
+}
+
+/// Those bits of word `n` that stand for horizons before `end`.
+fn bits_before(end: usize, n: usize) -> u64 {
+    match end.saturating_sub(n * BITS) {
+        count @ 0..BITS => (1 << count) - 1,
+        _ => u64::MAX,
+    }
+}
+
+/// The first horizon before `end` whose bit is set in the words.
+fn first_bit(end: usize, word: impl Fn(usize) -> u64) -> Option<usize> {
+    (0..end.div_ceil(BITS)).find_map(|n| {
+        let word = word(n) & bits_before(end, n);
+        (word != 0).then(|| n * BITS + word.trailing_zeros() as usize)
+    })
 }
 
 /// The answers for the horizons in order, youngest first. Further ones than `MOST_HORIZONS` are left out.
@@ -82,6 +126,21 @@ mod tests {
             assert_eq!(one, (0..MOST_HORIZONS).map(|g| g == h).collect());
             assert!(one.differs_only_at(h, &Below::default()) && !one.differs_only_at((h + 1) % 70, &Below::default()));
             assert_eq!(one.with(h, false), Below::default());
+        }
+    }
+
+    #[test]
+    fn horizons_of_two_places_are_found_from_either_end() {
+        let at = |horizons: &[usize]| horizons.iter().fold(Below::default(), |below, h| below.with(*h, true));
+        let (one, other) = (at(&[3, 63, 64, 200]), at(&[3, 64, 130]));
+        let ends = [0, 3, 4, 63, 64, 65, 200, 201, MOST_HORIZONS];
+        let found = |of: fn(&Below, &Below, usize) -> Option<usize>| ends.map(|end| of(&one, &other, end));
+        let (none, three, last) = (None, Some(3), Some(63));
+        assert_eq!(found(Below::first_shared), [none, none, three, three, three, three, three, three, three]);
+        assert_eq!(found(Below::first_without), [none, none, none, none, last, last, last, last, last]);
+        assert_eq!(found(Below::last_without), [none, none, none, none, last, last, last, Some(200), Some(200)]);
+        for count in [0, 1, 63, 64, 65, MOST_HORIZONS] {
+            assert_eq!(Below::youngest(count), (0..count).map(|_| true).collect());
         }
     }
 

@@ -37,22 +37,31 @@ use survey::stratigraphy::{Contact, Stratigraphy};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ContactRules {
     contacts: Vec<Contact>,
+    erosional: Below,
+    intrusive: Below,
+    truncated: Below,
+    /// Intrusive and truncated ones.
+    bodies: Below,
 }
 
 impl ContactRules {
     /// The rules of `stratigraphy`.
     pub fn new(stratigraphy: &Stratigraphy) -> Self {
-        Self { contacts: stratigraphy.horizons.iter().map(|h| h.contact).collect() }
+        Self::of(stratigraphy.horizons.iter().map(|h| h.contact).collect())
     }
 
     /// The rules between some of the horizons, given by their places in the order.
     pub(super) fn among(&self, horizons: &[usize]) -> Self {
-        Self { contacts: horizons.iter().map(|&h| self.contacts[h]).collect() }
+        Self::of(horizons.iter().map(|&h| self.contacts[h]).collect())
     }
 
     /// The rules of contacts, youngest horizon first.
     pub fn of(contacts: Vec<Contact>) -> Self {
-        Self { contacts }
+        let all = |kind: Contact| contacts.iter().map(|contact| *contact == kind).collect();
+        let (erosional, intrusive, truncated) =
+            (all(Contact::Erosional), all(Contact::Intrusive), all(Contact::Truncated));
+        let bodies = contacts.iter().map(|contact| contact.is_intrusive()).collect();
+        Self { contacts, erosional, intrusive, truncated, bodies }
     }
 
     /// The contacts, youngest horizon first.
@@ -63,36 +72,32 @@ impl ContactRules {
     /// The layer of a place that lies below these horizons.
     pub fn layer(&self, below: &Below) -> u16 {
         let n = self.contacts.len();
-        let is_below = |h: usize| below.has(h);
+        let eroded = self.erosional.first_without(below, n).unwrap_or(n);
         // The place belongs to the youngest intrusion that contains it, if no erosion has removed that there.
-        let mut is_eroded = false;
-        for h in 0..n {
-            match self.contacts[h] {
-                Contact::Erosional => is_eroded |= !is_below(h),
-                Contact::Intrusive if is_below(h) => return (n - 1 - h) as u16,
-                Contact::Truncated if is_below(h) && !is_eroded => return (n - 1 - h) as u16,
-                _ => {}
-            }
-        }
-        // In the order of deposition: the oldest horizon that the place is still below.
-        let mut deepest = None;
-        for h in (0..n).rev() {
-            match self.contacts[h] {
-                Contact::Intrusive | Contact::Truncated => {}
-                Contact::Erosional if !is_below(h) => deepest = None,
-                _ if is_below(h) => deepest = deepest.or(Some(h)),
-                _ => {}
-            }
-        }
-        deepest.map_or(n, |h| n - 1 - h) as u16
+        let intrusive = self.intrusive.first_shared(below, n);
+        let body = intrusive.into_iter().chain(self.truncated.first_shared(below, eroded)).min();
+        // Or else, in the order of deposition: the oldest horizon that the place is still below.
+        let horizon = body.or_else(|| below.last_without(&self.bodies, eroded));
+        horizon.map_or(n, |h| n - 1 - h) as u16
+    }
+
+    /// Whether any horizon cuts through others, whatever their age.
+    pub(super) fn has_intrusions(&self) -> bool {
+        self.bodies != Below::default()
     }
 
     /// Cuts the heights of all sheets at one place, youngest first, in place: a horizon that has ended lies
     /// on the one it ended at.
     pub fn clip(&self, z: &mut [f32]) {
-        let n = self.contacts.len();
+        self.clip_some(0, z);
+    }
+
+    /// The same for the horizons from `first` on, as many as there are heights, as if there were no others.
+    pub(super) fn clip_some(&self, first: usize, z: &mut [f32]) {
+        let n = z.len();
+        let contacts = &self.contacts[first..first + n];
         let mut eroded = f32::NEG_INFINITY;
-        for (contact, z) in self.contacts.iter().zip(&mut *z) {
+        for (contact, z) in contacts.iter().zip(&mut *z) {
             match contact {
                 Contact::Erosional => eroded = eroded.max(*z),
                 Contact::Truncated => *z = z.max(eroded),
@@ -101,11 +106,11 @@ impl ContactRules {
         }
         let mut older: Option<usize> = None;
         for h in (0..n).rev() {
-            match self.contacts[h] {
+            match contacts[h] {
                 Contact::Intrusive | Contact::Truncated => continue,
                 Contact::Erosional => {
                     for g in h + 1..n {
-                        if !self.contacts[g].is_intrusive() {
+                        if !contacts[g].is_intrusive() {
                             z[g] = z[g].max(z[h]);
                         }
                     }
@@ -119,10 +124,10 @@ impl ContactRules {
             older = Some(h);
         }
         for i in 0..n {
-            if self.contacts[i].is_intrusive() {
+            if contacts[i].is_intrusive() {
                 for h in 0..n {
                     // Between two intrusions the younger one wins.
-                    if h != i && (!self.contacts[h].is_intrusive() || h > i) {
+                    if h != i && (!contacts[h].is_intrusive() || h > i) {
                         z[h] = z[h].min(z[i]);
                     }
                 }

@@ -12,6 +12,7 @@ use super::settings::ModelSettings;
 use super::sheets::{ExtendedSheet, extend_all};
 use glam::{DMat3, Vec3};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 use survey::LevelField;
 use survey::fault::Fault;
@@ -71,8 +72,8 @@ pub struct StructuralModel {
     sheets: Vec<Vec<ExtendedSheet>>,
     /// `[horizon][block]`; `None` for height fields.
     levels: Vec<Vec<Option<LevelSurface>>>,
-    /// Between which depths each sheet lies where nodes surround a place, `[horizon][block]`.
-    spans: Vec<Vec<[f32; 2]>>,
+    /// Of each block, for finding the sheets near a depth.
+    depths: Vec<Depths>,
     report: ModelReport,
 }
 
@@ -88,6 +89,35 @@ fn span(sheet: &ExtendedSheet) -> [f32; 2] {
     let (middle, reach) =
         (0.5 * (low + high), 0.5 * MOST_WEIGHT * (high - low) + 1e-3 * (1.0 + high.abs().max(low.abs())));
     [middle - reach, middle + reach]
+}
+
+/// How deep the sheets of a block reach, so that of many only those near a place are evaluated.
+#[derive(Debug, Clone, PartialEq)]
+struct Depths {
+    /// The greatest depth of each horizon and all younger ones.
+    deepest: Vec<f32>,
+    /// The least depth of each horizon and all older ones.
+    highest: Vec<f32>,
+}
+
+impl Depths {
+    /// Of spans, youngest first.
+    fn new(spans: &[[f32; 2]]) -> Self {
+        let mut deepest: Vec<f32> = spans.iter().map(|span| span[1]).collect();
+        let mut highest: Vec<f32> = spans.iter().map(|span| span[0]).collect();
+        for h in 1..spans.len() {
+            deepest[h] = deepest[h].max(deepest[h - 1]);
+        }
+        for h in (1..spans.len()).rev() {
+            highest[h - 1] = highest[h - 1].min(highest[h]);
+        }
+        Self { deepest, highest }
+    }
+
+    /// The horizons that a depth may be above or below: it lies below all before them, and above all after them.
+    fn around(&self, z: f32) -> Range<usize> {
+        self.deepest.partition_point(|deepest| *deepest < z)..self.highest.partition_point(|highest| *highest <= z)
+    }
 }
 
 impl StructuralModel {
@@ -147,7 +177,7 @@ impl StructuralModel {
             };
             sheets.insert(h, surfaces.par_iter().flatten().map(top).collect());
         }
-        let spans = sheets.iter().map(|of_block| of_block.iter().map(span).collect()).collect();
+        let depths = depths_of(&sheets, &levels.surfaces, faults.block_count());
         Ok(Self {
             size,
             metric: geometry.metric_from_voxel(),
@@ -156,7 +186,7 @@ impl StructuralModel {
             faults,
             sheets,
             levels: levels.surfaces,
-            spans,
+            depths,
             report,
         })
     }
@@ -254,8 +284,8 @@ impl StructuralModel {
     /// inside their body.
     pub fn below_at(&self, p: Vec3, block: u16) -> Below {
         let mut last: Option<(&Arc<LevelField>, f32)> = None;
-        let is_below = |h: usize| match self.level(h, block) {
-            None => self.is_below_sheet(h, block, p),
+        let mut is_below = |h: usize| match self.level(h, block) {
+            None => p.z >= self.sheet(h, block).z_at(p.x, p.y),
             // Horizons of one series share their field.
             Some(level) => match last {
                 Some((field, value)) if Arc::ptr_eq(field, &level.field) => value >= level.at,
@@ -266,16 +296,23 @@ impl StructuralModel {
                 }
             },
         };
-        (0..self.sheets.len()).map(is_below).collect()
+        let around = self.horizons_around(p, block);
+        let mut below = Below::youngest(around.start);
+        for h in around {
+            below.set(h, is_below(h));
+        }
+        below
     }
 
-    /// Whether a voxel position lies at or below a sheet. Most sheets of many lie wholly above or below it.
-    fn is_below_sheet(&self, horizon: usize, block: u16, p: Vec3) -> bool {
-        let (sheet, [low, high]) = (self.sheet(horizon, block), self.spans[horizon][usize::from(block)]);
-        if (low..=high).contains(&p.z) || !sheet.surrounds(p.x, p.y) {
-            return p.z >= sheet.z_at(p.x, p.y);
+    /// The horizons that a place may be above or below according to their depths alone. All sheets have the same nodes,
+    /// which bound them only where they surround the place.
+    fn horizons_around(&self, p: Vec3, block: u16) -> Range<usize> {
+        match self.sheets.first() {
+            Some(sheets) if sheets[usize::from(block)].field.surrounds(p.x, p.y) => {
+                self.depths[usize::from(block)].around(p.z)
+            }
+            _ => 0..self.sheets.len(),
         }
-        p.z > high
     }
 
     /// Layer and block at voxel position `p`.
@@ -320,7 +357,11 @@ impl StructuralModel {
             }
             let sheets_z = sheets_z[usize::from(block)]
                 .get_or_insert_with(|| (0..self.sheets.len()).map(|h| self.sheet(h, block).z_at(x, y)).collect());
-            let below: Below = sheets_z.iter().map(|&sheet_z| z >= sheet_z).collect();
+            let around = self.horizons_around(p, block);
+            let mut below = Below::youngest(around.start);
+            for h in around {
+                below.set(h, z >= sheets_z[h]);
+            }
             found(n, Region { layer: self.rules.layer(&below), block });
         }
     }
@@ -335,16 +376,52 @@ impl StructuralModel {
             let is_eroded = |h: &usize| contacts[horizon] == Contact::Truncated && contacts[*h] == Contact::Erosional;
             return (0..horizon).filter(is_eroded).map(z_of).fold(z_of(horizon), f32::max);
         }
-        let mut z: Vec<f32> =
-            (0..self.sheets.len()).map(|h| if self.is_body(h) { f32::MAX } else { z_of(h) }).collect();
-        self.rules.clip(&mut z);
-        z[horizon]
+        let tangled = self.tangled(horizon, block, x, y);
+        let mut z: Vec<f32> = tangled.clone().map(|h| if self.is_body(h) { f32::MAX } else { z_of(h) }).collect();
+        self.rules.clip_some(tangled.start, &mut z);
+        z[horizon - tangled.start]
+    }
+
+    /// The horizons around one that may cut each other at a place: the younger ones lie above all of these, the older ones
+    /// below.
+    fn tangled(&self, horizon: usize, block: u16, x: f32, y: f32) -> Range<usize> {
+        if self.rules.has_intrusions() || !self.sheet(horizon, block).surrounds(x, y) {
+            return 0..self.sheets.len();
+        }
+        let z_of = |h: usize| self.sheet(h, block).z_at(x, y);
+        let depths = &self.depths[usize::from(block)];
+        let [mut low, mut high] = [z_of(horizon); 2];
+        let mut found = horizon..horizon + 1;
+        loop {
+            let first = (depths.around(low).start..found.start).find(|h| z_of(*h) >= low).unwrap_or(found.start);
+            let last = (found.end..depths.around(high).end).rev().find(|h| z_of(*h) <= high);
+            let wider = first..last.map_or(found.end, |h| h + 1);
+            if wider == found {
+                return found;
+            }
+            for z in wider.clone().map(z_of) {
+                (low, high) = (low.min(z), high.max(z));
+            }
+            found = wider;
+        }
     }
 
     /// What was filled, extended, placed and clamped.
     pub fn report(&self) -> &ModelReport {
         &self.report
     }
+}
+
+/// The depths of each block's sheets, of `[horizon][block]`.
+fn depths_of(sheets: &[Vec<ExtendedSheet>], levels: &[Vec<Option<LevelSurface>>], blocks: usize) -> Vec<Depths> {
+    let of_block = |block: usize| {
+        let spans = sheets.iter().zip(levels).map(|(sheets, levels)| match levels[block] {
+            None => span(&sheets[block]),
+            Some(_) => [f32::NEG_INFINITY, f32::INFINITY],
+        });
+        Depths::new(&spans.collect::<Vec<_>>())
+    };
+    (0..blocks).map(of_block).collect()
 }
 
 /// The horizons of the stratigraphy, youngest first.
@@ -426,5 +503,47 @@ mod tests {
         let layer = |z: f32| model.region_at(Vec3::new(4.3, 5.1, z)).layer;
         assert_eq!((layer(5.0), layer(15.0), layer(25.0)), (2, 1, 0));
         assert_eq!(model.horizon_z(1, 0, 3.5, 14.0), 20.0);
+    }
+
+    /// Only sheets near a place are asked, and the answers are those of all sheets.
+    #[test]
+    fn many_sheets_that_cut_each_other_are_told_from_those_nearby() {
+        let g = SurveyGeometry::regular([24, 16, 160], 25.0, 4.0, VerticalUnit::Milliseconds);
+        let mut state = 1u32;
+        let mut next = move || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 16) as f32 / 65536.0
+        };
+        let count = 70;
+        let name = |h: usize| format!("H{h}");
+        let contact = |h: usize| [Contact::Erosional, Contact::Onlap, Contact::Erosional][h % 3];
+        let horizons: Vec<Horizon> = (0..count)
+            .map(|h| {
+                let (tilt, bend) = (6.0 * (next() - 0.5), 3.0 * next());
+                let ms = |n: usize| 8.0 * h as f32 + tilt * (n / 16) as f32 + bend * (n % 16) as f32;
+                let nodes = (0..24 * 16).map(ms).collect();
+                Horizon::new(name(h), vec![Sheet::new(NodeGrid::of_survey(&g), nodes, Quality::Picked)])
+            })
+            .collect();
+        let horizon = |h| StratigraphicHorizon { name: name(h), contact: contact(h) };
+        let stratigraphy = Stratigraphy { horizons: (0..count).map(horizon).collect(), layer_names: Vec::new() };
+        let settings = ModelSettings::default();
+        let model = StructuralModel::build(&g, &stratigraphy, &horizons, &[], &settings, &Progress::silent()).unwrap();
+        let (mut cut, mut around) = (0, 0);
+        for _ in 0..300 {
+            // Beyond the survey, too, where nodes do not bound the sheets.
+            let (x, y, z) = (60.0 * next() - 18.0, 40.0 * next() - 12.0, 180.0 * next() - 10.0);
+            let own: Vec<f32> = (0..count).map(|h| model.sheet(h, 0).z_at(x, y)).collect();
+            let below: Below = own.iter().map(|sheet| z >= *sheet).collect();
+            let p = Vec3::new(x, y, z);
+            assert_eq!(model.below_at(p, 0), below, "{p}");
+            around += usize::from(model.horizons_around(p, 0).len() < count);
+            let mut clipped = own.clone();
+            model.rules().clip(&mut clipped);
+            cut += (0..count).filter(|h| clipped[*h] != own[*h]).count();
+            let drawn: Vec<f32> = (0..count).map(|h| model.horizon_z(h, 0, x, y)).collect();
+            assert_eq!(drawn, clipped, "{p}");
+        }
+        assert!(cut > 3000 && around > 100, "{cut} {around}");
     }
 }

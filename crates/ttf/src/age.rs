@@ -1,6 +1,7 @@
 //! From the name of a unit of geological time to its colour on the international chart.
 
 use crate::Colour;
+use crate::similar::{alike, plain};
 
 /// The chart: unit, rank, colour, base, top (`textures/ages.tsv`; International Commission on Stratigraphy, CC BY 4.0).
 const AGES: &str = include_str!("../../../textures/ages.tsv");
@@ -37,14 +38,15 @@ pub fn ages() -> impl Iterator<Item = Age> {
 
 /// The unit of a name, in large or small letters; Early and Late stand for Lower and Upper.
 pub fn age(name: &str) -> Option<Age> {
-    let plain = |name: &str| {
-        let letters = name.chars().filter(|c| c.is_alphanumeric());
-        letters.flat_map(char::to_lowercase).collect::<String>()
-    };
     let asked = plain(name);
     let formal = asked.strip_prefix("early").map(|rest| format!("lower{rest}"));
     let formal = formal.or_else(|| asked.strip_prefix("late").map(|rest| format!("upper{rest}")));
     ages().find(|age| plain(age.name) == asked || Some(plain(age.name)) == formal)
+}
+
+/// The names of units that are most like a name, best first; none where no name is like it.
+pub(crate) fn ages_like(name: &str) -> Vec<&'static str> {
+    alike(name, ages().map(|age| age.name))
 }
 
 #[cfg(test)]
@@ -59,5 +61,25 @@ mod tests {
         assert!(campanian.base_ma > 72.0 && campanian.base_ma < 84.0);
         assert_eq!(age("Late Cretaceous"), age("Upper Cretaceous"));
         assert!(age("Late Cretaceous").is_some());
+    }
+
+    #[test]
+    fn names_in_other_languages_and_misspelt_ones_are_like_units() {
+        let best = |name: &str| ages_like(name).first().copied();
+        let expected = [
+            ("Campanien", "Campanian"),
+            ("Kampanium", "Campanian"),
+            ("Maastricht", "Maastrichtian"),
+            ("upper cretacious", "Upper Cretaceous"),
+            ("Cretácico", "Cretaceous"),
+            ("Crétacé supérieur", "Cretaceous"),
+            ("Oligocen", "Oligocene"),
+            ("Oxfordium", "Oxfordian"),
+            ("Late Campanian", "Campanian"),
+            ("Mid Jurassic", "Middle Jurassic"),
+        ];
+        assert_eq!(expected.map(|(name, _)| best(name)), expected.map(|(_, unit)| Some(unit)));
+        assert_eq!([best("xyzzy"), best(""), best("Tuesday")], [None; 3]);
+        assert!(ages().all(|age| ages_like(age.name)[0] == age.name && ages_like(age.name).len() <= 3));
     }
 }

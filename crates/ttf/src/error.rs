@@ -1,5 +1,8 @@
 //! The errors of this crate. Each has its facts as fields, and its text says what to do.
 
+use crate::age::ages_like;
+use crate::rock::rocks_like;
+use crate::similar::offered;
 use std::path::PathBuf;
 
 /// What is wrong with a transfer function or a texture.
@@ -109,19 +112,20 @@ pub enum TtfError {
         nearest: Option<String>,
     },
     /// A rock that the vocabulary does not have.
-    #[error(
-        "there is no rock `{rock}`; name it in English as the CGI simple lithology vocabulary does (sandstone, wacke, marble, \
-         diorite), or choose a pattern"
-    )]
+    #[error("there is no rock `{rock}`; {}", offered(
+        &rocks_like(rock),
+        "name it in English as the CGI simple lithology vocabulary does (sandstone, wacke, marble, diorite), or choose a \
+         pattern: `petroglyph patterns OUT.png` draws all",
+    ))]
     UnknownRock {
         /// The name asked for.
         rock: String,
     },
     /// A unit that the chronostratigraphic chart does not have.
-    #[error(
-        "there is no unit `{age}` in the International Chronostratigraphic Chart; use its English name (Campanian, Upper \
-         Cretaceous, Neogene), or state a colour"
-    )]
+    #[error("there is no unit `{age}` in the International Chronostratigraphic Chart; {}", offered(
+        &ages_like(age),
+        "use its English name (Campanian, Upper Cretaceous, Neogene), or state a colour",
+    ))]
     UnknownAge {
         /// The name asked for.
         age: String,

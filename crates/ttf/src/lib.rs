@@ -34,6 +34,7 @@ mod rock;
 mod scalar;
 mod shade;
 mod sheet;
+mod similar;
 pub mod subset;
 mod svg;
 pub mod tables;

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::builtin::{CATALOGUE, DRAWINGS};
 use crate::drawing::{TileDrawing, drawing_of};
 use crate::raster;
+use crate::similar::edit_distance;
 use crate::{Colour, Texture, TtfError};
 
 /// A texture's entry in the catalogue.
@@ -57,8 +58,9 @@ pub struct TextureLibrary {
 struct LibraryEntry {
     pattern: Pattern,
     svg: Option<Arc<str>>,
-    /// Shared by all libraries of the program, so that a pattern is rasterised once.
+    /// Shared by all libraries of the program, so that a pattern is rasterised once, and its drawing read once.
     texture: Arc<OnceLock<Arc<Texture>>>,
+    drawing: Arc<OnceLock<Option<Arc<TileDrawing>>>>,
 }
 
 #[derive(Deserialize)]
@@ -135,7 +137,8 @@ impl TextureLibrary {
         if self.find(&pattern.name).is_some() {
             return Err(TtfError::DuplicateTexture { texture: pattern.name });
         }
-        self.entries.push(LibraryEntry { pattern, svg, texture: Arc::new(texture) });
+        let drawing = Arc::default();
+        self.entries.push(LibraryEntry { pattern, svg, texture: Arc::new(texture), drawing });
         Ok(self.entries.len() - 1)
     }
 
@@ -164,13 +167,17 @@ impl TextureLibrary {
         self.entries[index].svg.as_deref()
     }
 
-    /// The drawing behind a texture as paths; `None` of a raster image, and of what [`crate::drawing`] leaves out.
+    /// The drawing behind a texture as paths, which is read on first use and then shared; `None` of a raster image, and of what [`crate::drawing`] leaves out.
     ///
     /// # Errors
     /// A drawing that cannot be read.
-    pub fn drawing(&self, index: usize) -> Result<Option<TileDrawing>, TtfError> {
+    pub fn drawing(&self, index: usize) -> Result<Option<Arc<TileDrawing>>, TtfError> {
         let entry = &self.entries[index];
-        entry.svg.as_ref().map_or(Ok(None), |svg| drawing_of(&entry.pattern.name, svg))
+        if let Some(drawing) = entry.drawing.get() {
+            return Ok(drawing.clone());
+        }
+        let read = entry.svg.as_ref().map_or(Ok(None), |svg| drawing_of(&entry.pattern.name, svg))?;
+        Ok(entry.drawing.get_or_init(|| read.map(Arc::new)).clone())
     }
 
     /// Index of a name.
@@ -214,18 +221,3 @@ impl TextureLibrary {
 
 /// Printed width of a user's tile in millimetres.
 const USER_TILE_MM: f32 = 20.0;
-
-/// Levenshtein distance of two names, in characters.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (line, from) in a.chars().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], line + 1);
-        for (column, to) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(from != *to);
-            diagonal = row[column + 1];
-            row[column + 1] = replaced.min(diagonal + 1).min(row[column] + 1);
-        }
-    }
-    row[b.len()]
-}

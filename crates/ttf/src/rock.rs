@@ -3,12 +3,17 @@
 //! The names are the 265 terms of the CGI simple lithology vocabulary (`textures/rocks.tsv`, CC BY 4.0), in which each
 //! term has broader ones. A term without a pattern of its own takes that of the nearest broader one. A name that is no
 //! term is looked for among the patterns ("oolitic limestone" is `limestone-oolitic`), then among the other names that
-//! terms have, and then by its last words, where English has the rock ("dark grey shale" is a shale).
+//! terms have, among names in common use that the vocabulary lacks (`textures/rock-names.tsv`), and then by its last
+//! words, where English has the rock ("dark grey shale" is a shale). What stands in brackets and a plural's s do not count.
 
+use crate::similar::alike;
 use std::collections::{BTreeSet, VecDeque};
 
 /// The vocabulary: term, alternatives, broader terms, pattern.
 const ROCKS: &str = include_str!("../../../textures/rocks.tsv");
+
+/// Names in common use, and the terms or patterns that they stand for.
+const COMMON: &str = include_str!("../../../textures/rock-names.tsv");
 
 /// What a rock's name was found to mean.
 ///
@@ -53,6 +58,16 @@ pub fn rock_terms() -> Vec<&'static str> {
     terms().map(|term| term.name).collect()
 }
 
+/// Names in common use, each with the term or the pattern that it stands for.
+fn common() -> impl Iterator<Item = (&'static str, &'static str)> {
+    COMMON.lines().filter(|line| !line.starts_with('#')).filter_map(|line| line.split_once('\t'))
+}
+
+/// The names of rocks that are most like a name, best first; none where no name is like it.
+pub(crate) fn rocks_like(name: &str) -> Vec<&'static str> {
+    alike(name, terms().map(|term| term.name).chain(common().map(|(name, _)| name)))
+}
+
 /// The words of a name, in lower case.
 fn words(name: &str) -> Vec<String> {
     let parts = name.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty());
@@ -61,7 +76,6 @@ fn words(name: &str) -> Vec<String> {
 
 /// The pattern of a rock among `patterns`, the names of those that there are; `None` of a name that is no rock's.
 pub fn rock(name: &str, patterns: &[&str]) -> Option<RockPattern> {
-    let asked = words(name);
     let known: Vec<Term> = terms().collect();
     let named = |asked: &[String]| {
         let found = known.iter().find(|term| words(term.name) == asked);
@@ -77,9 +91,38 @@ pub fn rock(name: &str, patterns: &[&str]) -> Option<RockPattern> {
         let is_also = |term: &&Term| term.alternatives.iter().any(|name| words(name) == asked);
         known.iter().rfind(is_also).and_then(|term| climbed(term, &known, patterns))
     };
+    let in_common_use = |asked: &[String]| {
+        let stands_for = common().find(|(name, _)| words(name) == asked).map(|(_, meant)| words(meant))?;
+        named(&stands_for).or_else(|| of_pattern(&stands_for))
+    };
     // A pattern says more than another name of a term: loess is drawn as loess, not as silt.
-    let called = |asked: &[String]| named(asked).or_else(|| of_pattern(asked)).or_else(|| also_called(asked));
-    (0..asked.len()).find_map(|from| called(&asked[from..]))
+    let called = |asked: &[String]| {
+        named(asked).or_else(|| of_pattern(asked)).or_else(|| also_called(asked)).or_else(|| in_common_use(asked))
+    };
+    let any_part = |asked: &[String]| (0..asked.len()).find_map(|from| called(&asked[from..]));
+    let (whole, short) = (words(name), words(&without_brackets(name)));
+    called(&whole).or_else(|| any_part(&short)).or_else(|| any_part(&singular(&short))).or_else(|| any_part(&whole))
+}
+
+/// A name without what stands in brackets.
+fn without_brackets(name: &str) -> String {
+    let mut depth = 0;
+    let outside = name.chars().filter(|c| {
+        depth += i32::from(*c == '(');
+        let is_outside = depth <= 0;
+        depth -= i32::from(*c == ')');
+        is_outside
+    });
+    outside.collect()
+}
+
+/// The words with the last one in the singular.
+fn singular(words: &[String]) -> Vec<String> {
+    let mut words = words.to_vec();
+    if let Some(last) = words.last_mut().filter(|last| last.ends_with('s')) {
+        last.pop();
+    }
+    words
 }
 
 /// The pattern of a term or of the nearest broader one that has one.
@@ -120,6 +163,37 @@ mod tests {
         for id in ["phonolilte", "high_magnesium_fine_grained_igneous_rocks", "alkali-olivine_basalt"] {
             assert!(rock(id, &["basalt", "dacite", "igneous"]).is_some(), "{id}");
         }
+    }
+
+    #[test]
+    fn names_in_common_use_plurals_and_remarks_are_understood() {
+        let library = TextureLibrary::builtin().unwrap();
+        let patterns: Vec<&str> = library.patterns().map(|pattern| pattern.name.as_str()).collect();
+        let of = |name: &str| rock(name, &patterns).map(|found| found.pattern);
+        let lost: Vec<&str> = common().map(|(name, _)| name).filter(|name| of(name).is_none()).collect();
+        assert!(lost.is_empty(), "{lost:?}");
+        let is_term = |name: &&str| rock_terms().iter().any(|term| words(term) == words(name));
+        let twice: Vec<&str> = common().map(|(name, _)| name).filter(is_term).collect();
+        assert!(twice.is_empty(), "terms of the vocabulary: {twice:?}");
+        let expected = [
+            ("arkose", "sandstone-bedded"),
+            ("Greywackes", "graywacke"),
+            ("Sandstone (fine grained)", "sandstone-bedded"),
+            ("black shales", "shale"),
+            ("anhydrite", "gypsum"),
+            ("halite", "salt"),
+            ("dolerite", "basalt"),
+            ("volcanic ash", "tuff"),
+            ("coal seams", "coal"),
+            ("limestone (cherty)", "limestone-cherty"),
+            ("Marl (with sand)", "marl"),
+            ("gneiss", "gneiss"),
+        ];
+        assert_eq!(expected.map(|(name, _)| of(name)), expected.map(|(_, pattern)| Some(pattern.to_owned())));
+        assert_eq!(of("(granite)").as_deref(), Some("granite"));
+        assert_eq!([of("Kalkstein"), of("()"), of("")], [None, None, None]);
+        assert_eq!(rocks_like("sandston")[0], "sandstone");
+        assert_eq!(rocks_like("Gneis")[0], "gneiss");
     }
 
     #[test]

@@ -261,7 +261,7 @@ impl Maker<'_> {
         if outlines.horizons.width_px > 0.0 {
             let [plain, unconformity] = [false, true].map(|is_heavy| pen(outlines.of_horizon(is_heavy)));
             lines.extend(self.contacts(seen, &plain, &unconformity));
-            if self.wants(Annotation::Quality) || outlines.unpicked == Unpicked::Dashed {
+            if self.wants_dashes() || outlines.unpicked == Unpicked::Dashed {
                 lines.extend(qualities(seen, &plain));
             }
         }

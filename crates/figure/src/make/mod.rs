@@ -36,6 +36,8 @@ const LEAST_PT: f64 = 20.0;
 const LEAST_BLOCK_PT: f64 = 40.0;
 /// Share of the page that a legend may take.
 const LEGEND_SHARE: f64 = 0.36;
+/// Contacts of more layers than this are not dashed.
+const MOST_DASHED: usize = 150;
 /// Two parts stand beside one another where the room is broader than so many heights, else one over the other.
 const BROAD: f64 = 1.2;
 /// The share that the first of two parts takes.
@@ -213,6 +215,12 @@ impl<'a> Maker<'a> {
         self.figure.annotate.contains(&annotation)
     }
 
+    /// Whether contacts of blocks are dashed where they were not picked. Dashes of very many make stripes across the layers.
+    fn wants_dashes(&self) -> bool {
+        let is_crowded = self.inputs.source.data.model.is_some_and(|model| model.layer_count() > MOST_DASHED);
+        self.wants(Annotation::Quality) && !is_crowded
+    }
+
     /// The line that says where the figure comes from.
     fn provenance(&self) -> Option<String> {
         let mut said = vec![self.inputs.provenance.to_owned()];
@@ -272,7 +280,7 @@ impl<'a> Maker<'a> {
         let wells: Vec<Well> = self.inputs.wells.iter().filter(shown).cloned().collect();
         // Lines that were not picked say so.
         let mut scene = part.scene.clone();
-        if self.wants(Annotation::Quality) {
+        if self.wants_dashes() {
             scene.outlines.unpicked = Unpicked::Dashed;
         }
         let panel = BlockPanel {

@@ -15,7 +15,7 @@ use model::section::{Section, SectionPlane};
 use rayon::prelude::*;
 use survey::Progress;
 use ttf::tables::IntervalEntry;
-use ttf::{Colour, TextureLibrary, TileDrawing};
+use ttf::{Colour, TextureLibrary};
 
 /// The areas of all faces that are seen, back to front.
 pub(super) fn face_areas(
@@ -62,7 +62,7 @@ pub(super) fn face_areas(
 fn tiles(resolved: &ResolvedScene, library: &TextureLibrary) -> Result<Vec<Option<Tile>>, RenderError> {
     let tile = |index: &usize| {
         let [width, height] = library.pattern(*index).tile_mm.map(f64::from);
-        let drawing: Option<TileDrawing> = library.drawing(*index)?;
+        let drawing = library.drawing(*index)?;
         Ok(drawing.map(|drawing| Tile { drawing, aspect: width / height }))
     };
     resolved.tables.patterns.iter().map(tile).collect()

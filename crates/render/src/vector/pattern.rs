@@ -13,6 +13,7 @@ use model::Region;
 use model::section::{SectionPlane, band};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use ttf::{FaceFrame, Mapping, TileDrawing, TilePaint, TileSegment, TileShape};
 
 /// Longest side of a cell of the lattice, voxels.
@@ -48,7 +49,7 @@ const TORN_PX: f64 = 1.5;
 
 /// A tile's drawing, and its printed width divided by its height.
 pub(super) struct Tile {
-    pub drawing: TileDrawing,
+    pub drawing: Arc<TileDrawing>,
     pub aspect: f64,
 }
 
