@@ -10,6 +10,7 @@ use project::{Project, ProjectError, derived};
 use rayon::ThreadPoolBuilder;
 use std::path::Path;
 use store::{ArrayLayout, ParameterizationVolumes, ParameterizationWriter};
+use survey::geometry::{GeometryError, MAX_VOXELS};
 use survey::{Progress, memory};
 
 /// Bytes that a thread holds for each sample of a file: its share of the box, 16, and a file of floats before and after
@@ -31,6 +32,11 @@ impl Rock {
     ) -> Result<(), ProjectError> {
         if size.contains(&0) {
             return Err(ParamError::VolumeSize { size }.into());
+        }
+        let places = size.iter().try_fold(1u64, |n, &count| n.checked_mul(count as u64));
+        if places.is_none_or(|places| places > MAX_VOXELS) {
+            let [inlines, crosslines, samples] = size;
+            return Err(GeometryError::TooLarge { inlines, crosslines, samples }.into());
         }
         derived::keep_volumes(project.root(), |group| {
             let threads = sampling_threads(size, memory_bytes)?;

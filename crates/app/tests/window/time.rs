@@ -33,7 +33,7 @@ fn one_click_makes_a_horizon_and_a_second_corrects_it() {
     harness.get_by_label_contains("click 1: ").click_accesskit();
     harness.run_steps(3);
     let seeds = document(&harness).horizons.iter().map(|entry| entry.seeds.clone()).find(|seeds| !seeds.is_empty());
-    let geometry = document(&harness).geometry.clone().unwrap();
+    let geometry = document(&harness).geometry.unwrap();
     let [inline, crossline, _] = seeds.unwrap()[0];
     let at = geometry.voxel_from_lines(inline, crossline);
     let slices = state(&harness).session.as_ref().unwrap().view.slices;
