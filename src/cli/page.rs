@@ -12,8 +12,9 @@ use figure::{
     Annotation, BlockPart, CorrelationPart, FencePart, Figure, MapPart, PageSize, Part, SectionKind, SectionPart,
 };
 use pictures::figures::{self, FigureSettings, InterpreterView};
+use pictures::load;
 use project::{Project, memory_budget};
-use render::Scene;
+use render::{FaceData, Scene};
 use std::path::PathBuf;
 use survey::{Progress, file};
 
@@ -241,6 +242,10 @@ pub(super) fn draw(
         Part::Block(block) => Some(&block.scene),
         _ => None,
     });
+    if let Some(scene) = blocks.clone().find(|scene| scene.face_data == FaceData::Distortion) {
+        let loaded = load::load_within(project, scene, volume_bytes, progress)?;
+        super::distortion::say(project.document(), &loaded.distortion(scene, progress)?, &mut report);
+    }
     let shown = blocks.map(|scene| assumptions(project, scene)).next().unwrap_or_default();
     shown.iter().for_each(|line| {
         report.say(format!("  {line}"));

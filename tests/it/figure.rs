@@ -52,6 +52,26 @@ fn every_figure_is_a_page_of_its_own_in_its_printed_size() {
 }
 
 #[test]
+fn the_distortion_that_is_shown_is_measured_on_every_page() {
+    let folder = project();
+    let at = folder.path();
+    let measured = |file: &str, size: &str| {
+        let said =
+            run_in(at, &format!("render p.petro {file} --show distortion --samples 1 --device cpu {size} --json"));
+        let said = said.done().json();
+        assert_eq!(said["distortion"].as_array().map(Vec::len), Some(5), "{file}");
+        said["distortion_share"].as_f64().unwrap()
+    };
+    let [picture, page, vectors] =
+        [("a.png", "--size 283x213"), ("b.png", "--size-cm 12x9 --dpi 60"), ("c.svg", "--size-cm 12x9 --dpi 60")]
+            .map(|(file, size)| measured(file, size));
+    assert!(
+        (0.0..1.0).contains(&picture) && (page - picture).abs() < 0.02 && vectors == page,
+        "{picture} {page} {vectors}"
+    );
+}
+
+#[test]
 fn a_figure_from_a_file_is_the_one_that_is_typed() {
     let folder = project();
     let at = folder.path();
