@@ -85,9 +85,12 @@ struct End {
 impl End {
     /// The end at `fixed` halves of a [`DIP_STEP`].
     #[inline]
-    fn new(fixed: i32, nz: usize) -> Self {
-        let low = ((fixed / HALF_STEPS) as usize).min(nz - 2);
-        Self { low, share: (fixed - low as i32 * HALF_STEPS) as f32 * (0.5 * DIP_STEP) }
+    fn new(fixed: u32, nz: usize) -> Self {
+        let low = (fixed / HALF_STEPS).min(nz as u32 - 2);
+        Self {
+            low: low as usize,
+            share: fixed.wrapping_sub(low << HALF_STEPS.ilog2()) as i32 as f32 * (0.5 * DIP_STEP),
+        }
     }
 
     #[inline]
@@ -97,22 +100,54 @@ impl End {
     }
 
     #[inline]
-    fn spread(self, trace: &mut [f32], value: f32) {
-        let pair = &mut trace[self.low..self.low + 2];
-        let below = self.share * value;
-        pair[0] += value - below;
-        pair[1] += below;
-    }
-
-    #[inline]
     fn spread_square(self, trace: &mut [f32], weight: f32) {
         trace[self.low] += weight * (1.0 - self.share) * (1.0 - self.share);
         trace[self.low + 1] += weight * self.share * self.share;
     }
 }
 
+/// Sums of what ends spread over a trace. Ends come one below the other, mostly a sample apart, so the two nodes of the last
+/// one are kept until the next needs another: no sum waits for the memory that the one before has written.
+struct Spread<'a> {
+    trace: &'a mut [f32],
+    low: usize,
+    sums: [f32; 2],
+}
+
+impl<'a> Spread<'a> {
+    fn over(trace: &'a mut [f32]) -> Self {
+        Self { trace, low: 0, sums: [0.0; 2] }
+    }
+
+    #[inline]
+    fn add(&mut self, end: End, value: f32) {
+        let below = end.share * value;
+        let above = value - below;
+        if end.low == self.low + 1 {
+            self.trace[self.low] += self.sums[0];
+            self.sums = [self.sums[1] + above, below];
+            self.low = end.low;
+        } else if end.low == self.low {
+            self.sums = [self.sums[0] + above, self.sums[1] + below];
+        } else {
+            self.put();
+            self.sums = [above, below];
+            self.low = end.low;
+        }
+    }
+
+    /// Adds the sums to the trace; one of a single sample has no links.
+    #[inline]
+    fn put(&mut self) {
+        if let Some(pair) = self.trace.get_mut(self.low..self.low + 2) {
+            pair[0] += self.sums[0];
+            pair[1] += self.sums[1];
+        }
+    }
+}
+
 /// Halves of a [`DIP_STEP`] in a sample.
-const HALF_STEPS: i32 = 512;
+const HALF_STEPS: u32 = 512;
 
 /// Visits the links of one pair of traces: `visit(end on a, end on b, dip, weight)`. Links with a weight have both ends
 /// inside the traces.
@@ -122,8 +157,8 @@ fn each_link(dips: &[i16], weights: &[u8], mut visit: impl FnMut(End, End, f32, 
     for (z, (&dip, &weight)) in dips.iter().zip(weights).enumerate() {
         let weight = weight & !CUT_BELOW;
         if weight != 0 {
-            let (at, half) = (z as i32 * HALF_STEPS, i32::from(dip));
-            let (a, b) = (End::new(at - half, nz), End::new(at + half, nz));
+            let (at, half) = ((z as u32) << HALF_STEPS.ilog2(), i32::from(dip) as u32);
+            let (a, b) = (End::new(at.wrapping_sub(half), nz), End::new(at.wrapping_add(half), nz));
             visit(a, b, f32::from(dip) * DIP_STEP, f32::from(weight) * WEIGHT_STEP);
         }
     }
@@ -208,11 +243,14 @@ impl System<'_> {
         };
         self.each_line(out, along, |[ta, tb], dips, weights, out_a, out_b| {
             let (a, b) = (&s[ta * nz..(ta + 1) * nz], &s[tb * nz..(tb + 1) * nz]);
+            let (mut on_a, mut on_b) = (Spread::over(out_a), Spread::over(out_b));
             each_link(dips, weights, |at_a, at_b, p, weight| {
                 let e = weight * (at_b.of(b) - at_a.of(a) + offset * p);
-                at_a.spread(out_a, -e);
-                at_b.spread(out_b, e);
+                on_a.add(at_a, -e);
+                on_b.add(at_b, e);
             });
+            on_a.put();
+            on_b.put();
         });
         for tie in self.ties {
             let [a, b] = tie.trace.map(|trace| trace as usize * nz);
