@@ -11,7 +11,7 @@ use crate::draw::section::{Zoom, contact_pt, quality_stroke};
 use crate::draw::seen::{Seen, seen};
 use crate::draw::water::colour_on_paper;
 use crate::spec::{BlockPart, Part};
-use crate::style::{FAULT_PT, HORIZON_PT, INK};
+use crate::style::{FAULT_PT, FRAME_PT, HORIZON_PT, INK};
 use glam::DVec2;
 use model::section::{LineKind, LineQuality};
 use page::list::{GroupKind, Stroke};
@@ -23,6 +23,8 @@ use ttf::{Colour, LayerStyle};
 
 /// No line of a legend is finer, points.
 const FINEST_PT: f64 = 0.35;
+/// What the legend calls the lines from tops of wells to their names, and the strokes over wells on sections.
+const WELL_TOP: &str = "Well top";
 
 /// What a legend lists.
 #[derive(Debug, Default)]
@@ -198,6 +200,9 @@ impl Maker<'_> {
         if section.has_wells() {
             listed.add_lines(vec![LegendLine::new("Well", GroupKind::Well, pen(HORIZON_PT, INK))]);
         }
+        if section.tops().any(|st| is_seen(st, section.extent, section.zoom)) {
+            listed.add_lines(vec![LegendLine::new(WELL_TOP, GroupKind::Well, pen(HORIZON_PT, INK))]);
+        }
     }
 
     /// What is seen of a block that is about so large, points.
@@ -212,7 +217,7 @@ impl Maker<'_> {
         let Some(model) = data.model else { return };
         let size_px = (size * 4.0).round().clamp(DVec2::ONE, DVec2::splat(4000.0));
         let scene = Scene { size_px: [size_px.x as u32, size_px.y as u32], ..block.scene.clone() };
-        let seen = seen(&scene, self.geometry, model, data.wells);
+        let seen = seen(&scene, self.geometry, model, (data.wells, self.inputs.wells));
         if is_illustrated(block) {
             let youngest = model.layer_count() - 1;
             layers.extend(seen.layers.iter().map(|layer| youngest - usize::from(*layer)));
@@ -272,6 +277,8 @@ impl Maker<'_> {
         if self.wants(Annotation::Wells) && !seen.wells.is_empty() {
             // Each has its name beside it.
             lines.push(LegendLine::new("Well", GroupKind::Well, well));
+            let top = Stroke::new(FRAME_PT, INK);
+            lines.extend(seen.has_tops.then(|| LegendLine::new(WELL_TOP, GroupKind::Well, top)));
             return lines;
         }
         let wells = seen.wells.iter().filter_map(|index| self.inputs.source.data.wells.get(*index));
