@@ -14,7 +14,7 @@ use render::vector::seen_sections;
 use render::visible::{Ray, Solid};
 use render::{DrawnWell, Faces, Scene};
 use std::collections::BTreeSet;
-use survey::{SurveyGeometry, Well};
+use survey::SurveyGeometry;
 
 /// Rays across the picture.
 const COLUMNS: u32 = 160;
@@ -47,12 +47,7 @@ pub(crate) struct Seen {
 }
 
 /// What is seen of a scene, whose size is that of its picture.
-pub(crate) fn seen(
-    scene: &Scene,
-    geometry: &SurveyGeometry,
-    model: &StructuralModel,
-    (drawn, wells): (&[DrawnWell], &[Well]),
-) -> Seen {
+pub(crate) fn seen(scene: &Scene, geometry: &SurveyGeometry, model: &StructuralModel, wells: &[DrawnWell]) -> Seen {
     let sight = Sight::new(scene, geometry, model);
     let mut seen = Seen::default();
     if sight.faces != Faces::None {
@@ -65,12 +60,10 @@ pub(crate) fn seen(
         seen.faults.extend(sight.faults_on_ground());
     }
     if scene.wells.radius > 0.0 {
-        seen.wells = (0..drawn.len())
-            .filter(|well| !scene.hides_well(drawn[*well].name) && sight.sees_well(drawn[*well].path))
+        seen.wells = (0..wells.len())
+            .filter(|well| !scene.hides_well(wells[*well].name) && sight.sees_well(wells[*well].path))
             .collect();
-        let shown = wells.iter().filter(|well| !scene.hides_well(&well.name));
-        let mut tops = shown.flat_map(|well| well.tops.iter().filter_map(|top| well.voxel_at_md(top.md_m, geometry)));
-        seen.has_tops = tops.any(|top| sight.sees(top));
+        seen.has_tops = seen.wells.iter().any(|well| wells[*well].tops.iter().any(|top| sight.sees(*top)));
     }
     seen
 }
