@@ -244,7 +244,7 @@ fn is_right_to_left(character: char) -> bool {
 
 /// A line as it is written, but each stretch from a letter that runs from right to left to the last one before others
 /// turned round. A mark that is not seen (U+200E) ends such a stretch: blanks behind it do not belong to it.
-fn turned_round(text: &str) -> String {
+pub(super) fn turned_round(text: &str) -> String {
     let is_other = |c: char| (c.is_alphabetic() || c.is_numeric()) && !is_right_to_left(c);
     let mut turned = String::with_capacity(text.len());
     let mut left = text;
