@@ -136,7 +136,7 @@ impl WellOnSection {
         let name = Text::new(head, &self.name).sized(TEXT_PT).inked(INK).haloed(RIM_PT, rim);
         // Above the head, or else beside the path, which would strike it through.
         let half = 0.5 * name.width() + RIM_PT;
-        let above = Text { at: DVec2::new(head.x, head.y - HEAD_PT), ..name.clone() };
+        let above = Text { at: DVec2::new(head.x, head.y - HEAD_PT), ..name };
         let above = above.anchored(Across::Middle, Upright::Baseline);
         let beside = (0..STEPS).flat_map(|step| {
             let y = (head.y - HEAD_PT).max(body.min.y + TEXT_PT + HEAD_PT) + 1.2 * TEXT_PT * f64::from(step);
