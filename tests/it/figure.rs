@@ -4,6 +4,7 @@ use crate::program::{project, run_in};
 use image::RgbImage;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 const SMALL: &str = "--size-cm 12x9 --dpi 60 --samples 1 --device cpu";
 
@@ -153,6 +154,30 @@ fn odd_names_and_tiny_pages_make_sensible_figures() {
     assert!(fs::read_to_string(at.join("a.svg")).unwrap().contains("&lt;&amp;&gt;"));
     // A block alone needs no room for words.
     run_in(at, "render p.petro a.pdf --size-cm 1x1 --dpi 60 --device cpu").done();
+}
+
+/// A name from right to left along a folded layer, and in the legend: letters follow the layer, and readers find the word.
+/// Only where pdftotext is installed (`poppler-utils`).
+#[test]
+fn names_from_right_to_left_are_read_as_words() {
+    let folder = project();
+    let at = folder.path();
+    let font = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/ttf/tests/fonts/arabic.ttf");
+    let name = "حجر جيري";
+    run_in(at, &format!("layer set p.petro 'below Delta' --name '{name}' --pattern limestone")).done();
+    for file in ["a.svg", "a.pdf"] {
+        let page = "--annotate layers --legend --size-cm 16x11 --ground off --device cpu";
+        run_in(at, &format!("render p.petro {file} --font {font} {page}")).done();
+    }
+    let bent = format!("aria-label=\"{name}\"");
+    assert_eq!(fs::read_to_string(at.join("a.svg")).unwrap().matches(&bent).count(), 1, "one is bent");
+    let Ok(read) = Command::new("pdftotext").args(["a.pdf", "-"]).current_dir(at).output() else {
+        eprintln!("skipped: no pdftotext here (apt-get install poppler-utils)");
+        return;
+    };
+    // Without the marks of direction that it adds.
+    let read: String = String::from_utf8(read.stdout).unwrap().replace(['\u{202a}', '\u{202b}', '\u{202c}'], "");
+    assert_eq!(read.lines().filter(|line| line.contains(name)).count(), 2, "{read}");
 }
 
 /// A thousand beds in a layer, faces that are seen edge on, one pixel, and more horizons than a machine word has bits.

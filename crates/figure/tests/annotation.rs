@@ -60,11 +60,13 @@ impl Survey {
     fn page(&self, scene: &Scene, annotate: &[Annotation]) -> (DisplayList, Scene) {
         let volumes = [NamedVolume::whole("seismic", &self.volume)];
         let paths: Vec<Vec<DVec3>> = self.wells.iter().map(|well| well.path_in_voxels(&self.geometry)).collect();
-        let drawn = self.wells.iter().zip(&paths).map(|(well, path)| DrawnWell {
+        let top = |well: &Well| well.tops.iter().filter_map(|top| well.voxel_at_md(top.md_m, &self.geometry)).collect();
+        let tops: Vec<Vec<DVec3>> = self.wells.iter().map(top).collect();
+        let drawn = self.wells.iter().zip(paths.iter().zip(&tops)).map(|(well, (path, tops))| DrawnWell {
             name: &well.name,
             colour: None,
             path,
-            tops: &[],
+            tops,
         });
         let wells: Vec<DrawnWell> = drawn.collect();
         let data = Inputs { model: Some(&self.model), wells: &wells, ..Inputs::raw(&self.geometry, &volumes) };
@@ -306,7 +308,7 @@ fn a_legend_lists_what_is_seen_and_nothing_else() {
     };
     let whole = cut(&survey);
     // The head of a well on a top face is seen, though the rest of it lies in rock.
-    let wells = ["in the cut-out", "in rock"];
+    let wells = ["in the cut-out", "in rock", "Well top"];
     assert_eq!(legend(&whole)[..7], ["Bed 3", "Bed 2", "Bed 1", "Bed 0", "Contact", "H2 (erosional)", "Fault"]);
     assert_eq!(legend(&whole)[7..], wells);
     let mut below = whole.clone();
@@ -344,7 +346,8 @@ fn labels_stand_where_a_scene_moves_them_and_what_marks_a_place_stays() {
     survey.has_legend = true;
     survey.wells = vec![well("W", 15.0, 10.0)];
     let wanted = [Annotation::Axes, Annotation::Layers, Annotation::Faults, Annotation::Wells];
-    assert!(said(&survey.page(&cut(&survey), &wanted).0).contains(&"Well".to_owned()), "one entry where all are named");
+    let told = said(&survey.page(&cut(&survey), &wanted).0);
+    assert!(["Well", "Well top"].iter().all(|one| told.iter().filter(|text| text == one).count() == 1), "{told:?}");
     let plain = cut(&survey);
     let labels = |scene: &Scene| movable(&survey.page(scene, &wanted).0);
     let before = labels(&plain);

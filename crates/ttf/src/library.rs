@@ -13,7 +13,6 @@ use serde::{Deserialize, Serialize};
 use crate::builtin::{CATALOGUE, DRAWINGS};
 use crate::drawing::{TileDrawing, drawing_of};
 use crate::raster;
-use crate::similar::edit_distance;
 use crate::{Colour, Texture, TtfError};
 
 /// A texture's entry in the catalogue.
@@ -193,7 +192,7 @@ impl TextureLibrary {
         self.find(name).ok_or_else(|| {
             let similar = self
                 .patterns()
-                .map(|pattern| (edit_distance(name, &pattern.name), &pattern.name))
+                .map(|pattern| (strsim::levenshtein(name, &pattern.name), &pattern.name))
                 .min()
                 .filter(|(distance, nearest)| *distance <= 1 + nearest.len() / 4);
             // A kind of what was asked for says more than a name of like letters.

@@ -9,7 +9,8 @@ pub(crate) fn alike<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) ->
     let asked = plain(name);
     let rated = known.into_iter().filter_map(|known| {
         let letters = plain(known);
-        let (apart, longer) = (edit_distance(&asked, &letters), asked.chars().count().max(letters.chars().count()));
+        let (apart, longer) =
+            (strsim::levenshtein(&asked, &letters), asked.chars().count().max(letters.chars().count()));
         (2 * apart <= longer).then_some((1000 * apart / longer.max(1), apart, known))
     });
     let mut rated: Vec<(usize, usize, &str)> = rated.collect();
@@ -46,19 +47,4 @@ fn unaccented(letter: char) -> char {
         ("ýÿ", 'y'),
     ];
     ACCENTED.into_iter().find(|(accented, _)| accented.contains(letter)).map_or(letter, |(_, plain)| plain)
-}
-
-/// Levenshtein distance of two names, in characters.
-pub(crate) fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (line, from) in a.chars().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], line + 1);
-        for (column, to) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(from != *to);
-            diagonal = row[column + 1];
-            row[column + 1] = replaced.min(diagonal + 1).min(row[column] + 1);
-        }
-    }
-    row[b.len()]
 }

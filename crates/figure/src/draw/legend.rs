@@ -38,12 +38,35 @@ pub struct LegendLine {
     pub kind: GroupKind,
     /// How it is drawn.
     pub stroke: Stroke,
+    /// How it stands in its place.
+    pub stand: Stand,
+}
+
+/// How a line stands in its place in a legend.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Stand {
+    /// Across it.
+    Across,
+    /// Upright, as wells do.
+    Upright,
+    /// Upright, with a stroke across, of half a length in points.
+    Crossed(f64, Stroke),
 }
 
 impl LegendLine {
     /// A line with its name.
     pub fn new(name: &str, kind: GroupKind, stroke: Stroke) -> Self {
-        Self { name: name.to_owned(), kind, stroke }
+        Self { name: name.to_owned(), kind, stroke, stand: Stand::Across }
+    }
+
+    /// A well.
+    pub fn well(name: &str, stroke: Stroke) -> Self {
+        Self { stand: Stand::Upright, ..Self::new(name, GroupKind::Well, stroke) }
+    }
+
+    /// The tops of wells, with half the length of their mark in points, and how that is drawn.
+    pub fn well_top(well: Stroke, (half, mark): (f64, Stroke)) -> Self {
+        Self { stand: Stand::Crossed(half, mark), ..Self::well("Well top", well) }
     }
 }
 
@@ -197,12 +220,18 @@ impl Legend<'_> {
 
 /// An entry of a line in its place.
 fn line(entry: LegendLine, place: Rect, size_pt: f64) -> Group {
-    let middle = DVec2::new(place.min.x, place.centre().y);
-    let path = Path::line(&[middle, middle + DVec2::new(SWATCH_PT[0], 0.0)]);
-    Group::new(entry.kind, &entry.name).with([
-        PathItem::stroked(path, entry.stroke).into(),
-        name(&entry.name, middle + DVec2::new(SWATCH_PT[0], 0.0), place, size_pt).into(),
-    ])
+    let [left, right] = [0.0, SWATCH_PT[0]].map(|off| DVec2::new(place.min.x + off, place.centre().y));
+    let about = |half: DVec2| [left.lerp(right, 0.5) - half, left.lerp(right, 0.5) + half];
+    let ends = match entry.stand {
+        Stand::Across => [left, right],
+        Stand::Upright | Stand::Crossed(..) => about(DVec2::new(0.0, 0.4 * place.height())),
+    };
+    let group = Group::new(entry.kind, &entry.name).with([PathItem::stroked(Path::line(&ends), entry.stroke).into()]);
+    let mark = match entry.stand {
+        Stand::Crossed(half, mark) => Some(PathItem::stroked(Path::line(&about(DVec2::new(half, 0.0))), mark).into()),
+        _ => None,
+    };
+    group.with(mark).with([name(&entry.name, right, place, size_pt).into()])
 }
 
 /// An entry of a layer in its place: a row of the legend.

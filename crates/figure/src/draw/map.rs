@@ -187,8 +187,11 @@ pub fn explained(shown: &HorizonMap, geometry: &SurveyGeometry, column: Rect) ->
 pub fn caption(shown: &HorizonMap, geometry: &SurveyGeometry) -> String {
     let unit = geometry.vertical.unit.symbol();
     let contours = (!shown.contours.is_empty()).then(|| format!("contours every {} {unit}", shown.interval));
-    let hatching =
-        (!shown.hatching.is_empty()).then(|| format!("hatched: not picked ({:.0} %)", 100.0 * shown.unpicked));
+    let share = match 100.0 * shown.unpicked {
+        few if few < 1.0 => "under 1".to_owned(),
+        share => format!("{share:.0}"),
+    };
+    let hatching = (!shown.hatching.is_empty()).then(|| format!("hatched: not picked ({share} %)"));
     let faults = (!shown.faults.is_empty()).then(|| "heaviest lines: faults".to_owned());
     contours.into_iter().chain(faults).chain(hatching).collect::<Vec<_>>().join("; ")
 }

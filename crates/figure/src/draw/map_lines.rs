@@ -17,6 +17,8 @@ const GAP: f64 = 2.6;
 const STRAIGHT: f64 = 0.96;
 /// Distance between places that are tried, points.
 const STEP: f64 = 4.0;
+/// Least length of a line with a label, in lengths of the label: otherwise hardly anything of the line would be left.
+const LEFT: f64 = 1.5;
 /// Distance between labels on one line, points.
 const AGAIN: f64 = 230.0;
 /// Width of index contours and of the others, points.
@@ -80,9 +82,10 @@ impl Measured {
         (straight >= STRAIGHT && near).then_some((straight, label))
     }
 
-    /// Where labels of a size go: the straightest free place first, then others at a distance from it.
-    fn labels(&self, size: DVec2, within: Rect, taken: &mut Vec<Label>) -> Vec<Label> {
-        if self.places.len() < 2 {
+    /// Where labels of a size go, off lines of `faults`: the straightest free place first, then others at a distance from
+    /// it.
+    fn labels(&self, size: DVec2, within: Rect, faults: &[Label], taken: &mut Vec<Label>) -> Vec<Label> {
+        if self.places.len() < 2 || self.length() < LEFT * (size.x + 2.0 * GAP) {
             return Vec::new();
         }
         let steps = ((self.length() - size.x - 2.0 * GAP) / STEP).floor().max(-1.0) as i64;
@@ -96,7 +99,8 @@ impl Measured {
             let apart = |other: &Label| (other.part[0] - label.part[0]).abs();
             let around = |other: &Label| self.length() - apart(other);
             let far = own.iter().all(|other| apart(other) >= AGAIN && (!closed || around(other) >= AGAIN));
-            if far && taken.iter().all(|other| label.clears(other, size.y + GAP)) {
+            let is_free = || taken.iter().all(|other| label.clears(other, size.y + GAP));
+            if far && is_free() && faults.iter().all(|line| label.clears(line, 0.5 * size.y)) {
                 own.push(label);
                 taken.push(label);
             }
@@ -107,11 +111,16 @@ impl Measured {
 }
 
 impl Label {
+    /// A straight piece of another line.
+    fn of_line(from: DVec2, to: DVec2) -> Self {
+        Self { part: [0.0; 2], middle: from.lerp(to, 0.5), half: 0.5 * (to - from) }
+    }
+
     /// A text that stands elsewhere, letter by letter.
     fn of_text(text: &Text) -> Vec<Self> {
         let of_line = |line: Text| {
             let [a, b, c, d] = line.corners();
-            Self { part: [0.0; 2], middle: (a + b + c + d) / 4.0, half: 0.5 * (b - a) }
+            Self::of_line(0.5 * (a + d), 0.5 * (b + c))
         };
         text.straight().into_iter().map(of_line).collect()
     }
@@ -153,6 +162,10 @@ pub(super) fn drawn(shown: &HorizonMap, page: impl Fn(DVec2) -> DVec2, within: R
     };
     let (faults, names) = faults_drawn(&shown.faults, &page, within, outline);
     let mut taken: Vec<Label> = names.iter().flat_map(Label::of_text).collect();
+    let of_fault = |line: &[DVec2]| -> Vec<Label> {
+        line.windows(2).map(|pair| Label::of_line(page(pair[0]), page(pair[1]))).collect()
+    };
+    let walls: Vec<Label> = shown.faults.iter().flat_map(|cut| of_fault(&cut.line)).collect();
     let (mut plain, mut index) = (Path::default(), Path::default());
     let mut texts: Vec<Item> = Vec::new();
     for contour in &shown.contours {
@@ -162,7 +175,8 @@ pub(super) fn drawn(shown: &HorizonMap, page: impl Fn(DVec2) -> DVec2, within: R
             continue;
         }
         let text = format!("{}", contour.value);
-        let labels = line.labels(DVec2::new(width_of(&text, NUMBER_PT), LINE * NUMBER_PT), within, &mut taken);
+        let size = DVec2::new(width_of(&text, NUMBER_PT), LINE * NUMBER_PT);
+        let labels = line.labels(size, within, &walls, &mut taken);
         let mut from = 0.0;
         for label in &labels {
             index.add_line(&line.part([from, label.part[0]]));
@@ -201,7 +215,7 @@ mod tests {
     fn a_label_lies_along_its_line_and_upright_whichever_way_it_goes() {
         for sign in [1.0, -1.0] {
             let slanted = line(200, |s| DVec2::new(200.0 + sign * 0.8 * (s - 100.0), 150.0 + sign * 0.6 * (s - 100.0)));
-            let labels = slanted.labels(SIZE, room(), &mut Vec::new());
+            let labels = slanted.labels(SIZE, room(), &[], &mut Vec::new());
             assert_eq!(labels.len(), 1);
             assert!((labels[0].half.to_angle() - 0.6f64.atan2(0.8)).abs() < 1e-9);
             assert!((labels[0].part[1] - labels[0].part[0] - 30.0 - 2.0 * GAP).abs() < 1e-9);
@@ -212,23 +226,29 @@ mod tests {
     fn labels_keep_off_bends_rims_taken_places_and_one_another() {
         // A right angle: straight on both sides of its corner at 100.
         let bent = line(200, |s| if s < 100.0 { DVec2::new(100.0 + s, 100.0) } else { DVec2::new(200.0, s) });
-        for label in bent.labels(SIZE, room(), &mut Vec::new()) {
+        for label in bent.labels(SIZE, room(), &[], &mut Vec::new()) {
             assert!(label.part[1] <= 107.0 || label.part[0] >= 93.0, "{label:?}");
         }
         let ring = line(60, |s| DVec2::new(200.0, 150.0) + 9.0 * DVec2::from_angle(s * PI / 30.0));
-        assert!(ring.labels(SIZE, room(), &mut Vec::new()).is_empty(), "no room on a ring of 9 points");
+        assert!(ring.labels(SIZE, room(), &[], &mut Vec::new()).is_empty(), "no room on a ring of 9 points");
         let outside = line(200, |s| DVec2::new(s, 3.0));
-        assert!(outside.labels(SIZE, room(), &mut Vec::new()).is_empty());
+        assert!(outside.labels(SIZE, room(), &[], &mut Vec::new()).is_empty());
         // A name of a fault beside the line.
         let name =
             Text::new(DVec2::new(90.0, 106.0), "A fault with a name as long as the line beside it").sized(NUMBER_PT);
         let under = line(60, |s| DVec2::new(100.0 + s, 100.0));
-        assert!(!under.labels(SIZE, room(), &mut Vec::new()).is_empty());
-        assert!(under.labels(SIZE, room(), &mut Label::of_text(&name)).is_empty());
+        assert!(!under.labels(SIZE, room(), &[], &mut Vec::new()).is_empty());
+        assert!(under.labels(SIZE, room(), &[], &mut Label::of_text(&name)).is_empty());
+        // A fault beside the line, and a line hardly longer than its label.
+        let fault = |y: f64| [Label::of_line(DVec2::new(90.0, y), DVec2::new(170.0, y))];
+        assert!(under.labels(SIZE, room(), &fault(105.0), &mut Vec::new()).is_empty());
+        assert!(!under.labels(SIZE, room(), &fault(107.0), &mut Vec::new()).is_empty());
+        let short = line(45, |s| DVec2::new(100.0 + s, 100.0));
+        assert!(short.labels(SIZE, room(), &[], &mut Vec::new()).is_empty());
         // Lines every 4 points: a label and its gap need more.
         let mut taken = Vec::new();
         for n in 0..12 {
-            line(200, |s| DVec2::new(100.0 + s, 100.0 + 4.0 * f64::from(n))).labels(SIZE, room(), &mut taken);
+            line(200, |s| DVec2::new(100.0 + s, 100.0 + 4.0 * f64::from(n))).labels(SIZE, room(), &[], &mut taken);
         }
         assert!(taken.len() >= 3);
         for (n, label) in taken.iter().enumerate() {

@@ -15,10 +15,14 @@ const NEAR: f64 = 6.0;
 const THROUGH: f64 = 1.0;
 /// Parts that a straight piece of a path is divided into.
 const PARTS: u32 = 8;
-/// Half the length of the mark of a top, and from there to its name, points.
-const TOP_PT: [f64; 2] = [2.6, 1.6];
+/// Half the length of the mark of a top, points.
+pub(crate) const TOP_PT: f64 = 2.6;
+/// From there to its name, points.
+const GAP_PT: f64 = 1.6;
 /// How many heights of its letters a well's name may stand lower.
 const STEPS: u32 = 4;
+/// From a well to its name, points.
+const HEAD_PT: f64 = 2.0;
 /// Radius of the place where a well passes through a slice, points.
 const SIGN_PT: f64 = 1.8;
 
@@ -115,11 +119,11 @@ impl WellOnSection {
         }
         for (name, st) in &self.tops {
             let at = page(*st);
-            let off = DVec2::new(TOP_PT[0], 0.0);
+            let off = DVec2::new(TOP_PT, 0.0);
             group.push(PathItem::stroked(Path::line(&[at - off, at + off]), Stroke::new(HORIZON_PT, INK)));
             // To the side with more room, or else to the other.
             let side = |is_left: bool| {
-                let side = if is_left { -TOP_PT[0] - TOP_PT[1] } else { TOP_PT[0] + TOP_PT[1] };
+                let side = if is_left { -TOP_PT - GAP_PT } else { TOP_PT + GAP_PT };
                 let across = if is_left { Across::End } else { Across::Start };
                 let text = Text::new(at + DVec2::new(side, 0.0), name).sized(NUMBER_PT).inked(INK);
                 text.haloed(RIM_PT, rim).anchored(across, Upright::Middle)
@@ -130,13 +134,17 @@ impl WellOnSection {
                 .extend([side(is_left), side(!is_left)].into_iter().find(|text| room.try_take(text)).map(Item::from));
         }
         let name = Text::new(head, &self.name).sized(TEXT_PT).inked(INK).haloed(RIM_PT, rim);
+        // Above the head, or else beside the path, which would strike it through.
         let half = 0.5 * name.width() + RIM_PT;
-        let low = body.min + DVec2::new(half, TEXT_PT + 2.0);
-        let mut placed = (0..STEPS).map(|step| {
-            let down = 1.2 * TEXT_PT * f64::from(step);
-            let at = DVec2::new(head.x, head.y - 2.0).clamp(low, (body.max - DVec2::new(half, 0.0)).max(low));
-            Text { at: at + DVec2::new(0.0, down), ..name.clone() }.anchored(Across::Middle, Upright::Baseline)
+        let above = Text { at: DVec2::new(head.x, head.y - HEAD_PT), ..name };
+        let above = above.anchored(Across::Middle, Upright::Baseline);
+        let beside = (0..STEPS).flat_map(|step| {
+            let y = (head.y - HEAD_PT).max(body.min.y + TEXT_PT + HEAD_PT) + 1.2 * TEXT_PT * f64::from(step);
+            [half, -half].map(|off| Text { at: DVec2::new(head.x + off + off.signum() * HEAD_PT, y), ..above.clone() })
         });
+        let mut placed = std::iter::once(above.clone())
+            .chain(beside)
+            .filter(|text| body.around(text.bounds().min).around(text.bounds().max) == body);
         group.items.extend(placed.find(|text| room.try_take(text)).map(Item::from));
         Some(group)
     }

@@ -42,6 +42,8 @@ pub(crate) struct Seen {
     pub faults: BTreeSet<usize>,
     /// Wells by their place among the wells.
     pub wells: BTreeSet<usize>,
+    /// Whether tops of wells are.
+    pub has_tops: bool,
 }
 
 /// What is seen of a scene, whose size is that of its picture.
@@ -61,6 +63,7 @@ pub(crate) fn seen(scene: &Scene, geometry: &SurveyGeometry, model: &StructuralM
         seen.wells = (0..wells.len())
             .filter(|well| !scene.hides_well(wells[*well].name) && sight.sees_well(wells[*well].path))
             .collect();
+        seen.has_tops = seen.wells.iter().any(|well| wells[*well].tops.iter().any(|top| sight.sees(*top)));
     }
     seen
 }

@@ -8,6 +8,7 @@ use crate::draw::NamedColour;
 use crate::draw::block::Comparison;
 use crate::draw::legend::{Legend, LegendLine};
 use crate::draw::section::{Zoom, contact_pt, quality_stroke};
+use crate::draw::section_wells::TOP_PT;
 use crate::draw::seen::{Seen, seen};
 use crate::draw::water::colour_on_paper;
 use crate::spec::{BlockPart, Part};
@@ -23,6 +24,8 @@ use ttf::{Colour, LayerStyle};
 
 /// No line of a legend is finer, points.
 const FINEST_PT: f64 = 0.35;
+/// Half the length and the height of the ring that stands for a top on a block, widths of the well.
+const RING: f64 = 0.8;
 
 /// What a legend lists.
 #[derive(Debug, Default)]
@@ -196,7 +199,11 @@ impl Maker<'_> {
         }
         listed.add_lines(self.faults(&seen, |own| pen(FAULT_PT, own.unwrap_or(Colour::BLACK))));
         if section.has_wells() {
-            listed.add_lines(vec![LegendLine::new("Well", GroupKind::Well, pen(HORIZON_PT, INK))]);
+            let well = pen(HORIZON_PT, INK);
+            listed.add_lines(vec![LegendLine::well("Well", well.clone())]);
+            if section.tops().any(|st| is_seen(st, section.extent, section.zoom)) {
+                listed.add_lines(vec![LegendLine::well_top(well.clone(), (TOP_PT, well))]);
+            }
         }
     }
 
@@ -269,13 +276,14 @@ impl Maker<'_> {
             lines.extend(self.faults(seen, |own| pen(outlines.of_fault(own.map(|own| scene.preset.line(own))))));
         }
         let well = Stroke::new(2.0 * HORIZON_PT, scene.wells.colour);
-        if self.wants(Annotation::Wells) && !seen.wells.is_empty() {
-            // Each has its name beside it.
-            lines.push(LegendLine::new("Well", GroupKind::Well, well));
-            return lines;
-        }
         let wells = seen.wells.iter().filter_map(|index| self.inputs.source.data.wells.get(*index));
-        lines.extend(wells.map(|named| LegendLine::new(named.name, GroupKind::Well, well.clone())));
+        match self.wants(Annotation::Wells) && !seen.wells.is_empty() {
+            // Each has its name beside it.
+            true => lines.push(LegendLine::well("Well", well.clone())),
+            false => lines.extend(wells.map(|named| LegendLine::well(named.name, well.clone()))),
+        }
+        let ring = (RING * well.width, Stroke::new(RING * well.width, scene.wells.top_colour));
+        lines.extend(seen.has_tops.then(|| LegendLine::well_top(well, ring)));
         lines
     }
 }

@@ -63,6 +63,11 @@ impl PreparedSection {
     pub(super) fn has_wells(&self) -> bool {
         !self.wells.is_empty()
     }
+
+    /// The tops of its wells, (s, t).
+    pub(super) fn tops(&self) -> impl Iterator<Item = DVec2> {
+        self.wells.iter().flat_map(|well| well.tops.iter().map(|(_, st)| *st))
+    }
 }
 
 /// Where a section lies.

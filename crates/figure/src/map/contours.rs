@@ -13,8 +13,10 @@ use std::collections::{BTreeMap, HashMap};
 const CONTOURS: f64 = 14.0;
 /// Shortest contour that goes around, traces: a ring of radius 2, no more than smoothing averages over.
 const SPECK: f64 = 12.0;
-/// Every so manyeth contour is an index contour: heavier, with its value; of the second where there would be one or none.
+/// Every so manyeth contour is an index contour: heavier, with its value; of the second where there would be fewer than
+/// [`INDEXED`] values.
 const INDEX_EVERY: [i64; 2] = [5, 2];
+const INDEXED: usize = 3;
 
 /// A round distance between contours.
 pub(super) fn interval(spread: f64) -> f64 {
@@ -55,7 +57,7 @@ pub(super) fn contours(grid: &Grid, range: [f64; 2], interval: f64) -> Vec<Conto
         }
     }
     let of_every = |every: i64| levels.keys().filter(|level| *level % every == 0).count();
-    let every = if of_every(INDEX_EVERY[0]) > 1 { INDEX_EVERY[0] } else { INDEX_EVERY[1] };
+    let every = if of_every(INDEX_EVERY[0]) >= INDEXED { INDEX_EVERY[0] } else { INDEX_EVERY[1] };
     let of_level = |(level, pieces): (i64, Vec<[(Crossing, DVec2); 2]>)| {
         let contour = move |line| Contour { line, value: level as f64 * interval, is_index: level % every == 0 };
         joined(&pieces).into_iter().filter(|line| !is_speck(line)).map(contour)
@@ -130,7 +132,8 @@ mod tests {
             assert!(contour.line.iter().all(|p| (plane(p.x, p.y) - contour.value).abs() < 1e-9));
         }
         let index: Vec<f64> = found.iter().filter(|contour| contour.is_index).map(|contour| contour.value).collect();
-        assert_eq!(index, [100.0, 150.0]);
+        // Every fifth would be 100 and 150.
+        assert_eq!(index, [80.0, 100.0, 120.0, 140.0]);
     }
 
     #[test]

@@ -10,6 +10,9 @@ use glam::DVec2;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Name, Pdf, Ref, Str, TextStr};
 
+/// A letter from left to right without ink (the left-to-right mark).
+const END_OF_STRETCH: char = '\u{200e}';
+
 /// What a viewer switches: the groups of one kind and name within one other group. Where faces of a block hide one
 /// another, a layer is drawn in several groups.
 pub(super) struct Layer {
@@ -180,16 +183,24 @@ impl VectorWriter for PageContent<'_> {
         self.content.save_state();
         self.opacity(line.ink.opacity);
         let is_skew = !line.letters.is_empty() || line.turn_deg.rem_euclid(90.0) != 0.0;
-        // Readers turn words from right to left around by their places alone, also those of such a span.
-        let is_span = is_skew && !line.text.chars().any(is_right_to_left);
-        if is_span {
-            // Letters one by one, or on a slope, are still one word to readers.
+        let runs_left = line.text.chars().any(is_right_to_left);
+        // Letters one by one, or on a slope, are still one word to readers, and so are joined letters. The standard asks
+        // for a word as it is written; poppler and PDFium take the inner span, and turn what runs from right to left round.
+        let inner = runs_left.then(|| turned_round(&line.text));
+        let outer = (is_skew || runs_left).then_some(&line.text);
+        let spans: Vec<&String> = outer.into_iter().chain(&inner).collect();
+        for said in &spans {
             let mut span = self.content.begin_marked_content_with_properties(Name(b"Span"));
-            span.properties().actual_text(TextStr(&line.text));
+            span.properties().actual_text(TextStr(said));
         }
         self.content.set_fill_rgb(r, g, b).begin_text();
+        let mut pieces = line.straight();
+        if runs_left {
+            // Readers place a span from its first letter in the file to its last.
+            pieces.sort_by(|a, b| a.at.x.total_cmp(&b.at.x));
+        }
         let mut face = None;
-        for straight in line.straight() {
+        for straight in pieces {
             let (start, along) = straight.baseline();
             // Letters stand upright where y points down.
             let [x, y] = along.to_array().map(|part| (part * 1e6).round() as f32 / 1e6);
@@ -204,7 +215,7 @@ impl VectorWriter for PageContent<'_> {
             }
         }
         self.content.end_text();
-        if is_span {
+        for _ in spans {
             self.content.end_marked_content();
         }
         self.content.restore_state();
@@ -229,6 +240,26 @@ impl VectorWriter for PageContent<'_> {
 /// Whether a character is of a script that runs from right to left (Unicode blocks of such scripts).
 fn is_right_to_left(character: char) -> bool {
     matches!(character, '\u{590}'..='\u{8ff}' | '\u{fb1d}'..='\u{fdff}' | '\u{fe70}'..='\u{fefc}' | '\u{10800}'..='\u{10fff}' | '\u{1e800}'..='\u{1efff}')
+}
+
+/// A line as it is written, but each stretch from a letter that runs from right to left to the last one before others
+/// turned round. A mark that is not seen (U+200E) ends such a stretch: blanks behind it do not belong to it.
+pub(super) fn turned_round(text: &str) -> String {
+    let is_other = |c: char| (c.is_alphabetic() || c.is_numeric()) && !is_right_to_left(c);
+    let mut turned = String::with_capacity(text.len());
+    let mut left = text;
+    while let Some(begin) = left.find(is_right_to_left) {
+        let run = &left[begin..];
+        let run = &run[..run.find(is_other).unwrap_or(run.len())];
+        let end = begin + run.trim_end_matches(|c| !is_right_to_left(c)).len();
+        turned.push_str(&left[..begin]);
+        turned.extend(left[begin..end].chars().rev());
+        left = &left[end..];
+        if !left.is_empty() && !left.starts_with(END_OF_STRETCH) {
+            turned.push(END_OF_STRETCH);
+        }
+    }
+    turned + left
 }
 
 /// A coordinate to a hundredth of a point, as in SVG.

@@ -138,7 +138,35 @@ fn words_on_a_slope_are_read_as_words() {
         Objects::of(&pdf(&page, "t").unwrap()).drawn().matches("/ActualText").count()
     };
     assert_eq!([0.0, 90.0, -90.0, 20.0].map(|turn_deg| spans("Crossline", turn_deg)), [0, 0, 0, 1]);
-    assert_eq!(spans("\u{627}\u{628}", 20.0), 0);
+    // As it is written, and turned round for readers that turn it back.
+    assert_eq!([0.0, 20.0].map(|turn_deg| spans("\u{627}\u{628}", turn_deg)), [2, 2]);
+}
+
+#[test]
+fn readers_that_turn_letters_from_right_to_left_round_read_them_as_they_are_written() {
+    // As poppler does: from each letter that runs from right to left up to the next that runs the other way.
+    let turns = |text: &str| {
+        let is_left = |c: &char| matches!(c, '\u{590}'..='\u{8ff}');
+        let is_right = |c: &char| (c.is_alphanumeric() && !is_left(c)) || *c == '\u{200e}';
+        let letters: Vec<char> = text.chars().collect();
+        let (mut read, mut at) = (String::new(), 0);
+        while at < letters.len() {
+            let plain = letters[at..].iter().take_while(|c| !is_left(c)).count();
+            read.extend(&letters[at..at + plain]);
+            at += plain;
+            let turned = letters[at..].iter().take_while(|c| !is_right(c)).count();
+            read.extend(letters[at..at + turned].iter().rev());
+            at += turned;
+        }
+        read.replace('\u{200e}', "")
+    };
+    for name in ["Marl", "", "אבן חול", "حجر جيري طباشيري", "طين Mb-2 أعلى", "F1, אב (ג) 45 m", "אב 12 גד", "אבן (חול)"]
+    {
+        let written = content::turned_round(name);
+        // A closing bracket at the very end stays behind the letters.
+        assert_eq!(turns(&written), name, "{written:?}");
+        assert!(name == turns(name) || written != name);
+    }
 }
 
 #[test]
