@@ -243,7 +243,7 @@ pub(super) fn draw(
         _ => None,
     });
     if let Some(scene) = blocks.clone().find(|scene| scene.face_data == FaceData::Distortion) {
-        let loaded = load::load_within(project, scene, volume_bytes, progress)?;
+        let loaded = load::load_with(project, made.rock.clone(), scene, volume_bytes, progress)?;
         super::distortion::say(project.document(), &loaded.distortion(scene, progress)?, &mut report);
     }
     let shown = blocks.map(|scene| assumptions(project, scene)).next().unwrap_or_default();
