@@ -277,10 +277,11 @@ impl Maker<'_> {
         }
         let well = Stroke::new(2.0 * HORIZON_PT, scene.wells.colour);
         let wells = seen.wells.iter().filter_map(|index| self.inputs.source.data.wells.get(*index));
-        match self.wants(Annotation::Wells) && !seen.wells.is_empty() {
+        if self.wants(Annotation::Wells) && !seen.wells.is_empty() {
             // Each has its name beside it.
-            true => lines.push(LegendLine::well("Well", well.clone())),
-            false => lines.extend(wells.map(|named| LegendLine::well(named.name, well.clone()))),
+            lines.push(LegendLine::well("Well", well.clone()));
+        } else {
+            lines.extend(wells.map(|named| LegendLine::well(named.name, well.clone())));
         }
         let ring = (RING * well.width, Stroke::new(RING * well.width, scene.wells.top_colour));
         lines.extend(seen.has_tops.then(|| LegendLine::well_top(well, ring)));
