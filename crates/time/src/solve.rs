@@ -83,7 +83,7 @@ struct End {
 }
 
 impl End {
-    /// The end at `fixed` halves of a [`DIP_STEP`].
+    /// The end at `fixed` halves of a [`DIP_STEP`], which lies in the trace.
     #[inline]
     fn new(fixed: u32, nz: usize) -> Self {
         let low = (fixed / HALF_STEPS).min(nz as u32 - 2);
@@ -157,6 +157,7 @@ fn each_link(dips: &[i16], weights: &[u8], mut visit: impl FnMut(End, End, f32, 
     for (z, (&dip, &weight)) in dips.iter().zip(weights).enumerate() {
         let weight = weight & !CUT_BELOW;
         if weight != 0 {
+            // Ends lie in the trace, so nothing overflows; a dip upwards wraps around and back.
             let (at, half) = ((z as u32) << HALF_STEPS.ilog2(), i32::from(dip) as u32);
             let (a, b) = (End::new(at.wrapping_sub(half), nz), End::new(at.wrapping_add(half), nz));
             visit(a, b, f32::from(dip) * DIP_STEP, f32::from(weight) * WEIGHT_STEP);
