@@ -4,6 +4,7 @@
 //! surface is named once, at the rightmost well that meets it.
 
 use super::axes::{self, Axis};
+use super::words::broken;
 use super::{NamedColour, swatch};
 use crate::correlation::{Column, LogCurve, Marker, place_of_layer, place_of_surface};
 use crate::error::FigureError;
@@ -28,6 +29,9 @@ const BETWEEN: f32 = 0.4;
 const DASHES_PT: [f64; 2] = [4.0, 2.5];
 /// From one name of a surface to the next, as a share of the size of its letters.
 const PITCH: f64 = 1.25;
+/// Size of the names of surfaces, points, and the lines that one may take where there is little room.
+const NAME_PT: f64 = TEXT_PT - 0.5;
+const MOST_LINES: usize = 3;
 /// Between a column and the names beside it, points.
 const ASIDE_PT: f64 = 7.0;
 /// Colours of curves, in their order.
@@ -300,19 +304,24 @@ impl CorrelationPanel<'_> {
         for (surface, well) in surfaces {
             let x = layout.right(*well, logs);
             let room = layout.left.get(well + 1).map_or(layout.body.max.x, |next| next - 2.0) - x - ASIDE_PT;
-            let text = label(&surface.name).fitted(room);
-            let pitch = PITCH * text.size;
+            let lines = broken(&surface.name, NAME_PT, room, MOST_LINES);
+            let lines: Vec<Text> = lines.iter().map(|line| label(line).fitted(room)).collect();
+            let pitch = PITCH * lines.iter().map(|line| line.size).fold(0.0, f64::max);
+            let half = 0.5 * pitch * lines.len() as f64;
             let meant = layout.y(surface.z - self.columns[*well].shift);
-            let over = taken.iter().filter(|(other, _)| other == well).map(|(_, y)| y + pitch).fold(meant, f64::max);
-            if text.text.is_empty() || over + 0.5 * pitch > layout.body.max.y {
+            let own = taken.iter().filter(|(other, _)| other == well);
+            let over = own.map(|(_, bottom)| bottom + half).fold(meant, f64::max);
+            if lines.iter().all(|line| line.text.is_empty()) || over + half > layout.body.max.y {
                 continue;
             }
-            taken.push((*well, over));
+            taken.push((*well, over + half));
             let (foot, head) = (DVec2::new(x, meant), DVec2::new(x + ASIDE_PT - 1.5, over));
             let stroke = Stroke::new(FRAME_PT, self.colour(surface));
             group.push(PathItem::stroked(Path::line(&[foot, head]), stroke));
-            let text = Text { at: DVec2::new(x + ASIDE_PT, over), ..text };
-            group.push(text.haloed(1.0, Ink::glass(Colour::WHITE, 0.85)));
+            for (n, line) in lines.into_iter().enumerate() {
+                let at = DVec2::new(x + ASIDE_PT, over - half + pitch * (n as f64 + 0.5));
+                group.push(Text { at, ..line }.haloed(1.0, Ink::glass(Colour::WHITE, 0.85)));
+            }
         }
         group
     }
@@ -386,7 +395,7 @@ fn scale_items(log: &LogCurve, scale: [f64; 2], x: [f64; 2], bottom: f64, colour
 }
 
 fn label(name: &str) -> Text {
-    Text::new(DVec2::ZERO, name).sized(TEXT_PT - 0.5).inked(INK).anchored(Across::Start, Upright::Middle)
+    Text::new(DVec2::ZERO, name).sized(NAME_PT).inked(INK).anchored(Across::Start, Upright::Middle)
 }
 
 /// A line with no more than four places in each third of a point down: where a curve comes in, its extremes, and where

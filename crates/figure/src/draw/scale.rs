@@ -1,5 +1,6 @@
 //! Scale bars, and what a reader must know to read lengths.
 
+use super::words::broken;
 use crate::style::{INK, LEAST_TEXT_PT, NUMBER_PT, QUIET_INK, TEXT_PT};
 use glam::DVec2;
 use page::list::{Across, Group, GroupKind, Path, PathItem, Text, Upright, width_of};
@@ -13,6 +14,10 @@ pub const STRIP_PT: f64 = 24.0;
 const SHARE: f64 = 0.3;
 /// Height of a bar, points.
 const BAR_PT: f64 = 2.2;
+
+/// Size of a caption's letters, and from one of its lines to the next, points.
+const CAPTION_PT: f64 = TEXT_PT - 0.5;
+const CAPTION_PITCH_PT: f64 = 9.5;
 
 /// What exaggeration is called, and in little room.
 const EXAGGERATION: [&str; 2] = ["vertical exaggeration", "V.E."];
@@ -65,15 +70,23 @@ pub fn drawn(strip: Rect, points_per_m: Option<f64>, down: Option<(f64, &str)>, 
     }
     if !caption.is_empty() {
         let room = strip.max.x - left;
-        let is_long = width_of(caption, LEAST_TEXT_PT) > room;
-        let words = if is_long { caption.replacen(EXAGGERATION[0], EXAGGERATION[1], 1) } else { caption.to_owned() };
-        let text = Text::new(DVec2::new(left, y), words).sized(TEXT_PT - 0.5).inked(QUIET_INK);
-        let text = text.anchored(Across::Start, Upright::Middle).fitted(room);
-        if !text.text.is_empty() {
-            group.push(text);
+        for (n, line) in caption_lines(caption, room).into_iter().enumerate() {
+            let text = Text::new(DVec2::new(left, y + CAPTION_PITCH_PT * n as f64), line).sized(CAPTION_PT);
+            let text = text.inked(QUIET_INK).anchored(Across::Start, Upright::Middle).fitted(room);
+            if !text.text.is_empty() {
+                group.push(text);
+            }
         }
     }
     group
+}
+
+/// A caption in one line, or, where there is little room, in short words and two lines.
+fn caption_lines(caption: &str, room: f64) -> Vec<String> {
+    if width_of(caption, LEAST_TEXT_PT) <= room {
+        return vec![caption.to_owned()];
+    }
+    broken(&caption.replacen(EXAGGERATION[0], EXAGGERATION[1], 1), LEAST_TEXT_PT, room, 2)
 }
 
 /// An upright bar of a round length in a strip, and its number.

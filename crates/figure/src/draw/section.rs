@@ -241,7 +241,7 @@ pub struct SectionInk {
 
 /// Width of contacts and unconformities between patterns, points.
 pub(crate) fn contact_pt(is_unconformity: bool) -> f64 {
-    if is_unconformity { 1.15 * HORIZON_PT } else { 0.7 * HORIZON_PT }
+    if is_unconformity { 0.95 * HORIZON_PT } else { 0.65 * HORIZON_PT }
 }
 
 /// What is drawn of rock below the lines of a section, and written on it: from where the section is seen, and where the

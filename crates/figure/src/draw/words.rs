@@ -23,7 +23,7 @@ pub fn title(room: Rect, words: &str) -> (Group, Rect) {
 
 /// A caption at the foot of a room, broken into lines, and the room that is left.
 pub fn caption(room: Rect, words: &str) -> (Group, Rect) {
-    let lines = broken(words, room.width());
+    let lines = broken(words, TEXT_PT, room.width(), MOST_LINES);
     let pitch = TEXT_PT * LEADING;
     let top = room.max.y - pitch * lines.len() as f64;
     let mut group = Group::new(GroupKind::Annotation, "caption");
@@ -43,13 +43,13 @@ pub fn provenance(room: Rect, words: &str) -> (Group, Rect) {
     (group, room.inside([0.0, 0.0, 0.0, PROVENANCE_PT * LEADING + 2.0]))
 }
 
-/// Words in lines that are no wider than `room`, as far as single words allow.
-fn broken(words: &str, room: f64) -> Vec<String> {
+/// Words of a size in `most` lines that are no wider than `room`, as far as single words allow.
+pub(super) fn broken(words: &str, size: f64, room: f64, most: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in words.split_whitespace() {
         // The last line takes what is left and is shortened where it is drawn.
-        let is_last = lines.len() == MOST_LINES;
-        let fits = |line: &String| is_last || width_of(&format!("{line} {word}"), TEXT_PT) <= room;
+        let is_last = lines.len() == most;
+        let fits = |line: &String| is_last || width_of(&format!("{line} {word}"), size) <= room;
         match lines.last_mut().filter(|line| fits(line)) {
             Some(line) => {
                 line.push(' ');

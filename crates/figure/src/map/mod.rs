@@ -7,6 +7,7 @@
 
 mod contours;
 mod cuts;
+mod ends;
 mod grid;
 mod hatch;
 mod smooth;
@@ -74,7 +75,7 @@ pub struct HorizonMap {
     pub image: RgbaImage,
     /// Where faults cut the horizon off, or either of two, by fault.
     pub faults: Vec<FaultCut>,
-    /// Contours of the lightly smoothed surface, by value.
+    /// Contours of the lightly smoothed surface, up to faults, by value.
     pub contours: Vec<Contour>,
     /// Outline and hatching of what was not picked, voxel x and y.
     pub hatching: Vec<[DVec2; 2]>,
@@ -121,7 +122,8 @@ impl HorizonMap {
             Rgba([r, g, b, 255])
         });
         let interval = contours::interval(spread);
-        let contours = contours::contours(&smooth::smoothed(&grid, interval), range, interval);
+        let mut contours = contours::contours(&smooth::smoothed(&grid, interval), range, interval);
+        ends::lead_to_faults(&mut contours, &faults);
         let open = grid.nodes().iter().filter(|node| node.is_open && node.value.is_finite()).count();
         let unpicked = open as f64 / finite().count() as f64;
         Some(Self { mapped, image, faults, contours, hatching: hatch::hatching(&grid), unpicked, range, interval })

@@ -58,3 +58,23 @@ fn a_caption_without_room_is_abbreviated_and_then_left_out() {
     assert_eq!(said(40.0).as_deref(), Some("V.E. 2.5"));
     assert_eq!(said(4.0), None);
 }
+
+#[test]
+fn a_long_caption_takes_two_lines_within_its_strip() {
+    let caption = "vertical exaggeration 2.5 at 2000 m/s; lengths hold in the middle of the block";
+    let strip = Rect::sized(DVec2::new(10.0, 50.0), DVec2::new(180.0, STRIP_PT));
+    let group = drawn(strip, None, None, caption);
+    let texts: Vec<&Text> = group
+        .items
+        .iter()
+        .filter_map(|item| match item {
+            page::list::Item::Text(text) => Some(text),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(texts.len(), 2);
+    let said: Vec<&str> = texts.iter().map(|text| text.text.as_str()).collect();
+    assert_eq!(said.join(" "), caption.replace("vertical exaggeration", "V.E."));
+    assert!(texts[0].bounds().max.y <= texts[1].bounds().min.y + 0.5);
+    assert!(texts.iter().all(|text| strip.contains(text.bounds().min) && strip.contains(text.bounds().max)));
+}
