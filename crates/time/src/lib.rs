@@ -60,6 +60,7 @@ mod reflections;
 mod slabs;
 mod solve;
 mod start;
+mod stencil;
 mod throws;
 
 #[cfg(test)]

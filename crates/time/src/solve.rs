@@ -10,6 +10,7 @@
 
 use crate::hubs::Hubs;
 use crate::links::{CUT_BELOW, DIP_STEP, Links, WEIGHT_STEP};
+use crate::stencil::{Stencils, is_steep};
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
@@ -100,63 +101,29 @@ impl End {
     }
 
     #[inline]
+    fn spread(self, trace: &mut [f32], value: f32) {
+        trace[self.low] += (1.0 - self.share) * value;
+        trace[self.low + 1] += self.share * value;
+    }
+
+    #[inline]
     fn spread_square(self, trace: &mut [f32], weight: f32) {
         trace[self.low] += weight * (1.0 - self.share) * (1.0 - self.share);
         trace[self.low + 1] += weight * self.share * self.share;
     }
 }
 
-/// Sums of what ends spread over a trace. Ends come one below the other, mostly a sample apart, so the two nodes of the last
-/// one are kept until the next needs another: no sum waits for the memory that the one before has written.
-struct Spread<'a> {
-    trace: &'a mut [f32],
-    low: usize,
-    sums: [f32; 2],
-}
-
-impl<'a> Spread<'a> {
-    fn over(trace: &'a mut [f32]) -> Self {
-        Self { trace, low: 0, sums: [0.0; 2] }
-    }
-
-    #[inline]
-    fn add(&mut self, end: End, value: f32) {
-        let below = end.share * value;
-        let above = value - below;
-        if end.low == self.low + 1 {
-            self.trace[self.low] += self.sums[0];
-            self.sums = [self.sums[1] + above, below];
-            self.low = end.low;
-        } else if end.low == self.low {
-            self.sums = [self.sums[0] + above, self.sums[1] + below];
-        } else {
-            self.put();
-            self.sums = [above, below];
-            self.low = end.low;
-        }
-    }
-
-    /// Adds the sums to the trace; one of a single sample has no links.
-    #[inline]
-    fn put(&mut self) {
-        if let Some(pair) = self.trace.get_mut(self.low..self.low + 2) {
-            pair[0] += self.sums[0];
-            pair[1] += self.sums[1];
-        }
-    }
-}
-
 /// Halves of a [`DIP_STEP`] in a sample.
 const HALF_STEPS: u32 = 512;
 
-/// Visits the links of one pair of traces: `visit(end on a, end on b, dip, weight)`. Links with a weight have both ends
-/// inside the traces.
+/// Visits the links of one pair of traces whose dip is `wanted`: `visit(end on a, end on b, dip, weight)`. Links with a
+/// weight have both ends inside the traces.
 #[inline]
-fn each_link(dips: &[i16], weights: &[u8], mut visit: impl FnMut(End, End, f32, f32)) {
+fn each_link(dips: &[i16], weights: &[u8], wanted: impl Fn(i16) -> bool, mut visit: impl FnMut(End, End, f32, f32)) {
     let nz = dips.len();
     for (z, (&dip, &weight)) in dips.iter().zip(weights).enumerate() {
         let weight = weight & !CUT_BELOW;
-        if weight != 0 {
+        if weight != 0 && wanted(dip) {
             // Ends lie in the trace, so nothing overflows; a dip upwards wraps around and back.
             let (at, half) = ((z as u32) << HALF_STEPS.ilog2(), i32::from(dip) as u32);
             let (a, b) = (End::new(at.wrapping_sub(half), nz), End::new(at.wrapping_add(half), nz));
@@ -170,23 +137,24 @@ impl System<'_> {
         self.hubs.size
     }
 
-    /// Calls `first(line, its part of out)` for all inlines, then `pair(traces, dips, weights, trace a, trace b)` for all
-    /// pairs of neighbouring traces: those of an inline right after it, while it is in the cache.
+    /// Calls `first(line, its part of out)` for all inlines, then `pair(room, traces, dips, weights, trace a, trace b)` for
+    /// all pairs of neighbouring traces: those of an inline right after it, while it is in the cache.
     fn each_line(
         &self,
         out: &mut [f32],
         first: impl Fn(usize, &mut [f32]) + Sync,
-        pair: impl Fn([usize; 2], &[i16], &[u8], &mut [f32], &mut [f32]) + Sync,
+        pair: impl Fn(&mut Stencils, [usize; 2], &[i16], &[u8], &mut [f32], &mut [f32]) + Sync,
     ) {
         let [nx, ny, nz] = self.size();
         let line = ny * nz;
         out.par_chunks_mut(line).enumerate().for_each(|(x, out)| {
             first(x, out);
+            let mut stencils = Stencils::new(nz);
             for y in 0..ny - 1 {
                 let at = (x * ny + y) * nz;
                 let (a, b) = out.split_at_mut((y + 1) * nz);
                 let (dips, weights) = (&self.links.dip[1][at..at + nz], &self.links.weight[1][at..at + nz]);
-                pair([x * ny + y, x * ny + y + 1], dips, weights, &mut a[y * nz..], &mut b[..nz]);
+                pair(&mut stencils, [x * ny + y, x * ny + y + 1], dips, weights, &mut a[y * nz..], &mut b[..nz]);
             }
         });
         for first in [0, 1] {
@@ -196,11 +164,19 @@ impl System<'_> {
             out[first * line..].par_chunks_exact_mut(2 * line).enumerate().for_each(|(n, out)| {
                 let x = first + 2 * n;
                 let (a, b) = out.split_at_mut(line);
+                let mut stencils = Stencils::new(nz);
                 for y in 0..ny {
                     let at = (x * ny + y) * nz;
                     let (dips, weights) = (&self.links.dip[0][at..at + nz], &self.links.weight[0][at..at + nz]);
                     let own = y * nz..(y + 1) * nz;
-                    pair([x * ny + y, (x + 1) * ny + y], dips, weights, &mut a[own.clone()], &mut b[own]);
+                    pair(
+                        &mut stencils,
+                        [x * ny + y, (x + 1) * ny + y],
+                        dips,
+                        weights,
+                        &mut a[own.clone()],
+                        &mut b[own],
+                    );
                 }
             });
         }
@@ -242,16 +218,15 @@ impl System<'_> {
                 }
             }
         };
-        self.each_line(out, along, |[ta, tb], dips, weights, out_a, out_b| {
+        self.each_line(out, along, |stencils, [ta, tb], dips, weights, out_a, out_b| {
             let (a, b) = (&s[ta * nz..(ta + 1) * nz], &s[tb * nz..(tb + 1) * nz]);
-            let (mut on_a, mut on_b) = (Spread::over(out_a), Spread::over(out_b));
-            each_link(dips, weights, |at_a, at_b, p, weight| {
-                let e = weight * (at_b.of(b) - at_a.of(a) + offset * p);
-                on_a.add(at_a, -e);
-                on_b.add(at_b, e);
-            });
-            on_a.put();
-            on_b.put();
+            if stencils.add(offset, (dips, weights), [a, b], [&mut *out_a, &mut *out_b]) {
+                each_link(dips, weights, is_steep, |at_a, at_b, p, weight| {
+                    let e = weight * (at_b.of(b) - at_a.of(a) + offset * p);
+                    at_a.spread(out_a, -e);
+                    at_b.spread(out_b, e);
+                });
+            }
         });
         for tie in self.ties {
             let [a, b] = tie.trace.map(|trace| trace as usize * nz);
@@ -309,11 +284,16 @@ impl System<'_> {
                 }
             }
         };
-        self.each_line(&mut out, along, |_, dips, weights, a, b| {
-            each_link(dips, weights, |at_a, at_b, _, weight| {
-                at_a.spread_square(a, weight);
-                at_b.spread_square(b, weight);
-            });
+        self.each_line(&mut out, along, |_, _, dips, weights, a, b| {
+            each_link(
+                dips,
+                weights,
+                |_| true,
+                |at_a, at_b, _, weight| {
+                    at_a.spread_square(a, weight);
+                    at_b.spread_square(b, weight);
+                },
+            );
         });
         for tie in self.ties {
             for side in [0, 1] {
