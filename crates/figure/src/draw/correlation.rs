@@ -31,7 +31,7 @@ const DASHES_PT: [f64; 2] = [4.0, 2.5];
 const PITCH: f64 = 1.25;
 /// Size of the names of surfaces, points, and the lines that one may take where there is little room.
 const NAME_PT: f64 = TEXT_PT - 0.5;
-const MOST_LINES: usize = 3;
+const MOST_LINES: usize = 5;
 /// Between a column and the names beside it, points.
 const ASIDE_PT: f64 = 7.0;
 /// Colours of curves, in their order.
@@ -97,7 +97,8 @@ impl CorrelationPanel<'_> {
         let mut group = Group::new(GroupKind::Panel, "correlation");
         let mut down = Axis { name: self.axis.clone(), ends: self.range, at: [0.0; 2], least_step: 0.0 };
         let surfaces = self.surfaces();
-        let longest = surfaces.iter().map(|(surface, _)| label(&surface.name).width()).fold(0.0, f64::max);
+        let beside_last = surfaces.iter().filter(|(_, well)| well + 1 == self.columns.len());
+        let longest = beside_last.map(|(surface, _)| label(&surface.name).width()).fold(0.0, f64::max);
         let logs = self.logs();
         let rows = ROWS_PT[0] + ROWS_PT[1] + if logs > 0 { ROWS_PT[2] } else { 3.0 };
         let below = if self.caption.is_some() { 13.0 } else { 2.0 };
@@ -418,3 +419,7 @@ fn thinned(places: &[DVec2]) -> Vec<DVec2> {
     }
     kept
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/correlation_names.rs"]
+mod tests;
