@@ -28,7 +28,7 @@ pub const TICK_PT: f64 = 2.6;
 /// Width of horizons on sections, points.
 pub const HORIZON_PT: f64 = 1.2;
 /// Width of faults on sections, points: the heaviest lines of a figure.
-pub const FAULT_PT: f64 = 1.6;
+pub const FAULT_PT: f64 = 1.45;
 /// How much wider the light rim under a line is, points.
 pub const RIM_PT: f64 = 1.2;
 /// Opacity of that rim.
