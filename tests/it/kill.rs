@@ -50,16 +50,31 @@ fn info(at: &Path) -> Value {
     run_in(at, "info p.petro --json").done().json()
 }
 
+/// The step of the history that a project is at.
+fn step(at: &Path) -> u64 {
+    let text = std::fs::read_to_string(at.join("p.petro/project.toml")).unwrap();
+    text.lines().find_map(|line| line.strip_prefix("step = ")).unwrap().parse().unwrap()
+}
+
 #[test]
 fn a_killed_extraction_costs_nothing_but_itself() {
+    let undisturbed = project();
+    let expected = run_in(undisturbed.path(), "extract p.petro --json").done().json();
+    assert!(expected["surfaces"].as_u64().unwrap() > 0);
     let folder = project();
     let at = folder.path();
-    let before = saved(at);
+    let (before, last) = (saved(at), step(at));
     let mut was_killed = 0;
     for after_ms in [5, 20, 60, 150, 300, 600] {
         let was_done = killed(at, "extract p.petro", after_ms);
         info(at);
         if was_done {
+            break;
+        }
+        if step(at) != last {
+            // Its last act is to save: killed between that and its end, it has done all.
+            assert_eq!(step(at), last + 1);
+            run_in(at, "check p.petro").done();
             break;
         }
         was_killed += 1;
@@ -68,7 +83,7 @@ fn a_killed_extraction_costs_nothing_but_itself() {
     assert!(was_killed > 1, "it was always done before it could be killed");
     // The next one is whole, and so are former candidates while another is killed.
     let whole = run_in(at, "extract p.petro --json").done().json();
-    assert!(whole["surfaces"].as_u64().unwrap() > 0);
+    assert_eq!((&whole["surfaces"], &whole["leaves"]), (&expected["surfaces"], &expected["leaves"]));
     let extracted = saved(at);
     for after_ms in [5, 60] {
         if killed(at, "extract p.petro --min-leaf-triangles 200", after_ms) {
@@ -93,10 +108,6 @@ fn a_killed_extraction_costs_nothing_but_itself() {
 fn a_killed_save_leaves_the_state_before_or_after_it() {
     let folder = project();
     let at = folder.path();
-    let step = |at: &Path| -> u64 {
-        let text = std::fs::read_to_string(at.join("p.petro/project.toml")).unwrap();
-        text.lines().find_map(|line| line.strip_prefix("step = ")).unwrap().parse().unwrap()
-    };
     let velocity = |at: &Path| -> f64 {
         let text = std::fs::read_to_string(at.join("p.petro/project.toml")).unwrap();
         text.lines().find_map(|line| line.strip_prefix("velocity_m_s = ")).unwrap().parse().unwrap()
