@@ -1,7 +1,7 @@
 //! Where a picture of faces takes samples of volumes: on the planes of the block and of its cut-outs, and on its ground.
 //! Of a volume that is larger than memory, these places alone are read.
 
-use crate::ground::{Heights, corners};
+use crate::ground::{CELL, Heights, corners};
 use crate::scene::Scene;
 use glam::{Vec2, Vec3};
 use model::StructuralModel;
@@ -105,7 +105,11 @@ impl GroundPart<'_> {
     fn depths(&self, map: [Vec2; 2]) -> Option<[f32; 2]> {
         /// Voxels between places at which sheets are evaluated.
         const STEP: f32 = 2.0;
+        /// Voxels around: where the ground is steep, as where a fault is not interpreted, the search along a ray may end
+        /// beside it by the length of a step.
+        const AROUND: f32 = CELL;
         let [low, high] = common(map, self.within)?;
+        let (low, high) = (low - AROUND, high + AROUND);
         let (mut top, mut bottom) = (f32::MAX, f32::MIN);
         let counts = ((high - low) / STEP).ceil().max(Vec2::ONE);
         for n in 0..=counts.x as usize {

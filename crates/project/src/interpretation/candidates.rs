@@ -239,6 +239,6 @@ mod tests {
         }
         // Nothing is near a place outside of the survey, either.
         let part = Candidates::part(&stored, document, &[[900.0, 1.0, 1.0]], &quiet).unwrap();
-        assert!(matches!(part.leaf_near(geometry, [900.0, 1.0, 1.0]), Err(ProjectError::Outside { .. })));
+        assert!(matches!(part.leaf_near(geometry, [900.0, 1.0, 1.0]), Err(ProjectError::PickOutside { .. })));
     }
 }

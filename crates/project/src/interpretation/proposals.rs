@@ -178,6 +178,7 @@ pub(crate) fn compute(
         document.horizons.iter().zip(&sheets).map(|(entry, sheets)| Evidence { name: &entry.name, sheets }).collect();
     let likeness = match volume {
         Some(entry) => {
+            memory::check("finding faults", &geometry.size(), FINDING_BYTES)?;
             let seismic = content::read_volume(root, entry, geometry, progress)?;
             let dips = dip(&seismic, &DipSettings::default(), progress);
             dips.and_then(|dips| semblance(&seismic, &dips, &SemblanceSettings::default(), progress)).ok()
@@ -218,7 +219,7 @@ fn from_candidates(
     Ok((key, proposals))
 }
 
-/// Memory that finding faults takes for each sample: the volume, all surfaces, and what is found.
+/// Memory that finding faults takes for each sample: the volume, its dips and its semblance, all surfaces.
 const FINDING_BYTES: usize = 28;
 
 /// The faults along which reflections end, but for drawn ones.
