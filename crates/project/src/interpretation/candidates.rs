@@ -217,6 +217,8 @@ mod tests {
         let mut project = Project::open(&root).unwrap();
         let mut settings = ExtractSettings::default();
         settings.forest.min_leaf_triangles = 80;
+        // The survey has few samples; most surfaces are to be farther away.
+        settings.distance.max_distance = 3.0;
         extract(&mut project, &settings);
         let document = project.document();
         let geometry = document.frame().unwrap();
