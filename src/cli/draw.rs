@@ -49,9 +49,14 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
         return super::page::draw(request, page, &project, &scene, progress);
     }
     let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
-    let loaded = load::load_within(&project, &scene, volume_bytes, progress)?;
     let mut painter = Painter::new(request.device, progress)?;
-    let (image, stage) = painter.draw(&scene, &loaded, progress)?;
+    let read = if painter.is_processor() { load::load_faces } else { load::load_within };
+    let mut loaded = read(&project, &scene, volume_bytes, progress)?;
+    let (mut image, mut stage) = painter.draw(&scene, &loaded, progress)?;
+    if loaded.has_missed() {
+        loaded = load::load_within(&project, &scene, volume_bytes, progress)?;
+        (image, stage) = painter.draw(&scene, &loaded, progress)?;
+    }
     pictures::write_png(&request.out, &image, request.dpi)?;
 
     let distortion = match scene.face_data {

@@ -47,7 +47,7 @@ fn peak_mib(at: &Path, line: &str) -> f64 {
 /// Every stage of the work on one volume, in its order, with what it may hold beyond the program itself: MiB whatever
 /// the size, and bytes for each voxel. Stated above what was measured at 256³, which `docs/reliability.md` tells.
 const STAGES: [(&str, f64, f64); 23] = [
-    ("synth s --size @x@x@ --seed 5 --snr 8", 15.0, 9.0),
+    ("synth s --size @x@x@ --seed 5 --snr 8", 160.0, 0.0),
     ("info s/survey.sgy", 15.0, 1.1),
     ("import s/survey.sgy p.petro --memory 64M", 74.0, 0.0),
     ("horizon add p.petro s/horizons/Alpha.csv --name Alpha", 15.0, 1.0),
@@ -57,18 +57,18 @@ const STAGES: [(&str, f64, f64); 23] = [
     ("attribute p.petro --kind semblance --name likeness --memory 64M", 74.0, 0.0),
     ("attribute p.petro --kind dip --name dip --memory 64M", 74.0, 0.0),
     ("extract p.petro", 25.0, 31.5),
-    ("export p.petro c.csv --candidates", 15.0, 20.0),
+    ("export p.petro c.csv --candidates", 50.0, 5.0),
     ("fault propose p.petro", 15.0, 24.0),
     ("parameterize p.petro --size 64x64x64", 33.0, 10.3),
     ("render p.petro a.png --size 800x600 --samples 1 --device cpu", 40.0, 9.5),
-    ("render p.petro b.png --size 800x600 --samples 1 --device cpu --blend 1", 40.0, 16.7),
+    ("render p.petro b.png --size 800x600 --samples 1 --device cpu --blend 1", 70.0, 6.0),
     ("render p.petro c.png --size 800x600 --samples 1 --device cpu --technique occlusion", 40.0, 19.0),
     ("render p.petro d.png --inline 150 --size-cm 16x9", 40.0, 6.0),
     ("render p.petro e.png --map Alpha --size-cm 16x9", 40.0, 6.0),
     ("export p.petro top.csv --horizon Alpha --format csv", 15.0, 1.0),
     ("export p.petro out.sgy --volume seismic", 15.0, 1.7),
     ("undo p.petro", 15.0, 0.0),
-    ("check p.petro", 25.0, 20.7),
+    ("check p.petro", 60.0, 3.5),
     ("prune p.petro", 15.0, 0.0),
 ];
 

@@ -37,7 +37,7 @@ mod tables;
 pub(crate) mod tests;
 
 use crate::error::InterpError;
-use crate::surfaces::{Surfaces, Vertex};
+use crate::surfaces::{Surface, Surfaces, Vertex};
 use prune::PrunedTree;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -256,8 +256,17 @@ fn check(surfaces: &Surfaces) -> Result<(), InterpError> {
     if triangles > MAX_TRIANGLES {
         return Err(InterpError::TooManyTriangles { triangles, limit: MAX_TRIANGLES });
     }
-    let (mut vertex, mut triangle) = (0, 0);
+    check_ranges(&surfaces.surfaces, surfaces.vertices.len(), triangles)?;
     for (surface, part) in surfaces.surfaces.iter().enumerate() {
+        check_corners(surface, part, &surfaces.triangles[part.triangles.start as usize..part.triangles.end as usize])?;
+    }
+    Ok(())
+}
+
+/// Checks that surfaces follow one another and have all of so many vertices and triangles.
+fn check_ranges(surfaces: &[Surface], vertices: usize, triangles: usize) -> Result<(), InterpError> {
+    let (mut vertex, mut triangle) = (0, 0);
+    for (surface, part) in surfaces.iter().enumerate() {
         let bad = |fact| Err(InterpError::MalformedSurfaces { surface, fact });
         if part.vertices.start != vertex || part.vertices.end < vertex {
             return bad("its vertices do not follow those of the surface before");
@@ -266,17 +275,22 @@ fn check(surfaces: &Surfaces) -> Result<(), InterpError> {
             return bad("its triangles do not follow those of the surface before");
         }
         (vertex, triangle) = (part.vertices.end, part.triangles.end);
-        if vertex as usize > surfaces.vertices.len() || triangle as usize > triangles {
+        if vertex as usize > vertices || triangle as usize > triangles {
             return bad("it ends after the arrays do");
         }
-        let own = &surfaces.triangles[part.triangles.start as usize..triangle as usize];
-        if own.iter().flatten().any(|corner| !part.vertices.contains(corner)) {
-            return bad("a triangle has a corner that is not its own");
-        }
     }
-    if vertex as usize != surfaces.vertices.len() || triangle as usize != triangles {
+    if vertex as usize != vertices || triangle as usize != triangles {
         let fact = "vertices or triangles follow that belong to no surface";
-        return Err(InterpError::MalformedSurfaces { surface: surfaces.surfaces.len(), fact });
+        return Err(InterpError::MalformedSurfaces { surface: surfaces.len(), fact });
+    }
+    Ok(())
+}
+
+/// Checks that triangles have corners of their own surface.
+fn check_corners(surface: usize, part: &Surface, own: &[[u32; 3]]) -> Result<(), InterpError> {
+    if own.iter().flatten().any(|corner| !part.vertices.contains(corner)) {
+        let fact = "a triangle has a corner that is not its own";
+        return Err(InterpError::MalformedSurfaces { surface, fact });
     }
     Ok(())
 }

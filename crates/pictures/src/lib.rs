@@ -20,6 +20,8 @@ mod painter;
 mod sampled;
 pub mod scene;
 mod shown_candidates;
+mod volumes;
+mod wells;
 
 pub use certainty::{PickedShare, sparse_sentences};
 pub use motion::Motion;

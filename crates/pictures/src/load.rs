@@ -3,23 +3,25 @@
 
 use super::PickedShare;
 use crate::shown_candidates::ShownCandidates;
-use glam::{DVec3, Vec3};
+pub use crate::volumes::{LoadedSamples, LoadedVolume};
+use crate::volumes::{Reading, SMALL_BYTES, read_volumes};
+pub use crate::wells::{LoadedLog, LoadedWell, read_wells};
+use glam::Vec3;
 use model::{ModelSettings, StructuralModel};
-use param::{PackedVolume, Parameterization, VoxelParameterization};
+use param::{ComputeCost, PackedVolume, Parameterization, VoxelParameterization};
 use project::Project;
 use project::document::{Document, volumes_within};
 use project::error::ProjectError;
 use project::interpretation::solid;
-use project::placement;
 use project::{content, derived, memory_budget, styles};
 use render::distortion::{self, LayerDistortion};
-use render::{DrawnWell, Inputs, Lookup, Media, NamedVolume, RenderError, Scene, VoxelBox};
-use std::path::Path;
+use render::touched::Places;
+use render::{DrawnWell, FaceData, Inputs, Lookup, Media, NamedVolume, RenderError, Scene};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
-use survey::{Progress, SurveyGeometry, Volume, Well, memory};
-use ttf::{BlockExtent, Colour, LayerExtent, RawColour, TtfTables};
+use survey::{Progress, SurveyGeometry, memory};
+use ttf::{BlockExtent, LayerExtent, RawColour, TransferFunctions, TtfTables};
 
 /// Memory that the sampled parameterization takes for each voxel: i, j, k, layer and block.
 const VOXEL_BYTES: usize = 16;
@@ -90,6 +92,7 @@ pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, Proj
     let mut stages = vec![stage];
     let param_settings = solid::param_settings(document);
     let key = rock_key(document);
+    solid::check_coordinates(model.size(), &param_settings)?;
     let parameterization = match derived::load_grids(project.root(), &key) {
         Some(kept) if is_of(&kept, &model) => kept,
         _ => {
@@ -195,53 +198,6 @@ impl Rock {
     }
 }
 
-/// A volume of the project and its place.
-pub struct LoadedVolume {
-    /// Its name.
-    pub name: String,
-    /// Its samples.
-    pub volume: Volume<f32>,
-    /// Voxel positions of its first and last sample.
-    pub covers: VoxelBox,
-}
-
-/// A well of the project in voxels.
-pub struct LoadedWell {
-    /// Its name.
-    pub name: String,
-    /// Its own colour.
-    pub colour: Option<Colour>,
-    /// Its path from the head down.
-    pub path: Vec<DVec3>,
-    /// Its tops.
-    pub tops: Vec<DVec3>,
-    /// Their names.
-    pub top_names: Vec<String>,
-    /// A curve measured along it: its gamma ray, or else its first.
-    pub log: Option<LoadedLog>,
-}
-
-/// A curve measured along a well.
-pub struct LoadedLog {
-    /// Its short name.
-    pub name: String,
-    /// Its values and their places, voxels; NaN where nothing was measured.
-    pub points: Vec<(DVec3, f32)>,
-    /// Its smallest and largest value.
-    pub range: [f32; 2],
-}
-
-/// The curve that is shown beside a well.
-fn shown_log(well: &Well, geometry: &SurveyGeometry) -> Option<LoadedLog> {
-    let curves = || well.logs.iter().flat_map(|set| set.curves.iter().map(move |curve| (set, curve)));
-    let (set, curve) = curves().find(|(_, curve)| curve.name.eq_ignore_ascii_case("GR")).or_else(|| curves().next())?;
-    let values = curve.values.iter().copied().filter(|value| value.is_finite());
-    let range = values.fold([f32::MAX, f32::MIN], |[low, high], value| [low.min(value), high.max(value)]);
-    let place = |(md_m, value): (&f64, &f32)| Some((well.voxel_at_md(*md_m, geometry)?, *value));
-    let points: Vec<(DVec3, f32)> = set.md_m.iter().zip(&curve.values).filter_map(place).collect();
-    (range[0] <= range[1]).then(|| LoadedLog { name: curve.name.clone(), points, range })
-}
-
 /// Everything that a scene of a project is drawn from.
 pub struct Loaded {
     /// The survey geometry.
@@ -308,22 +264,60 @@ pub fn load_with(
     volume_bytes: u64,
     progress: &Progress,
 ) -> Result<Loaded, ProjectError> {
+    load_scene(project, known, scene, (volume_bytes, Extent::Whole), progress)
+}
+
+/// Reads and computes what the processor needs to draw `scene` once: of volumes that are larger than some, the samples on
+/// faces and ground alone, so that pictures of a volume of any size have its own resolution; and no layer coordinates
+/// where measured data hide the rock. [`Loaded::has_missed`] tells whether that was enough.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_faces(
+    project: &Project,
+    scene: &Scene,
+    volume_bytes: u64,
+    progress: &Progress,
+) -> Result<Loaded, ProjectError> {
+    load_scene(project, None, scene, (volume_bytes, Extent::Faces { small_bytes: SMALL_BYTES }), progress)
+}
+
+/// What of a volume is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Extent {
+    Whole,
+    /// Of volumes larger than this what is on faces.
+    Faces {
+        small_bytes: u64,
+    },
+}
+
+pub(crate) fn load_scene(
+    project: &Project,
+    known: Option<Arc<Rock>>,
+    scene: &Scene,
+    (volume_bytes, extent): (u64, Extent),
+    progress: &Progress,
+) -> Result<Loaded, ProjectError> {
     let document = project.document();
     let geometry = document.frame()?.clone();
-    // Raw data alone needs no interpretation, but outlines and ground do.
+    let mut functions = styles::transfer_functions(document);
+    if let Some(raw) = &scene.raw {
+        functions.raw = Some(raw.clone());
+    }
+    functions = functions.printed(scene.preset);
     let rock = match known.filter(|rock| rock.is_of(document)) {
         Some(rock) => Some(rock),
+        // Measured data alone need no interpretation, but outlines and ground do.
+        None if extent != Extent::Whole && is_hidden(scene, &functions) => {
+            model_alone(project, progress)?.map(Arc::new)
+        }
         None => rock(project, progress)?.map(Arc::new),
     };
     let picked = rock.as_ref().map_or_else(Vec::new, |rock| rock.picked());
     if scene.blend < 1.0 {
         super::sparse_sentences(&sparse(&picked)).into_iter().for_each(|sentence| progress.warn(sentence));
     }
-    let mut functions = styles::transfer_functions(document);
-    if let Some(raw) = &scene.raw {
-        functions.raw = Some(raw.clone());
-    }
-    functions = functions.printed(scene.preset);
     let packed = match (&rock, scene.lookup) {
         (Some(rock), Lookup::Packed) => {
             let voxels = rock.voxels(project, geometry.size(), progress)?;
@@ -348,8 +342,15 @@ pub fn load_with(
         wanted.push(&raw.volume);
     }
     wanted.extend(volumes_within(scene));
-    let volumes = read_volumes(project.root(), document, &geometry, &wanted, volume_bytes, progress)?;
-    let candidates = ShownCandidates::load(project, scene, rock.as_ref().map(|rock| &rock.model), progress)?;
+    let model = rock.as_ref().map(|rock| &rock.model);
+    let rendered: Vec<&str> = volumes_within(scene).collect();
+    let (places, small_bytes) = match extent {
+        Extent::Whole => (None, 0),
+        Extent::Faces { small_bytes } => (Places::of(scene, &geometry, model), small_bytes),
+    };
+    let reading = Reading { bytes: volume_bytes, places: places.as_ref(), small_bytes, whole: &rendered };
+    let volumes = read_volumes(project.root(), document, &geometry, &wanted, &reading, progress)?;
+    let candidates = ShownCandidates::load(project, scene, model, progress)?;
     let wells = read_wells(project.root(), document, &geometry)?;
     Ok(Loaded {
         wells,
@@ -364,6 +365,26 @@ pub fn load_with(
         version: new_version(),
         data_version: new_version(),
     })
+}
+
+/// Whether measured data hide all rock of a scene, and nothing else needs layer coordinates.
+fn is_hidden(scene: &Scene, functions: &TransferFunctions) -> bool {
+    let is_opaque = functions.raw.as_ref().is_some_and(|raw| raw.no_data.is_some());
+    let is_plain = scene.media == Media::default() && scene.face_data == FaceData::Rock;
+    scene.blend >= 1.0 && scene.lookup == Lookup::Exact && is_opaque && is_plain
+}
+
+/// The model without layer coordinates; its key is none, so that it stands for nothing else.
+fn model_alone(project: &Project, progress: &Progress) -> Result<Option<Rock>, ProjectError> {
+    let Some((model, stage)) = structural_model(project, progress)? else { return Ok(None) };
+    let empty = Parameterization {
+        size: model.size(),
+        layers: model.layer_count(),
+        blocks: model.block_count(),
+        grids: Vec::new(),
+        cost: ComputeCost::default(),
+    };
+    Ok(Some(Rock::new(model, empty, String::new(), vec![stage])))
 }
 
 /// What a scene shows beyond what is loaded.
@@ -381,7 +402,8 @@ pub fn read_more(project: &Project, loaded: &Loaded, scene: &Scene, progress: &P
     let document = project.document();
     let missing: Vec<&str> = volumes_within(scene).filter(|name| !loaded.has_volume(name)).collect();
     let limit = memory_budget::half_of_available();
-    let volumes = read_volumes(project.root(), document, &loaded.geometry, &missing, limit, progress)?;
+    let reading = Reading::whole(limit);
+    let volumes = read_volumes(project.root(), document, &loaded.geometry, &missing, &reading, progress)?;
     let candidates = ShownCandidates::load(project, scene, loaded.rock.as_ref().map(|rock| &rock.model), progress)?;
     Ok(More { volumes, candidates })
 }
@@ -406,6 +428,31 @@ pub fn load_bare(
     volume_bytes: u64,
     progress: &Progress,
 ) -> Result<Loaded, ProjectError> {
+    load_sections(project, scene, None, volume_bytes, progress)
+}
+
+/// The same, of volumes that are larger than some only the samples at these places, for a picture of sections.
+///
+/// # Errors
+/// As [`load_bare`].
+pub fn load_sections(
+    project: &Project,
+    scene: &Scene,
+    places: Option<&Places>,
+    volume_bytes: u64,
+    progress: &Progress,
+) -> Result<Loaded, ProjectError> {
+    let rendered: Vec<&str> = volumes_within(scene).collect();
+    let reading = Reading { bytes: volume_bytes, places, small_bytes: SMALL_BYTES, whole: &rendered };
+    load_read(project, scene, &reading, progress)
+}
+
+pub(crate) fn load_read(
+    project: &Project,
+    scene: &Scene,
+    reading: &Reading,
+    progress: &Progress,
+) -> Result<Loaded, ProjectError> {
     let document = project.document();
     let geometry = document.frame()?.clone();
     let raw = styles::transfer_functions(document).raw;
@@ -413,7 +460,7 @@ pub fn load_bare(
     Ok(Loaded {
         rock: None,
         picked: Vec::new(),
-        volumes: read_volumes(project.root(), document, &geometry, &wanted, volume_bytes, progress)?,
+        volumes: read_volumes(project.root(), document, &geometry, &wanted, reading, progress)?,
         packed: None,
         wells: read_wells(project.root(), document, &geometry)?,
         candidates: ShownCandidates::load(project, scene, None, progress)?,
@@ -423,69 +470,6 @@ pub fn load_bare(
         raw,
         geometry,
     })
-}
-
-fn read_volumes(
-    root: &Path,
-    document: &Document,
-    geometry: &SurveyGeometry,
-    wanted: &[&str],
-    volume_bytes: u64,
-    progress: &Progress,
-) -> Result<Vec<LoadedVolume>, ProjectError> {
-    let mut volumes = Vec::new();
-    for entry in document.volumes.iter().filter(|entry| wanted.contains(&entry.name.as_str())) {
-        let covers = placement::covers(geometry, entry.geometry.as_ref().unwrap_or(geometry))
-            .map_err(|source| ProjectError::Placement { name: entry.name.clone(), source })?;
-        let (volume, level) = content::read_volume_within(root, entry, geometry, volume_bytes, progress)?;
-        if level > 0 {
-            let apart = 1 << level;
-            progress.warn(format!(
-                "volume {} is shown by one sample in {apart} along each axis, to fit into memory",
-                entry.name
-            ));
-        }
-        let full = entry.geometry.as_ref().unwrap_or(geometry).size();
-        let covers = at_level(covers, full, volume.size(), level);
-        volumes.push(LoadedVolume { name: entry.name.clone(), volume, covers });
-    }
-    Ok(volumes)
-}
-
-/// Reads the wells of a project's state, in voxels of `geometry`.
-///
-/// # Errors
-/// A well cannot be read.
-pub fn read_wells(
-    root: &Path,
-    document: &Document,
-    geometry: &SurveyGeometry,
-) -> Result<Vec<LoadedWell>, ProjectError> {
-    let mut wells = Vec::new();
-    for entry in &document.wells {
-        let well = content::read_well(root, entry)?;
-        let placed = well.tops.iter().filter_map(|top| Some((well.voxel_at_md(top.md_m, geometry)?, top.name.clone())));
-        let (tops, top_names) = placed.unzip();
-        wells.push(LoadedWell {
-            name: entry.name.clone(),
-            colour: entry.colour,
-            path: well.path_in_voxels(geometry),
-            tops,
-            top_names,
-            log: shown_log(&well, geometry),
-        });
-    }
-    Ok(wells)
-}
-
-/// Voxel positions of the first and last sample at a level of a pyramid, whose sample m lies at m·2^level of the full
-/// volume.
-fn at_level(covers: VoxelBox, full: [usize; 3], size: [usize; 3], level: usize) -> VoxelBox {
-    let max = |axis: usize| {
-        let share = ((size[axis].saturating_sub(1)) << level) as f64 / full[axis].saturating_sub(1).max(1) as f64;
-        covers.min[axis] + (covers.max[axis] - covers.min[axis]) * if level == 0 { 1.0 } else { share }
-    };
-    VoxelBox { min: covers.min, max: [max(0), max(1), max(2)] }
 }
 
 /// What styles are compiled for: sizes in metres, and the names of the layers, bottom to top. Thicknesses are those of
@@ -519,6 +503,11 @@ impl Loaded {
             && media.horizons.iter().filter_map(|horizon| horizon.name.as_deref()).all(knows)
     }
 
+    /// Whether samples were asked for that were not read; what was drawn then lacks them.
+    pub fn has_missed(&self) -> bool {
+        self.volumes.iter().any(LoadedVolume::has_missed)
+    }
+
     fn has_volume(&self, name: &str) -> bool {
         self.volumes.iter().any(|volume| volume.name == name)
     }
@@ -537,7 +526,7 @@ impl Loaded {
     /// The volumes in the form that renderers take.
     pub fn named_volumes(&self) -> Vec<NamedVolume<'_>> {
         let named = self.volumes.iter();
-        named.map(|loaded| NamedVolume { name: &loaded.name, volume: &loaded.volume, covers: loaded.covers }).collect()
+        named.map(LoadedVolume::named).collect()
     }
 
     /// The wells in the form that renderers take.

@@ -72,6 +72,11 @@ impl Painter {
         self.renderer.as_ref().map_or("processor", Renderer::adapter_name)
     }
 
+    /// Whether the processor draws, which needs no more of a volume than the samples that it takes.
+    pub fn is_processor(&self) -> bool {
+        self.renderer.is_none()
+    }
+
     /// Draws a scene, with raw data in the project's colours if the scene states none. If the adapter cannot draw a
     /// picture or is lost, the processor draws from then on, with a warning, unless the adapter was asked for.
     ///

@@ -25,10 +25,13 @@ use render::{CandidateVolume, FaceData, Scene};
 use std::collections::BTreeMap;
 use store::StoredCandidates;
 use survey::CandidateBox;
-use survey::Progress;
+use survey::{Progress, memory};
 
 /// The code of the largest distance.
 const STEPS: f32 = 254.0;
+
+/// Memory that distances and leaves take for each sample while they are read.
+const CANDIDATE_BYTES: usize = 8;
 
 /// What a scene shows of candidates and horizons.
 pub struct ShownCandidates {
@@ -120,6 +123,7 @@ impl ShownCandidates {
         let wanted = stored.filter(|_| asks_leaves || unpicked.len() < named.len());
         shown.voxels = match &wanted {
             Some(stored) => {
+                memory::check("horizon candidates at every sample", &size, CANDIDATE_BYTES)?;
                 shown.voxels_per_step = stored.info().max_distance / STEPS;
                 stored.read(0, progress)?
             }

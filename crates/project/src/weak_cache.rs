@@ -12,16 +12,20 @@ impl<K: PartialEq, V> WeakCache<K, V> {
         Self(Mutex::new(None))
     }
 
+    /// The value of `key` if someone holds it.
+    pub(crate) fn get(&self, key: &K) -> Option<Arc<V>> {
+        let last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        last.as_ref().filter(|(of, _)| of == key).and_then(|(_, known)| known.upgrade())
+    }
+
     /// The value of `key` if someone holds it, otherwise a new one. While it is being made nothing is locked: if two
     /// callers ask at once, both make it.
     pub(crate) fn get_or_make<E>(&self, key: K, make: impl FnOnce() -> Result<V, E>) -> Result<Arc<V>, E> {
-        let last = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = last().as_ref().filter(|(of, _)| *of == key).and_then(|(_, known)| known.upgrade());
-        if let Some(known) = known {
+        if let Some(known) = self.get(&key) {
             return Ok(known);
         }
         let made = Arc::new(make()?);
-        *last() = Some((key, Arc::downgrade(&made)));
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some((key, Arc::downgrade(&made)));
         Ok(made)
     }
 }

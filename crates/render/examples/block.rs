@@ -12,7 +12,7 @@ use compare::compare;
 use glam::DVec3;
 use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization};
-use render::{Corner, Ground, Inputs, Lookup, NamedVolume, Renderer, Scene, VoxelBox};
+use render::{Corner, Ground, Inputs, Lookup, NamedVolume, Renderer, Samples, Scene, VoxelBox};
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
@@ -68,7 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let volumes = [
         NamedVolume::whole("seismic", &synthetic.seismic),
-        NamedVolume { name: "impedance", volume: &synthetic.attribute.volume, covers },
+        NamedVolume { name: "impedance", volume: Samples::Whole(&synthetic.attribute.volume), covers },
     ];
     let inputs = Inputs {
         geometry,

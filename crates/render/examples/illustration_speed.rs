@@ -18,7 +18,7 @@ use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization};
 use render::media::{LayerOpacity, MediumColour};
 use render::reference::CpuRenderer;
-use render::{Inputs, Lookup, Media, Medium, NamedVolume, Renderer, Scene, VoxelBox};
+use render::{Inputs, Lookup, Media, Medium, NamedVolume, Renderer, Samples, Scene, VoxelBox};
 use std::error::Error;
 use std::time::Instant;
 use survey::{Progress, Volume};
@@ -149,8 +149,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (reflectance, attribute) = (bent(REFLECTANCE)?, bent(ATTRIBUTE)?);
     let share = |share: f64| whole.max.map(|m| share * m);
     let volumes = [
-        NamedVolume { name: "reflectance", volume: &reflectance, covers: whole },
-        NamedVolume { name: "attribute", volume: &attribute, covers: VoxelBox { min: share(0.25), max: share(0.9) } },
+        NamedVolume { name: "reflectance", volume: Samples::Whole(&reflectance), covers: whole },
+        NamedVolume {
+            name: "attribute",
+            volume: Samples::Whole(&attribute),
+            covers: VoxelBox { min: share(0.25), max: share(0.9) },
+        },
     ];
     let inputs = Inputs {
         geometry,

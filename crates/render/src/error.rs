@@ -200,6 +200,11 @@ impl RenderError {
         what: "horizons for surfaces of k'",
         remedy: "add horizons and parameterize the project, or name a volume",
     };
+    /// A medium of a volume of which only the samples on faces were read.
+    pub(crate) const ONLY_A_PART: Self = Self::Missing {
+        what: "all samples of a volume that is rendered",
+        remedy: "read the whole volume, or a coarser level of it",
+    };
     /// The scene shows horizon candidates that are not there.
     pub(crate) const NO_CANDIDATES: Self = Self::Missing {
         what: "horizon candidates",

@@ -388,8 +388,8 @@ fn block_and_fault(model: &StructuralModel, p: Vec3) -> (u16, usize, f32) {
 #[derive(Debug)]
 pub(crate) struct Heights {
     z_range: [f32; 2],
-    steepest: f32,
-    horizons: Vec<usize>,
+    pub(crate) steepest: f32,
+    pub(crate) horizons: Vec<usize>,
     cells: [usize; 2],
     tops: Vec<f32>,
     slopes: Vec<f32>,

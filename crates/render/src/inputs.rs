@@ -7,7 +7,7 @@ use glam::Vec3;
 use model::StructuralModel;
 use param::{PackedVolume, Parameterization};
 use survey::block::VoxelBox;
-use survey::{SurveyGeometry, Volume};
+use survey::{SparseVolume, SurveyGeometry, Volume};
 use ttf::TtfTables;
 
 /// The data of a picture. What is `None` is not drawn: without a model, for instance, faces show raw data
@@ -57,9 +57,57 @@ pub struct NamedVolume<'a> {
     /// Unique name by which scenes and transfer functions refer to it.
     pub name: &'a str,
     /// The samples.
-    pub volume: &'a Volume<f32>,
+    pub volume: Samples<'a>,
     /// Voxel positions of the first and the last sample along each axis.
     pub covers: VoxelBox,
+}
+
+/// The samples of a volume: all of them, or those that a picture of faces needs.
+#[derive(Debug, Clone, Copy)]
+pub enum Samples<'a> {
+    /// All.
+    Whole(&'a Volume<f32>),
+    /// Some. Faces, the ground and sections are drawn from them; volume rendering and the GPU need all.
+    Sparse(&'a SparseVolume),
+}
+
+impl<'a> Samples<'a> {
+    /// `[inlines, crosslines, samples]`.
+    pub fn size(self) -> [usize; 3] {
+        match self {
+            Self::Whole(volume) => volume.size(),
+            Self::Sparse(volume) => volume.size(),
+        }
+    }
+
+    /// Whether the trace at (x, y) was recorded.
+    pub fn is_live(self, x: usize, y: usize) -> bool {
+        match self {
+            Self::Whole(volume) => volume.is_live(x, y),
+            Self::Sparse(volume) => volume.is_live(x, y),
+        }
+    }
+
+    /// The sample at (x, y, z).
+    pub fn at(self, x: usize, y: usize, z: usize) -> f32 {
+        match self {
+            Self::Whole(volume) => volume.at(x, y, z),
+            Self::Sparse(volume) => volume.at(x, y, z),
+        }
+    }
+
+    /// The volume, if all of it is there.
+    pub fn whole(self) -> Option<&'a Volume<f32>> {
+        match self {
+            Self::Whole(volume) => Some(volume),
+            Self::Sparse(_) => None,
+        }
+    }
+
+    /// All samples in memory order; none of a sparse volume, of which no medium is made.
+    pub(crate) fn all(self) -> &'a [f32] {
+        self.whole().map_or(&[], Volume::samples)
+    }
 }
 
 /// The distance volume of the horizon candidates (P-horiz 4.4, 5.2): for every sample of the survey, the
@@ -219,7 +267,7 @@ impl<'a> NamedVolume<'a> {
 
     /// A volume on the lattice of the survey.
     pub fn whole(name: &'a str, volume: &'a Volume<f32>) -> Self {
-        Self { name, volume, covers: VoxelBox::of_size(volume.size()) }
+        Self { name, volume: Samples::Whole(volume), covers: VoxelBox::of_size(volume.size()) }
     }
 
     /// Scale and offset from voxel positions to the volume's own sample indices: `index = p · scale +
@@ -293,7 +341,7 @@ mod tests {
                 }
             }
         }
-        let named = NamedVolume { name: "a", volume: &volume, covers };
+        let named = NamedVolume { name: "a", volume: Samples::Whole(&volume), covers };
         for p in [Vec3::new(10.0, 20.0, 30.0), Vec3::new(13.3, 21.9, 33.37), Vec3::new(18.0, 24.0, 34.0)] {
             assert!((named.sample(p) - (2.0 * p.x - p.y + 3.0 * p.z)).abs() < 1e-3, "{p}");
         }

@@ -40,6 +40,7 @@ pub mod reference;
 mod resolved;
 pub mod scene;
 mod shade;
+pub mod touched;
 pub mod vector;
 pub mod visible;
 pub mod wells;
@@ -47,7 +48,7 @@ pub mod wells;
 pub use camera::{Camera, Projection, View};
 pub use error::{RenderError, SceneError};
 pub use faces::Renderer;
-pub use inputs::{CandidateVolume, Inputs, NamedVolume};
+pub use inputs::{CandidateVolume, Inputs, NamedVolume, Samples};
 pub use leaves::FaceData;
 pub use media::{
     Faces, Interleaved, Isosurface, IsosurfaceSource, Media, Medium, Occlusion, Phong, PickedHorizon, Scope, Shading,

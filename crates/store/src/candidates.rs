@@ -20,8 +20,10 @@
 
 mod bricks;
 mod parts;
+mod rows;
 
 pub use parts::CandidateParts;
+pub use rows::surface_batches;
 
 use super::array::{ArrayWriter, StoredArray, write_array, write_group};
 use super::error::StoreError;
@@ -393,10 +395,10 @@ impl StoredCandidates {
     /// [`StoreError`].
     pub fn read_forest(&self, progress: &Progress) -> Result<ForestTables, StoreError> {
         Ok(ForestTables {
-            trace: self.table("forest/trace", progress)?,
-            z: self.table::<f32, 1>("forest/z", progress)?.into_iter().map(|[z]| z).collect(),
-            triangles: self.table("forest/triangles", progress)?,
-            surfaces: self.table("forest/surfaces", progress)?,
+            trace: self.table("trace", progress)?,
+            z: self.table::<f32, 1>("z", progress)?.into_iter().map(|[z]| z).collect(),
+            triangles: self.table("triangles", progress)?,
+            surfaces: self.table("surfaces", progress)?,
             nodes: self.read_nodes(progress)?,
         })
     }
@@ -406,7 +408,7 @@ impl StoredCandidates {
     /// # Errors
     /// [`StoreError`].
     pub fn read_nodes(&self, progress: &Progress) -> Result<Vec<[u32; 6]>, StoreError> {
-        self.table("forest/nodes", progress)
+        self.table("nodes", progress)
     }
 
     /// Reads all of it, every level and every table, and verifies every checksum.
@@ -419,22 +421,6 @@ impl StoredCandidates {
             StoredArray::open(&self.path, &format!("forest/{table}"))?.verify(progress)?;
         }
         Ok(())
-    }
-
-    fn table<T: StoredSample, const N: usize>(
-        &self,
-        name: &str,
-        progress: &Progress,
-    ) -> Result<Vec<[T; N]>, StoreError> {
-        let array = StoredArray::open(&self.path, name)?;
-        if array.shape().first() == Some(&0) {
-            return Ok(Vec::new());
-        }
-        if array.shape().get(1).copied().unwrap_or(1) != N {
-            let reason = format!("it has {:?}, not {N} columns", array.shape());
-            return Err(StoreError::Damaged { path: self.path.clone(), array: name.to_owned(), reason });
-        }
-        Ok(array.read::<T>(progress)?.as_chunks::<N>().0.to_vec())
     }
 
     fn level(&self, level: usize) -> Result<&[StoredArray; 2], StoreError> {

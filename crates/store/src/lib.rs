@@ -68,7 +68,7 @@ mod volume_info;
 mod well;
 
 pub use array::{ArrayWriter, StoredArray, read_group, write_array, write_group};
-pub use candidates::{CandidateParts, CandidateWriter, StoredCandidates};
+pub use candidates::{CandidateParts, CandidateWriter, StoredCandidates, surface_batches};
 pub use error::StoreError;
 pub use fault::{read_fault, write_fault};
 pub use header::VERSION;

@@ -219,6 +219,14 @@ impl StoredVolume {
         &self.live
     }
 
+    /// The mask of live traces of a level; `None` where all are live.
+    pub fn live_at(&self, level: usize) -> Option<Vec<bool>> {
+        let ([nx, ny, _], full_y) = (self.size(level), self.info.geometry.crosslines.count);
+        let at = |n: usize| self.live[((n / ny) << level) * full_y + ((n % ny) << level)];
+        let mask: Vec<bool> = (0..nx * ny).map(at).collect();
+        mask.contains(&false).then_some(mask)
+    }
+
     /// Least and greatest sample of each 64³ brick of a level, and the counts of bricks: `[x][y][z]`.
     ///
     /// # Errors

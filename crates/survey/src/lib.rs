@@ -10,7 +10,7 @@
 //! - horizon candidates extracted from a volume: [`candidates`];
 //! - progress and cancellation of long computations: [`progress`];
 //! - what a user can state about a file: [`remedy`];
-//! - volumes that do not fit into memory: [`source`];
+//! - volumes that do not fit into memory: [`source`], [`sparse_volume`];
 //! - bytes of a file at a place: [`positional`].
 //! - what may be read and what fits into memory: [`mod@file`], [`memory`].
 //!
@@ -44,6 +44,7 @@ pub mod progress;
 pub mod remedy;
 pub mod sample;
 pub mod source;
+pub mod sparse_volume;
 pub mod stratigraphy;
 pub mod topology;
 pub mod volume;
@@ -58,6 +59,7 @@ pub use level_field::LevelField;
 pub use mesh::TriangleMesh;
 pub use progress::{Cancelled, Progress};
 pub use remedy::{Note, Remedy, Setting};
+pub use sparse_volume::SparseVolume;
 pub use stratigraphy::{Contact, StratigraphicHorizon, Stratigraphy};
 pub use volume::Volume;
 pub use well::Well;

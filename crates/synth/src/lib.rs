@@ -12,7 +12,9 @@
 //!
 //! The result depends on the settings alone: it is the same, byte for byte, on any number of threads.
 //!
-//! Deliberately absent: files. A survey is made in memory, in the types of [`survey`].
+//! [`SynthDesign`] makes a survey of any size a few inlines at a time, [`Synthetic`] one in memory.
+//!
+//! Deliberately absent: files.
 
 pub mod closed_form;
 mod column;
@@ -35,11 +37,13 @@ pub use events::{Reflector, ReflectorEvent};
 pub use faulting::{Tip, TruthFault};
 pub use fold::{FoldedBeds, Undulation, Wave};
 pub use overturned::{OutcropFault, OutcropTruth, Overturned};
-pub use seismic::AMPLITUDE;
+pub use seismic::{AMPLITUDE, SeismicLines};
 pub use truth::{Sequence, SynthTruth, TruthHorizon};
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 use survey::fault::Fault;
 use survey::geometry::{DEFAULT_VELOCITY_M_S, GeometryError, LineAxis, SurveyGeometry, VerticalUnit};
 use survey::horizon::Horizon;
@@ -95,8 +99,8 @@ impl SynthSettings {
     }
 }
 
-/// Memory that is needed for each voxel: the volume, its noise and the attribute.
-const BYTES_A_VOXEL: usize = 16;
+/// Memory that is needed for each voxel of a survey in memory: the volume and the attribute.
+const BYTES_A_VOXEL: usize = 5;
 
 /// Why a synthetic survey could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -141,8 +145,7 @@ pub struct Attribute {
     pub extent: DVec3,
 }
 
-/// A synthetic survey. Memory: 4 bytes per voxel of the seismic (8 while it is made) and 4 per voxel of the
-/// attribute.
+/// A synthetic survey in memory: 4 bytes per voxel of the seismic and 4 per voxel of the attribute.
 ///
 /// # Examples
 /// ```
@@ -183,6 +186,79 @@ impl Synthetic {
     /// # Errors
     /// [`SynthError`] when the size is too small, a setting makes no sense or the user cancelled.
     pub fn generate(settings: &SynthSettings, progress: &Progress) -> Result<Self, SynthError> {
+        let design = SynthDesign::new(settings)?;
+        survey::memory::check("the synthetic survey", &settings.size, BYTES_A_VOXEL)?;
+        let size = settings.size;
+        let mut seismic = Volume::filled(size, 0.0f32);
+        let mut lines = design.seismic(progress)?;
+        progress.begin("synthetic seismic", size[0] as u64);
+        for range in seismic::blocks(size[0], lines.together()) {
+            progress.step(range.len() as u64)?;
+            let line = size[1] * size[2];
+            let made = lines.lines(range.clone());
+            seismic.samples_mut()[range.start * line..range.end * line].copy_from_slice(&made);
+        }
+        drop(lines);
+        let inlines = design.attribute.geometry.size()[0];
+        progress.begin("acoustic impedance", inlines as u64);
+        let impedance = (0..inlines).map(|x| progress.step(1).map(|()| design.impedance(x..x + 1)));
+        let samples = impedance.collect::<Result<Vec<_>, Cancelled>>()?.concat();
+        let AttributePlace { geometry, origin, extent } = design.attribute.clone();
+        let volume = Volume::from_samples(geometry.size(), samples).unwrap_or_else(|_| unreachable!("all its lines"));
+        Ok(Self {
+            attribute: Attribute { volume, geometry, origin, extent },
+            stratigraphy: design.stratigraphy(),
+            horizons: design.horizons().collect(),
+            faults: design.faults(),
+            geometry: design.geometry,
+            seismic,
+            truth: design.truth,
+        })
+    }
+}
+
+/// Where the attribute volume lies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AttributePlace {
+    /// Its lattice in the world.
+    pub geometry: SurveyGeometry,
+    /// Seismic voxel of its first sample.
+    pub origin: DVec3,
+    /// Seismic voxels from its first to its last sample along each axis.
+    pub extent: DVec3,
+}
+
+/// A synthetic survey of any size: all that is known of it, and its samples a few inlines at a time.
+///
+/// ```
+/// use survey::progress::Progress;
+/// use synth::{SynthDesign, SynthSettings, Synthetic};
+///
+/// let settings = SynthSettings { size: [24, 24, 48], ..SynthSettings::default() };
+/// let design = SynthDesign::new(&settings)?;
+/// let lines = design.seismic(&Progress::silent())?.lines(7..9);
+/// let whole = Synthetic::generate(&settings, &Progress::silent())?;
+/// assert_eq!(lines[..], whole.seismic.samples()[7 * 24 * 48..9 * 24 * 48]);
+/// # Ok::<(), synth::SynthError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct SynthDesign {
+    /// The lattice of the seismic.
+    pub geometry: SurveyGeometry,
+    /// Where the acoustic impedance lies.
+    pub attribute: AttributePlace,
+    /// The closed form that everything is made from.
+    pub truth: SynthTruth,
+    snr: Option<f64>,
+    seed: u64,
+}
+
+impl SynthDesign {
+    /// Designs the survey.
+    ///
+    /// # Errors
+    /// [`SynthError`] when the size is too small or a setting makes no sense.
+    pub fn new(settings: &SynthSettings) -> Result<Self, SynthError> {
         let positive = [
             ("the distance between lines", settings.bin_m),
             ("the sample interval", settings.interval),
@@ -196,25 +272,42 @@ impl Synthetic {
         }
         let geometry = lattice(settings);
         geometry.validate()?;
-        survey::memory::check("the synthetic survey", &settings.size, BYTES_A_VOXEL)?;
         let truth = design::design(settings)?;
-        let mut seismic = seismic::signal(&truth, progress)?;
-        if let Some(snr) = settings.snr {
-            let wavelength = truth.wavelength_m / truth.step_m.z;
-            seismic::add_noise(&mut seismic, wavelength, snr, settings.seed, progress)?;
-        }
-        Ok(Self {
-            attribute: attribute(&truth, &geometry, progress)?,
-            stratigraphy: interpretation::stratigraphy(&truth),
-            horizons: (0..truth.horizons.len())
-                .map(|h| interpretation::horizon(&truth, &geometry, h))
-                .chain(interpretation::salt(&truth, &geometry))
-                .collect(),
-            faults: interpretation::faults(&truth, &geometry),
-            geometry,
-            seismic,
-            truth,
-        })
+        let attribute = attribute_place(&truth, &geometry);
+        Ok(Self { geometry, attribute, truth, snr: settings.snr, seed: settings.seed })
+    }
+
+    /// Seismic amplitudes; SEG normal polarity: more impedance below is a positive peak.
+    ///
+    /// # Errors
+    /// [`Cancelled`], while the level of the noise is measured.
+    pub fn seismic(&self, progress: &Progress) -> Result<SeismicLines<'_>, Cancelled> {
+        SeismicLines::new(&self.truth, self.snr, self.seed, progress)
+    }
+
+    /// Acoustic impedance, kg/(m²·s), of some inlines of its lattice.
+    pub fn impedance(&self, inlines: Range<usize>) -> Vec<f32> {
+        let [_, crosslines, samples] = self.attribute.geometry.size();
+        let voxel_at = |p: DVec3| self.attribute.origin + p * ATTRIBUTE_STEP;
+        let line = |x: usize| seismic::impedance(&self.truth, [crosslines, samples], ATTRIBUTE_STEP.z, voxel_at, x);
+        inlines.into_par_iter().map(line).collect::<Vec<_>>().concat()
+    }
+
+    /// Age order and contacts of the horizons.
+    pub fn stratigraphy(&self) -> Stratigraphy {
+        interpretation::stratigraphy(&self.truth)
+    }
+
+    /// Horizons, youngest first, each made when it is asked for.
+    pub fn horizons(&self) -> impl Iterator<Item = Horizon> + '_ {
+        let layered = 0..self.truth.horizons.len();
+        let layered = layered.map(|h| interpretation::horizon(&self.truth, &self.geometry, h));
+        layered.chain(interpretation::salt(&self.truth, &self.geometry))
+    }
+
+    /// The faults, up to their tips.
+    pub fn faults(&self) -> Vec<Fault> {
+        interpretation::faults(&self.truth, &self.geometry)
     }
 }
 
@@ -227,15 +320,17 @@ fn lattice(settings: &SynthSettings) -> SurveyGeometry {
     geometry
 }
 
-/// Impedance on every second line, at three quarters of the sample interval, over the middle of the survey.
-fn attribute(truth: &SynthTruth, survey: &SurveyGeometry, progress: &Progress) -> Result<Attribute, Cancelled> {
+/// Seismic voxels between neighbouring samples of the attribute.
+const ATTRIBUTE_STEP: DVec3 = DVec3::new(2.0, 2.0, 0.75);
+
+/// Every second line, three quarters of the sample interval, over the middle of the survey.
+fn attribute_place(truth: &SynthTruth, survey: &SurveyGeometry) -> AttributePlace {
     let origin = DVec3::from_array([0, 1, 2].map(|axis| ([0.2, 0.15, 0.1][axis] * truth.size[axis] as f64).floor()));
-    let step = DVec3::new(2.0, 2.0, 0.75);
+    let step = ATTRIBUTE_STEP;
     let size = [0, 1, 2].map(|axis| {
         let span = [0.65, 0.6, 0.7][axis] * truth.size[axis] as f64;
         (span / step[axis]).floor() as usize
     });
-    let volume = seismic::impedance(truth, size, step.z, |p| origin + p * step, progress)?;
     let extent = DVec3::from_array(size.map(|count| count as f64 - 1.0)) * step;
     let first = survey.world_from_voxel(origin);
     let lines = |axis: LineAxis, at: f64, every: f64, count: usize| LineAxis {
@@ -252,5 +347,5 @@ fn attribute(truth: &SynthTruth, survey: &SurveyGeometry, progress: &Progress) -
     geometry.vertical.first = first.z;
     geometry.vertical.interval *= step.z;
     geometry.vertical.count = size[2];
-    Ok(Attribute { volume, geometry, origin, extent })
+    AttributePlace { geometry, origin, extent }
 }

@@ -51,6 +51,11 @@ impl Slabs {
         Self { ranges: (0..count).map(|n| start(n)..start(n + 1) + COMMON).collect() }
     }
 
+    /// Bytes that solving a slab of the least width takes.
+    pub fn least_bytes([nx, ny, nz]: [usize; 3]) -> u64 {
+        (nx.min(LEAST) * ny * nz * BYTES) as u64
+    }
+
     /// The inlines of each slab.
     pub fn ranges(&self) -> &[Range<usize>] {
         &self.ranges

@@ -4,8 +4,8 @@ use crate::state::camera;
 use glam::{DVec2, DVec3, Vec3};
 use pictures::LeafFacts;
 use pictures::load::Loaded;
+use render::Scene;
 use render::visible::Ray;
-use render::{NamedVolume, Scene};
 
 /// Steps for each voxel of a ray in the search for the ground.
 const GROUND_STEP: f32 = 0.5;
@@ -60,7 +60,7 @@ pub fn on_block(loaded: &Loaded, scene: &Scene, size: DVec2, at: DVec2) -> Optio
 pub fn at_voxel(loaded: &Loaded, voxel: Vec3, axis: Option<usize>) -> Pointed {
     let layer = loaded.rock.as_ref().map(|rock| rock.model.region_at(voxel).layer);
     let raw = loaded.raw.as_ref().and_then(|raw| loaded.volumes.iter().find(|volume| volume.name == raw.volume));
-    let value = raw.map(|raw| NamedVolume { name: &raw.name, volume: &raw.volume, covers: raw.covers }.sample(voxel));
+    let value = raw.map(|raw| raw.named().sample(voxel));
     let leaf = loaded.candidates.as_ref().and_then(|candidates| candidates.leaf_at(voxel));
     Pointed { voxel: voxel.as_dvec3(), axis, layer, value: value.filter(|value| !value.is_nan()), leaf }
 }

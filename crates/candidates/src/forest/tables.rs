@@ -1,9 +1,10 @@
 //! Conversion of a forest to the tables of the store and back.
 
-use super::{Forest, Node, check};
+use super::{Forest, Node, check, check_corners, check_ranges};
 use crate::error::InterpError;
 use crate::surfaces::{Extremum, Surface, Surfaces, Vertex};
-use survey::candidates::ForestTables;
+use std::ops::Range;
+use survey::candidates::{ForestCounts, ForestTables};
 
 /// Stands for "none" in a table.
 const NONE: u32 = u32::MAX;
@@ -53,10 +54,7 @@ impl Forest {
         }
         let vertices = tables.trace.iter().zip(&tables.z).map(|(&[x, y], &z)| Vertex { x, y, z }).collect();
         let mut surfaces = Surfaces { size, vertices, triangles: tables.triangles, surfaces: Vec::new() };
-        for [kind, first_vertex, end_vertex, first, end] in tables.surfaces {
-            let Some(&extremum) = KINDS.get(kind as usize) else { return damaged("a surface is of no known kind") };
-            surfaces.surfaces.push(Surface { extremum, vertices: first_vertex..end_vertex, triangles: first..end });
-        }
+        surfaces.surfaces = tables.surfaces.into_iter().map(surface_of).collect::<Result<_, _>>()?;
         check(&surfaces)?;
         let mut forest = Self { surfaces, ..Self::default() };
         let triangles = forest.surfaces.triangles.len() as u32;
@@ -65,6 +63,48 @@ impl Forest {
             return damaged("there are not as many trees as surfaces");
         }
         Ok(forest)
+    }
+
+    /// Checks what [`Forest::from_tables`] does of tables that may be larger than memory: `read` is asked for triangles, some
+    /// at a time.
+    ///
+    /// # Errors
+    /// As [`Forest::from_tables`], and those of `read`.
+    pub fn check_tables<E: From<InterpError>>(
+        counts: ForestCounts,
+        surfaces: Vec<[u32; 5]>,
+        nodes: Vec<[u32; 6]>,
+        mut read: impl FnMut(Range<usize>) -> Result<Vec<[u32; 3]>, E>,
+    ) -> Result<(), E> {
+        /// Triangles that are read at a time, about.
+        const TOGETHER: usize = 1 << 20;
+        let damaged = |fact| E::from(InterpError::DamagedForest { fact });
+        let surfaces = surfaces.into_iter().map(surface_of).collect::<Result<Vec<_>, _>>()?;
+        check_ranges(&surfaces, counts.vertices, counts.triangles)?;
+        let mut forest = Self::default();
+        let triangles = u32::try_from(counts.triangles).map_err(|_| damaged("it has too many triangles"))?;
+        let reached = forest.read_nodes(nodes, surfaces.len(), triangles)?;
+        if forest.roots.len() != surfaces.len() || reached != triangles {
+            return Err(damaged("there are not as many trees as surfaces"));
+        }
+        drop(forest);
+        let (mut held, mut first) = (Vec::new(), 0);
+        for (surface, part) in surfaces.iter().enumerate() {
+            let mut own = part.triangles.start as usize..part.triangles.end as usize;
+            while !own.is_empty() {
+                if own.start >= first + held.len() {
+                    first = own.start;
+                    held = read(first..(first + TOGETHER).min(counts.triangles))?;
+                }
+                let here = own.start..own.end.min(first + held.len());
+                if here.is_empty() {
+                    return Err(damaged("there are fewer triangles than it states"));
+                }
+                check_corners(surface, part, &held[here.start - first..here.end - first])?;
+                own.start = here.end;
+            }
+        }
+        Ok(())
     }
 
     /// The trees that rows of nodes describe, without vertices and triangles: enough to climb, and to tell
@@ -115,4 +155,11 @@ impl Forest {
         }
         Ok(reached)
     }
+}
+
+/// A surface out of its row.
+fn surface_of([kind, first_vertex, end_vertex, first, end]: [u32; 5]) -> Result<Surface, InterpError> {
+    let fact = "a surface is of no known kind";
+    let extremum = *KINDS.get(kind as usize).ok_or(InterpError::DamagedForest { fact })?;
+    Ok(Surface { extremum, vertices: first_vertex..end_vertex, triangles: first..end })
 }

@@ -16,11 +16,13 @@ use project::error::ProjectError;
 use segy::WriteOptions;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use std::borrow::Cow;
 use std::fmt;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use store::{StoreError, replace_file};
-use survey::{Contact, Horizon, Progress, file};
-use synth::{Overturned, SynthSettings, SynthTruth, Synthetic};
+use survey::{Contact, Fault, Horizon, Progress, file};
+use synth::{Overturned, SynthDesign, SynthSettings, SynthTruth};
 
 /// Files of a synthetic survey.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -74,15 +76,17 @@ impl fmt::Display for SynthSurvey {
     }
 }
 
-/// Makes a survey and writes it to the folder `out`.
+/// Makes a survey and writes it to the folder `out`, whatever its size: samples are made a few inlines at a time.
 ///
 /// # Errors
 /// The size is too small for the survey's folds and faults, a file could not be written, or the user cancelled.
 pub fn write(out: &Path, settings: &SynthSettings, progress: &Progress) -> Result<SynthSurvey, ProjectError> {
-    let made = Synthetic::generate(settings, progress)?;
-    let files = write_files(&made, out, progress)?;
-    let horizons = made.stratigraphy.horizons.iter().zip(files.horizons);
-    let faults = made.faults.iter().zip(files.faults);
+    let design = SynthDesign::new(settings)?;
+    let made_faults = design.faults();
+    let files = write_files(&design, &made_faults, out, progress)?;
+    let stratigraphy = design.stratigraphy();
+    let horizons = stratigraphy.horizons.iter().zip(files.horizons);
+    let faults = made_faults.iter().zip(files.faults);
     Ok(SynthSurvey {
         survey: files.survey,
         attribute: files.attribute,
@@ -96,7 +100,7 @@ pub fn write(out: &Path, settings: &SynthSettings, progress: &Progress) -> Resul
                 file,
             })
             .collect(),
-        layer_names: made.stratigraphy.layer_names.clone(),
+        layer_names: stratigraphy.layer_names,
         truth: files.truth,
     })
 }
@@ -108,19 +112,27 @@ pub struct SynthFiles {
     pub survey: PathBuf,
     /// The acoustic impedance, SEG-Y.
     pub attribute: PathBuf,
-    /// A CSV file for each horizon, in the order of [`Synthetic::horizons`].
+    /// A CSV file for each horizon, in the order of [`SynthDesign::horizons`].
     pub horizons: Vec<PathBuf>,
-    /// A TSurf file for each fault, in the order of [`Synthetic::faults`].
+    /// A TSurf file for each fault, in the order of the faults.
     pub faults: Vec<PathBuf>,
     /// The closed form, JSON.
     pub truth: PathBuf,
 }
 
+/// Lines of the attribute that are made at a time.
+const ATTRIBUTE_LINES: usize = 16;
+
 /// Writes a survey and its interpretation into the folder `out`, which is created if necessary.
 ///
 /// # Errors
 /// A file cannot be written or the user cancelled; files written before that stay.
-pub fn write_files(made: &Synthetic, out: &Path, progress: &Progress) -> Result<SynthFiles, ProjectError> {
+pub fn write_files(
+    design: &SynthDesign,
+    made_faults: &[Fault],
+    out: &Path,
+    progress: &Progress,
+) -> Result<SynthFiles, ProjectError> {
     let folder = |name: &str| {
         let path = out.join(name);
         file::create_folders(&path).map_err(|source| StoreError::io("written", &path, source)).map(|()| path)
@@ -128,43 +140,49 @@ pub fn write_files(made: &Synthetic, out: &Path, progress: &Progress) -> Result<
     let (horizons, faults) = (folder("horizons")?, folder("faults")?);
     let options = WriteOptions::default();
     let survey = out.join("survey.sgy");
-    segy::write(&survey, &made.geometry, &made.seismic, &options, progress)?;
+    let mut seismic = design.seismic(progress)?;
+    let together = seismic.together();
+    let mut source = |lines: Range<usize>| Ok(Cow::Owned(seismic.lines(lines)));
+    segy::write_lines(&survey, &design.geometry, None, &options, together, &mut source, progress)?;
+    drop(seismic);
     let attribute = out.join("attribute.sgy");
-    segy::write(&attribute, &made.attribute.geometry, &made.attribute.volume, &options, progress)?;
+    let lattice = &design.attribute.geometry;
+    let mut source = |lines: Range<usize>| Ok(Cow::Owned(design.impedance(lines)));
+    segy::write_lines(&attribute, lattice, None, &options, ATTRIBUTE_LINES, &mut source, progress)?;
 
     let mut files =
         SynthFiles { survey, attribute, horizons: Vec::new(), faults: Vec::new(), truth: out.join("truth.json") };
-    for horizon in &made.horizons {
+    for horizon in design.horizons() {
         progress.check()?;
         let stem = &horizon.name;
         if horizon.surface.is_some() {
             let tsurf = horizons.join(format!("{stem}.ts"));
-            formats::write_horizon(&tsurf, horizon, &made.geometry, Format::Tsurf)?;
+            formats::write_horizon(&tsurf, &horizon, &design.geometry, Format::Tsurf)?;
             files.horizons.push(tsurf);
             continue;
         }
         let csv = horizons.join(format!("{stem}.csv"));
-        formats::write_horizon(&csv, horizon, &made.geometry, Format::Csv)?;
+        formats::write_horizon(&csv, &horizon, &design.geometry, Format::Csv)?;
         for (n, sheet) in horizon.sheets.iter().enumerate() {
             let alone = Horizon::new(horizon.name.clone(), vec![sheet.clone()]);
             let irap = horizons.join(format!("{stem}-{n}.irap"));
-            formats::write_horizon(&irap, &alone, &made.geometry, Format::Irap)?;
+            formats::write_horizon(&irap, &alone, &design.geometry, Format::Irap)?;
         }
         files.horizons.push(csv);
     }
-    for fault in &made.faults {
+    for fault in made_faults {
         progress.check()?;
         let stem = &fault.name;
         let tsurf = faults.join(format!("{stem}.ts"));
-        formats::write_fault(&tsurf, fault, &made.geometry, Format::Tsurf)?;
-        formats::write_fault(&faults.join(format!("{stem}.dat")), fault, &made.geometry, Format::OpendTect)?;
+        formats::write_fault(&tsurf, fault, &design.geometry, Format::Tsurf)?;
+        formats::write_fault(&faults.join(format!("{stem}.dat")), fault, &design.geometry, Format::OpendTect)?;
         files.faults.push(tsurf);
     }
     let truth = json!({
-        "geometry": made.geometry,
-        "stratigraphy": made.stratigraphy,
-        "attribute": { "origin": made.attribute.origin, "extent": made.attribute.extent },
-        "truth": made.truth,
+        "geometry": design.geometry,
+        "stratigraphy": design.stratigraphy(),
+        "attribute": { "origin": design.attribute.origin, "extent": design.attribute.extent },
+        "truth": design.truth,
     });
     replace_file(&files.truth, format!("{truth:#}\n").as_bytes())?;
     Ok(files)
@@ -252,13 +270,15 @@ pub fn read_truth(path: &Path) -> Result<SynthTruth, ProjectError> {
 mod tests {
     use super::*;
     use glam::DVec3;
+    use synth::Synthetic;
 
     #[test]
     fn the_written_survey_reads_back_as_it_was_made() {
         let dir = tempfile::tempdir().unwrap();
         let settings = SynthSettings { size: [72, 64, 96], seed: 1, ..SynthSettings::default() };
         let survey = Synthetic::generate(&settings, &Progress::silent()).unwrap();
-        let files = write_files(&survey, &dir.path().join("new"), &Progress::silent()).unwrap();
+        let design = SynthDesign::new(&settings).unwrap();
+        let files = write_files(&design, &survey.faults, &dir.path().join("new"), &Progress::silent()).unwrap();
         for (path, geometry, volume) in [
             (&files.survey, &survey.geometry, &survey.seismic),
             (&files.attribute, &survey.attribute.geometry, &survey.attribute.volume),

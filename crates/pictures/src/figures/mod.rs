@@ -19,10 +19,11 @@ pub use output::{FigureFormat, title, write};
 
 use crate::load::{self, Loaded, Rock, Stage};
 use crate::{Device, Painter};
-use figure::cut::SectionSource;
+use figure::cut::{SectionKind, SectionSource};
 use figure::draw::NamedColour;
 use figure::draw::block::BlockPainter;
 use figure::{Annotation, FencePart, Figure, FigureInputs, Part, SectionPart};
+use glam::{Vec2, Vec3};
 use image::RgbaImage;
 use interpreter::InterpreterPicks;
 use model::StructuralModel;
@@ -32,12 +33,13 @@ use project::content;
 use project::document::{Document, WellEntry};
 use project::error::ProjectError;
 use project::styles;
+use render::touched::Places;
 use render::vector::{VectorBlock, vectors};
 use render::{FaceData, Faces, Media, RenderError, Scene};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
-use survey::{Progress, Well, memory};
+use survey::{Progress, SurveyGeometry, Well, memory};
 use ttf::{LayerStyle, LayerTtf, Preset, TextureLibrary};
 
 /// The page of a figure, and how it was made.
@@ -100,7 +102,33 @@ fn lettered(
     let document = project.document();
     let figure = &settled(figure, document);
     memory::check("the page", &figure.size_px().map(|side| side.min(LONGEST_SIDE) as usize), PIXEL_BYTES)?;
-    let FigureData { loaded, model, stages } = FigureData::load(project, figure, settings, progress)?;
+    let (page, is_whole) = page_of(project, figure, view, settings, Extent::Sections, progress)?;
+    if is_whole {
+        return Ok(page);
+    }
+    Ok(page_of(project, figure, view, settings, Extent::Whole, progress)?.0)
+}
+
+/// What of volumes is read for a figure of sections alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Extent {
+    /// All of them.
+    Whole,
+    /// Of large ones the samples on the sections.
+    Sections,
+}
+
+/// The page, and whether no sample was asked for that was not read.
+fn page_of(
+    project: &Project,
+    figure: &Figure,
+    view: &InterpreterView,
+    settings: &FigureSettings,
+    extent: Extent,
+    progress: &Progress,
+) -> Result<(MadeFigure, bool), ProjectError> {
+    let document = project.document();
+    let FigureData { loaded, model, stages } = FigureData::load(project, figure, settings, extent, progress)?;
     let picks = if figure.interpretation { Some(InterpreterPicks::read(project, view, progress)?) } else { None };
     let shown = picks.as_ref().map(|picks| {
         let mut shown = picks.borrowed();
@@ -142,7 +170,8 @@ fn lettered(
     let stages = painter.stages;
     let scene = Scene { preset, ..needs(figure) };
     let confusions = confusions(project.root(), document, loaded.rock.as_deref(), &scene)?;
-    Ok(MadeFigure { page, device, stages, confusions, rock: loaded.rock.clone() })
+    let made = MadeFigure { page, device, stages, confusions, rock: loaded.rock.clone() };
+    Ok((made, !loaded.has_missed()))
 }
 
 /// The figure with what its sections show: measured data where there are some, and the rock otherwise.
@@ -256,6 +285,7 @@ impl FigureData {
         project: &Project,
         figure: &Figure,
         settings: &FigureSettings,
+        extent: Extent,
         progress: &Progress,
     ) -> Result<Self, ProjectError> {
         let scene = Scene { preset: figure.printed_in(), ..needs(figure) };
@@ -267,7 +297,9 @@ impl FigureData {
             let stages = made.map(|rock| rock.stages.clone()).unwrap_or_default();
             return Ok(Self { loaded, model: None, stages });
         }
-        let loaded = load::load_bare(project, &scene, settings.volume_bytes, progress)?;
+        let places = section_places(figure, project.document().frame()?);
+        let places = Some(&places).filter(|_| extent == Extent::Sections && !has_block);
+        let loaded = load::load_sections(project, &scene, places, settings.volume_bytes, progress)?;
         let (model, stages) = match known {
             _ if figure.interpretation => (None, Vec::new()),
             Some(rock) => (Some(ModelAlone::Known(rock.clone())), Vec::new()),
@@ -276,6 +308,39 @@ impl FigureData {
         };
         Ok(Self { loaded, model, stages })
     }
+}
+
+/// The planes of the sections of a figure, on which alone it takes samples.
+pub(crate) fn section_places(figure: &Figure, geometry: &SurveyGeometry) -> Places<'static> {
+    let mut places = Places::default();
+    let last = geometry.size().map(|count| count.saturating_sub(1) as f32);
+    let whole = [Vec3::ZERO, Vec3::from_array(last)];
+    for part in &figure.parts {
+        match part {
+            Part::Section(section) => {
+                let at = match section.kind {
+                    SectionKind::Inline => geometry.inlines.index_of(section.at),
+                    SectionKind::Crossline => geometry.crosslines.index_of(section.at),
+                    SectionKind::Slice => geometry.vertical.index_of(section.at),
+                };
+                // It may be moved to the nearest sample.
+                for at in [at.floor() as f32, at as f32, at.ceil() as f32] {
+                    places.add_plane(Vec3::AXES[section.kind.axis()], at, whole);
+                }
+            }
+            Part::Fence(fence) => {
+                let corners: Vec<Vec2> =
+                    fence.corners.iter().map(|[x, y]| geometry.voxel_from_lines(*x, *y).as_vec2()).collect();
+                for leg in corners.windows(2) {
+                    let normal = (leg[1] - leg[0]).perp().normalize_or_zero();
+                    let (low, high) = (leg[0].min(leg[1]) - 1.0, leg[0].max(leg[1]) + 1.0);
+                    places.add_plane(normal.extend(0.0), normal.dot(leg[0]), [low.extend(0.0), high.extend(last[2])]);
+                }
+            }
+            Part::Block(_) | Part::Map(_) | Part::Correlation(_) => {}
+        }
+    }
+    places
 }
 
 /// A scene that needs everything that the parts of a figure need.

@@ -63,7 +63,7 @@ impl<'a> Computed<'a> {
                 let stored = StoredCandidates::open(path)?;
                 stored.verify(progress)?;
                 // The trees must hang together, too.
-                extraction::forest(&stored, &progress.muted())?;
+                extraction::check_forest(&stored, &progress.muted())?;
                 match key.filter(|key| *key != stored.info().key) {
                     None => Ok(()),
                     Some(_) => Err(malformed(format!("it holds the extraction {}", stored.info().key))),

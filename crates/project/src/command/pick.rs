@@ -181,7 +181,7 @@ fn climbed(
 impl PickNode {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let mut log = assembly::log_or_new(draft, &self.horizon)?;
-        let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
+        let candidates = Candidates::for_picks(draft.root(), &draft.document, &[self.at], progress)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let id = next_id(draft);
         let geometry = draft.document.frame()?.clone();
@@ -260,7 +260,8 @@ impl PickNodes {
             return Err(ProjectError::SeveralHorizons { horizons: [first.horizon.clone(), other.horizon.clone()] });
         }
         let mut log = assembly::log_or_new(draft, &first.horizon)?;
-        let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
+        let places: Vec<[f64; 3]> = self.picks.iter().map(|pick| pick.at).collect();
+        let candidates = Candidates::for_picks(draft.root(), &draft.document, &places, progress)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let id = next_id(draft);
         for (n, pick) in self.picks.iter().enumerate() {
@@ -337,7 +338,7 @@ impl MovePick {
         let (name, mut log) = find(draft, self.id)?;
         let place = log.picks.iter().position(|pick| pick.id == self.id);
         let place = place.ok_or(ProjectError::NotClimbable { pick: self.id })?;
-        let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
+        let candidates = Candidates::for_picks(draft.root(), &draft.document, &[], progress)?;
         // Refuses a log of another extraction.
         assembly::selection(&name, &log, &candidates)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
@@ -386,7 +387,9 @@ impl ReplayPicks {
             .filter_map(|entry| Some((entry.name.clone(), entry.assembly.clone()?)))
             .collect();
         let has_picks = logs.iter().any(|(_, log)| !log.picks.is_empty());
-        let candidates = has_picks.then(|| Candidates::load(draft.root(), &draft.document, progress)).transpose()?;
+        let places: Vec<[f64; 3]> = logs.iter().flat_map(|(_, log)| &log.picks).map(|pick| pick.at).collect();
+        let candidates =
+            has_picks.then(|| Candidates::for_picks(draft.root(), &draft.document, &places, progress)).transpose()?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let mut done = Replayed { picks: Vec::new(), horizons: Vec::new(), left: Vec::new() };
         for (name, mut log) in logs {

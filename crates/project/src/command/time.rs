@@ -7,7 +7,7 @@ use crate::document::{Polarity, Source};
 use crate::folder::Draft;
 use crate::interpretation::times::QUANTITY;
 use crate::memory_budget;
-use ::time::{Jump, TimeSettings};
+use ::time::{Jump, Slabs, TimeSettings};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use survey::Progress;
@@ -21,7 +21,7 @@ pub struct ComputeTime {
     /// The settings.
     #[serde(default)]
     pub settings: TimeSettings,
-    /// Memory to use beside the candidates, bytes; `None`: half of what is available. A survey that needs more is solved in
+    /// Memory to use beside the candidates of a slab, bytes; `None`: half of what is available. A survey that needs more is solved in
     /// slabs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub memory_bytes: Option<u64>,
@@ -88,6 +88,13 @@ impl ComputeTime {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         draft.document.check_new_name(Noun::Volume, &self.name)?;
         let memory = self.memory_bytes.unwrap_or_else(memory_budget::half_of_available);
+        let least = Slabs::least_bytes(draft.document.frame()?.size());
+        if self.memory_bytes.is_some_and(|stated| stated < least) {
+            progress.warn(format!(
+                "geologic time takes some {} MB: the narrowest slab that can be solved is more than the memory that was stated",
+                least >> 20
+            ));
+        }
         let slabs = TimeSlabs::open(draft.root(), &draft.document, &self.settings, memory, progress)?;
         let (file, path) = draft.generation("volumes", &self.name, "zarr")?;
         let (info, from) = (slabs.info(), &slabs.from);

@@ -5,14 +5,16 @@ use crate::content;
 use crate::document::{Document, VolumeEntry};
 use crate::interpretation::assembly;
 use crate::interpretation::candidates::{Candidates, amplitudes};
+use crate::interpretation::extraction;
 use crate::interpretation::times::{Obeyed, QUANTITY};
 use ::time::{JoinedSlabs, Slabs, TimeSettings, find_faults, geologic_time, surfaces_within};
+use interp::{Extremum, InterpError, Surface, Surfaces, Vertex};
 use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
-use store::{StoredVolume, VolumeInfo};
+use store::{StoredCandidates, StoredVolume, VolumeInfo};
 use survey::sample::{SampleType, SamplesMut};
 use survey::source::{Block, BlockSource, SourceError};
 use survey::{Progress, Volume};
@@ -23,13 +25,83 @@ pub struct TimeSlabs {
     pub from: VolumeEntry,
     pub(super) obeyed: Obeyed,
     volume: StoredVolume,
-    candidates: Arc<Candidates>,
+    candidates: SlabCandidates,
     settings: TimeSettings,
     slabs: Slabs,
 }
 
+/// Where the surfaces of a slab come from.
+enum SlabCandidates {
+    /// All of them are in memory, for a single slab.
+    All(Arc<Candidates>),
+    /// Those of a slab are read.
+    Stored(StoredCandidates),
+}
+
+/// The parts of stored surfaces within a range of inlines, counted from its start, as [`surfaces_within`] makes them of all
+/// surfaces: read some at a time.
+fn read_surfaces_within(
+    stored: &StoredCandidates,
+    inlines: &Range<usize>,
+    progress: &Progress,
+) -> Result<Surfaces, ProjectError> {
+    let [_, ny, nz] = stored.info().size;
+    let rows = stored.read_surfaces(&progress.muted())?;
+    let batches = store::surface_batches(&rows);
+    let mut found = Surfaces { size: [inlines.len(), ny, nz], ..Surfaces::default() };
+    progress.begin("reading surfaces", batches.len() as u64);
+    for batch in batches {
+        let part = surfaces_within(&surfaces_of(stored, &rows[batch.clone()], batch.start)?, inlines);
+        let [vertices, triangles] = [found.vertices.len(), found.triangles.len()].map(|count| count as u32);
+        found.vertices.extend(part.vertices);
+        found.triangles.extend(part.triangles.into_iter().map(|corners| corners.map(|v| v + vertices)));
+        let moved = |range: Range<u32>, by: u32| range.start + by..range.end + by;
+        found.surfaces.extend(part.surfaces.into_iter().map(|surface| Surface {
+            extremum: surface.extremum,
+            vertices: moved(surface.vertices, vertices),
+            triangles: moved(surface.triangles, triangles),
+        }));
+        progress.step(1)?;
+    }
+    Ok(found)
+}
+
+/// Stored surfaces that follow one another, numbered from 0.
+fn surfaces_of(stored: &StoredCandidates, rows: &[[u32; 5]], index: usize) -> Result<Surfaces, ProjectError> {
+    let bad = |n: usize, fact| InterpError::MalformedSurfaces { surface: index + n, fact };
+    let mut made = Surfaces { size: stored.info().size, ..Surfaces::default() };
+    let (Some([_, first_vertex, _, first, _]), Some([_, _, end_vertex, _, end])) = (rows.first(), rows.last()) else {
+        return Ok(made);
+    };
+    let vertices = *first_vertex as usize..*end_vertex as usize;
+    let places = stored.read_traces(vertices.clone())?.into_iter().zip(stored.read_depths(vertices)?);
+    made.vertices = places.map(|([x, y], z)| Vertex { x, y, z }).collect();
+    made.triangles = stored.read_triangles(*first as usize..*end as usize)?;
+    made.triangles.as_flattened_mut().iter_mut().for_each(|corner| *corner = corner.wrapping_sub(*first_vertex));
+    let (mut vertex, mut triangle) = (*first_vertex, *first);
+    for (n, &[kind, from, to, start, stop]) in rows.iter().enumerate() {
+        let follows = from == vertex && start == triangle && to >= from && stop >= start;
+        let extremum = [Extremum::Peak, Extremum::Trough, Extremum::Zero].get(kind as usize).filter(|_| follows);
+        let extremum = *extremum.ok_or_else(|| bad(n, "it does not follow the one before"))?;
+        (vertex, triangle) = (to, stop);
+        let surface = Surface {
+            extremum,
+            vertices: from - first_vertex..to - first_vertex,
+            triangles: start - first..stop - first,
+        };
+        let own = made.triangles.get(surface.triangles.start as usize..surface.triangles.end as usize);
+        let own = own.ok_or_else(|| bad(n, "it ends after the arrays do"))?.as_flattened();
+        if own.iter().any(|corner| !surface.vertices.contains(corner)) {
+            return Err(bad(n, "a triangle has a corner that is not its own").into());
+        }
+        made.surfaces.push(surface);
+    }
+    Ok(made)
+}
+
 impl TimeSlabs {
-    /// Reads the present extraction and the interpretation; as few slabs as fit into so many bytes beside the candidates.
+    /// Reads the present extraction and the interpretation; as few slabs as fit into so many bytes beside the candidates of
+    /// one of them.
     ///
     /// # Errors
     /// There are no candidates, data are damaged, or the user cancelled.
@@ -40,13 +112,17 @@ impl TimeSlabs {
         memory_bytes: u64,
         progress: &Progress,
     ) -> Result<Self, ProjectError> {
-        let candidates = Candidates::load(root, document, progress)?;
+        let slabs = Slabs::within(document.frame()?.size(), memory_bytes);
+        let candidates = if slabs.ranges().len() == 1 {
+            SlabCandidates::All(Candidates::load(root, document, progress)?)
+        } else {
+            SlabCandidates::Stored(extraction::open(root, document)?)
+        };
         let from = amplitudes(document)?.clone();
         let geometry = document.frame()?;
         let network = assembly::blocks(root, document, progress)?;
         let obeyed = Obeyed::load(root, document, &network, progress)?;
         let volume = content::open_recorded(root, &from, geometry)?;
-        let slabs = Slabs::within(geometry.size(), memory_bytes);
         Ok(Self { from, obeyed, volume, candidates, settings: settings.clone(), slabs })
     }
 
@@ -72,8 +148,11 @@ impl TimeSlabs {
     pub fn solve(&self, slab: usize, progress: &Progress) -> Result<(Volume<f32>, usize), ProjectError> {
         let (range, [nx, ny, nz]) = (&self.ranges()[slab], self.volume.size(0));
         let part = self.volume.read_box_f32(0, [range.start, 0, 0], [range.len(), ny, nz])?;
-        let all = &self.candidates.forest.surfaces;
-        let surfaces = if *range == (0..nx) { Cow::Borrowed(all) } else { Cow::Owned(surfaces_within(all, range)) };
+        let surfaces = match &self.candidates {
+            SlabCandidates::All(all) if *range == (0..nx) => Cow::Borrowed(&all.forest.surfaces),
+            SlabCandidates::All(all) => Cow::Owned(surfaces_within(&all.forest.surfaces, range)),
+            SlabCandidates::Stored(stored) => Cow::Owned(read_surfaces_within(stored, range, progress)?),
+        };
         let mut told = self.obeyed.interpretation.within(range);
         let mut found = 0;
         if told.cuts.is_empty() && self.obeyed.interpretation.cuts.is_empty() {
@@ -157,5 +236,43 @@ pub(super) fn explain(error: store::StoreError) -> ProjectError {
     match source.downcast::<ProjectError>() {
         Ok(own) => *own,
         Err(source) => store::StoreError::Source { path, source }.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Project;
+    use crate::command::{Command, Extract, ImportVolume};
+    use crate::document::Polarity;
+    use interp::ExtractSettings;
+    use segy::{SegyOptions, WriteOptions};
+    use survey::{SurveyGeometry, VerticalUnit};
+
+    #[test]
+    fn surfaces_that_are_read_for_a_slab_are_those_cut_out_of_all() {
+        let folder = tempfile::tempdir().unwrap();
+        let quiet = Progress::silent();
+        let size = [40, 20, 32];
+        let geometry = SurveyGeometry::regular(size, 25.0, 4.0, VerticalUnit::Milliseconds);
+        let wave = |n: usize| ((n % 32) as f32 * 0.7 + (n / 32 / 20) as f32 * 0.3).sin();
+        let volume = Volume::from_samples(size, (0..size.iter().product()).map(wave).collect()).unwrap();
+        let path = folder.path().join("north.sgy");
+        segy::write(&path, &geometry, &volume, &WriteOptions::default(), &quiet).unwrap();
+        let mut new = Project::create(&folder.path().join("north.petro"), None).unwrap();
+        let (polarity, options) = (Polarity::default(), SegyOptions::default());
+        let import = ImportVolume { path, name: None, polarity, options, memory_bytes: None, moved: false };
+        new.project().apply(&Command::Import(import), &quiet).unwrap();
+        let settings = ExtractSettings::default();
+        let extract = Extract { volume: None, settings, memory_bytes: None, just_stored: false };
+        new.project().apply(&Command::Extract(extract), &quiet).unwrap();
+        let project = new.publish().unwrap();
+        let stored = extraction::open(project.root(), project.document()).unwrap();
+        let all = Candidates::load(project.root(), project.document(), &quiet).unwrap();
+        assert!(all.forest.surfaces.surfaces.len() > 4);
+        for range in [0..40, 0..17, 9..33, 38..40] {
+            let read = read_surfaces_within(&stored, &range, &quiet).unwrap();
+            assert_eq!(read, surfaces_within(&all.forest.surfaces, &range), "{range:?}");
+        }
     }
 }

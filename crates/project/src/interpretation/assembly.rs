@@ -283,7 +283,7 @@ pub(crate) fn needed(
     if log.picks.is_empty() {
         return Ok(None);
     }
-    Candidates::load(draft.root(), &draft.document, progress).map(Some)
+    Candidates::for_picks(draft.root(), &draft.document, &[], progress).map(Some)
 }
 
 /// Makes the sheets of horizon `name` from `log` and puts both into the draft, with the horizon at its place by depth. A
@@ -508,7 +508,7 @@ pub(crate) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), 
     if logs.is_empty() {
         return Ok(());
     }
-    let candidates = Candidates::load(draft.root(), &draft.document, progress).ok();
+    let candidates = Candidates::for_picks(draft.root(), &draft.document, &[], progress).ok();
     if candidates.is_none() && logs.iter().any(|(_, log)| !log.picks.is_empty()) {
         progress.warn("the assembled horizons are as they were: there is no extraction to assemble them from");
     }

@@ -1,19 +1,24 @@
 //! The present extraction as picks need it: its trees and its key.
 //!
 //! A caller that makes several picks holds the result of [`Candidates::load`]. While it lives, callers that ask for the
-//! same extraction get it without reading anything but its report.
+//! same extraction get it without reading anything but its report. A single command takes [`Candidates::for_picks`]: of a
+//! large extraction, the surfaces that were picked or lie near a place are read alone. The others are empty there.
 
 use super::extraction;
 use crate::document::{Document, VolumeEntry};
 use crate::error::ProjectError;
 use crate::weak_cache::WeakCache;
-use glam::DVec2;
+use glam::{DVec2, Vec3};
 use interp::Forest;
 use interp::assembly::{AssemblyError, ClosestLeaf, leaf_at};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use store::StoredCandidates;
 use survey::{Progress, SurveyGeometry};
+
+/// Candidates that take at most so many bytes are read whole by every command.
+const FEW_BYTES: u64 = 512 << 20;
 
 /// Key of the weak cache: path and key of the extraction.
 static HELD: WeakCache<(PathBuf, String), Candidates> = WeakCache::nothing();
@@ -44,14 +49,57 @@ impl Candidates {
         })
     }
 
+    /// The candidates that commands on picks need: all of them if someone holds them or they are few, otherwise the
+    /// surfaces that any horizon was picked from, and those near `places`.
+    ///
+    /// # Errors
+    /// As [`Candidates::load`].
+    pub fn for_picks(
+        root: &Path,
+        document: &Document,
+        places: &[[f64; 3]],
+        progress: &Progress,
+    ) -> Result<Arc<Self>, ProjectError> {
+        let path = extraction::candidates_path(root, document)?;
+        let stored = StoredCandidates::open(&path)?;
+        let held = HELD.get(&(path, stored.info().key.clone()));
+        match held {
+            Some(held) => Ok(held),
+            None if extraction::forest_bytes(&stored)? <= FEW_BYTES => Self::load(root, document, progress),
+            None => Ok(Arc::new(Self::part(&stored, document, places, progress)?)),
+        }
+    }
+
+    /// The surfaces that any horizon was picked from, and those near `places`.
+    fn part(
+        stored: &StoredCandidates,
+        document: &Document,
+        places: &[[f64; 3]],
+        progress: &Progress,
+    ) -> Result<Self, ProjectError> {
+        let (key, max_distance) = (stored.info().key.clone(), stored.info().max_distance);
+        let geometry = document.frame()?;
+        let logs = document.horizons.iter().filter_map(|entry| entry.assembly.as_ref());
+        let picks = logs.flat_map(|log| &log.picks).filter(|pick| pick.extraction == key);
+        let mut leaves: BTreeSet<u32> = picks.map(|pick| pick.leaf).collect();
+        for at in places {
+            leaves.extend(near_leaves(stored, voxel_of(geometry, *at))?);
+        }
+        let trees = Forest::of_nodes(stored.read_nodes(progress)?)?;
+        // A log may name a leaf that the extraction does not have.
+        let nodes = leaves.iter().filter_map(|&leaf| trees.leaves.get((leaf as usize).checked_sub(1)?));
+        let surfaces: BTreeSet<u32> = nodes.map(|&node| trees.nodes[node as usize].surface).collect();
+        drop(trees);
+        let tables = stored.read_forest_of(&surfaces, progress)?;
+        Ok(Self { forest: Forest::from_tables(tables, stored.info().size)?, key, max_distance })
+    }
+
     /// The leaf at a place given by line numbers and the vertical unit, within the largest distance of the extraction.
     ///
     /// # Errors
     /// The place lies outside the survey, or there is no candidate near it.
     pub fn leaf_near(&self, geometry: &SurveyGeometry, at: [f64; 3]) -> Result<ClosestLeaf, ProjectError> {
-        let place = geometry.voxel_from_lines(at[0], at[1]);
-        let voxel = place.extend(geometry.vertical.index_of(at[2])).as_vec3();
-        leaf_at(&self.forest, voxel, self.max_distance).map_err(|error| match error {
+        leaf_at(&self.forest, voxel_of(geometry, at), self.max_distance).map_err(|error| match error {
             AssemblyError::Outside { .. } => ProjectError::outside(at, geometry),
             AssemblyError::NothingNear { distance, nearest, max_distance, .. } => {
                 let lines = geometry.lines_from_voxel(DVec2::new(f64::from(nearest.x), f64::from(nearest.y)));
@@ -73,6 +121,29 @@ impl Candidates {
     }
 }
 
+/// The voxel position of a place given by line numbers and the vertical unit.
+fn voxel_of(geometry: &SurveyGeometry, at: [f64; 3]) -> Vec3 {
+    geometry.voxel_from_lines(at[0], at[1]).extend(geometry.vertical.index_of(at[2])).as_vec3()
+}
+
+/// The leaves that are the nearest of a sample around a place, within the largest distance of the extraction; where none
+/// is, those of coarser and coarser levels.
+fn near_leaves(stored: &StoredCandidates, voxel: Vec3) -> Result<BTreeSet<u32>, ProjectError> {
+    let around = stored.info().max_distance.ceil() as usize + 2;
+    for level in 0..stored.level_count() {
+        let size = stored.size(level);
+        let at = [0, 1, 2].map(|axis| (voxel[axis].max(0.0) as usize >> level).min(size[axis] - 1));
+        let start = at.map(|at| at.saturating_sub(around));
+        let part = [0, 1, 2].map(|axis| (at[axis] + around + 1).min(size[axis]) - start[axis]);
+        let mut leaves: BTreeSet<u32> = stored.read_box(level, start, part)?.leaf.into_iter().collect();
+        leaves.remove(&0);
+        if !leaves.is_empty() {
+            return Ok(leaves);
+        }
+    }
+    Ok(BTreeSet::new())
+}
+
 /// The volume that the present extraction is of; the first on the project's lattice where that is not recorded.
 pub(crate) fn amplitudes(document: &Document) -> Result<&VolumeEntry, ProjectError> {
     let extracted = document.extraction.as_ref().map(|entry| entry.volume.as_str());
@@ -87,6 +158,7 @@ mod tests {
     use crate::command::{Command, Extract, ImportVolume};
     use crate::document::Polarity;
     use interp::ExtractSettings;
+    use interp::assembly::Fingerprint;
     use segy::{SegyOptions, WriteOptions};
     use survey::{VerticalUnit, Volume};
 
@@ -136,5 +208,39 @@ mod tests {
         let mut elsewhere = Project::open(&other).unwrap();
         extract(&mut elsewhere, &settings);
         assert!(!Arc::ptr_eq(&second, &Candidates::load(&other, elsewhere.document(), &quiet).unwrap()));
+    }
+    #[test]
+    fn a_part_of_the_candidates_tells_the_same_of_picks_as_all_of_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let quiet = Progress::silent();
+        let root = imported(folder.path());
+        let mut project = Project::open(&root).unwrap();
+        let mut settings = ExtractSettings::default();
+        settings.forest.min_leaf_triangles = 80;
+        // The survey has few samples; most surfaces are to be farther away.
+        settings.distance.max_distance = 3.0;
+        extract(&mut project, &settings);
+        let document = project.document();
+        let geometry = document.frame().unwrap();
+        let stored = extraction::open(&root, document).unwrap();
+        let whole = Candidates::load(&root, document, &quiet).unwrap();
+        assert!(whole.forest.surfaces.surfaces.len() > 3);
+        for at in [[4.0, 5.0, 9.0], [13.3, 7.6, 61.7], [22.0, 19.0, 120.0], [1.0, 1.0, 0.0]] {
+            let part = Candidates::part(&stored, document, &[at], &quiet).unwrap();
+            assert!(part.forest.surfaces.vertices.len() < whole.forest.surfaces.vertices.len(), "{at:?}");
+            let [a, b] = [&whole, &Arc::new(part)].map(|candidates| {
+                let leaf = candidates.leaf_near(geometry, at).map(|hit| (hit.leaf, hit.distance, hit.nearest));
+                let leaf = leaf.map_err(|error| error.to_string());
+                let number = leaf.as_ref().map_or(1, |hit| hit.0);
+                let node = candidates.forest.leaves[number as usize - 1];
+                let nodes = leaf.is_ok().then(|| candidates.forest.climb(node).collect::<Vec<_>>()).unwrap_or_default();
+                let prints = nodes.iter().map(|&node| Fingerprint::of(&candidates.forest, node)).collect::<Vec<_>>();
+                (leaf, candidates.levels(number), prints)
+            });
+            assert_eq!(a, b, "{at:?}");
+        }
+        // Nothing is near a place outside of the survey, either.
+        let part = Candidates::part(&stored, document, &[[900.0, 1.0, 1.0]], &quiet).unwrap();
+        assert!(matches!(part.leaf_near(geometry, [900.0, 1.0, 1.0]), Err(ProjectError::PickOutside { .. })));
     }
 }

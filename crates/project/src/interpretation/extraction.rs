@@ -20,6 +20,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use store::{CandidateWriter, StoreError, StoredCandidates, StoredVolume};
 use survey::Progress;
+use survey::candidates::ForestCounts;
 
 /// Number of inlines of a stored volume that are read at a time: the edge length of its bricks.
 const SLAB_INLINES: usize = 64;
@@ -141,12 +142,32 @@ pub fn report(candidates: &StoredCandidates) -> Option<ExtractReport> {
     Some(ExtractReport { seconds: None, ..report })
 }
 
+/// Memory that all surfaces and trees of candidates take while they are read, bytes.
+pub(crate) fn forest_bytes(candidates: &StoredCandidates) -> Result<u64, ProjectError> {
+    let ForestCounts { vertices, triangles, surfaces, nodes } = candidates.forest_counts()?;
+    Ok((16 * vertices + 12 * triangles + 40 * surfaces + 64 * nodes) as u64)
+}
+
 /// Surfaces and trees of a project's candidates.
 ///
 /// # Errors
-/// Data are damaged, or the user cancelled.
+/// They do not fit into memory, data are damaged, or the user cancelled.
 pub fn forest(candidates: &StoredCandidates, progress: &Progress) -> Result<Forest, ProjectError> {
+    let bytes = usize::try_from(forest_bytes(candidates)?).unwrap_or(usize::MAX);
+    survey::memory::check("all surfaces of the horizon candidates", &[bytes], 1)?;
     Ok(Forest::from_tables(candidates.read_forest(progress)?, candidates.info().size)?)
+}
+
+/// Checks that surfaces and trees hang together, without holding their vertices and triangles.
+///
+/// # Errors
+/// Data are damaged, or the user cancelled.
+pub fn check_forest(candidates: &StoredCandidates, progress: &Progress) -> Result<(), ProjectError> {
+    let (surfaces, nodes) = (candidates.read_surfaces(progress)?, candidates.read_nodes(progress)?);
+    Forest::check_tables(candidates.forest_counts()?, surfaces, nodes, |rows| {
+        progress.check()?;
+        Ok(candidates.read_triangles(rows)?)
+    })
 }
 
 /// The volume to extract from: the one that is named, otherwise the first on the project's lattice.

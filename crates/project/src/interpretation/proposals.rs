@@ -20,7 +20,7 @@ use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
-use survey::{Progress, SurveyGeometry, file};
+use survey::{Progress, SurveyGeometry, file, memory};
 
 /// The proposals, and the state that they were made for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -178,6 +178,7 @@ pub(crate) fn compute(
         document.horizons.iter().zip(&sheets).map(|(entry, sheets)| Evidence { name: &entry.name, sheets }).collect();
     let likeness = match volume {
         Some(entry) => {
+            memory::check("finding faults", &geometry.size(), FINDING_BYTES)?;
             let seismic = content::read_volume(root, entry, geometry, progress)?;
             let dips = dip(&seismic, &DipSettings::default(), progress);
             dips.and_then(|dips| semblance(&seismic, &dips, &SemblanceSettings::default(), progress)).ok()
@@ -218,6 +219,9 @@ fn from_candidates(
     Ok((key, proposals))
 }
 
+/// Memory that finding faults takes for each sample: the volume, its dips and its semblance, all surfaces.
+const FINDING_BYTES: usize = 28;
+
 /// The faults along which reflections end, but for drawn ones.
 fn new_faults(
     root: &Path,
@@ -225,6 +229,7 @@ fn new_faults(
     blocks: &FaultNetwork,
     progress: &Progress,
 ) -> Result<Vec<FoundFault>, ProjectError> {
+    memory::check("finding faults", &document.frame()?.size(), FINDING_BYTES)?;
     let candidates = Candidates::load(root, document, progress)?;
     let seismic = content::read_volume(root, amplitudes(document)?, document.frame()?, progress)?;
     let fewest = TimeSettings::default().fewest_vertices;

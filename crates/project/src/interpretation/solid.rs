@@ -16,11 +16,34 @@ const PRINTED_MM: f64 = 150.0;
 /// Printed size of a pattern's tile, mm.
 const TILE_MM: f64 = 20.0;
 
+/// Voxels of the largest survey whose coordinates are kept at levels as close as by default. In larger ones levels are
+/// farther apart, so that all surveys take at most some 6 GB: waves that the flow follows are as long as a tile, whose size is
+/// a share of the survey's, so that they have as many levels as those of a small survey.
+const FINE_VOXELS: f64 = (1u64 << 29) as f64;
+/// Farthest levels, voxels: the settings allow no more.
+const MOST_SPACING: f32 = 64.0;
+
+/// Memory that coordinates take for each voxel, times the spacing of their levels.
+const SPACED_BYTES: f64 = 36.0;
+
+/// Checks that the coordinates of a survey's layers fit into memory.
+///
+/// # Errors
+/// [`memory::NotEnough`].
+pub fn check_coordinates(size: [usize; 3], settings: &ParamSettings) -> Result<u64, memory::NotEnough> {
+    let voxels = size.iter().map(|&count| count as f64).product::<f64>();
+    let bytes = voxels * SPACED_BYTES / f64::from(settings.level_spacing);
+    memory::check("the coordinates of layers", &[bytes as usize], 1)
+}
+
 /// The settings with which a project is parameterized: the flow of layers does not follow what is smaller than a
 /// pattern's tile.
 pub fn param_settings(document: &Document) -> ParamSettings {
     let flow_wave_m = document.geometry.as_ref().map_or(0.0, |geometry| TILE_MM * metres_per_mm(geometry));
-    ParamSettings { definitions: document.k_definitions(), flow_wave_m, ..ParamSettings::default() }
+    let voxels = document.geometry.as_ref().map_or(0.0, |geometry| geometry.size().iter().product::<usize>() as f64);
+    let spacing = ParamSettings::default().level_spacing;
+    let level_spacing = (spacing * (voxels / FINE_VOXELS) as f32).clamp(spacing, MOST_SPACING);
+    ParamSettings { definitions: document.k_definitions(), flow_wave_m, level_spacing, ..ParamSettings::default() }
 }
 
 /// Metres of rock for a printed millimetre, when the block's longer side has its usual width on paper.
@@ -56,4 +79,25 @@ pub fn structural_model(
     memory::check("the model of the survey", &[inlines, crosslines, horizons.len()], MODEL_BYTES)?;
     let model = StructuralModel::build(geometry, &document.stratigraphy(), &horizons, &faults, &settings, progress)?;
     Ok(Some(model))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use survey::VerticalUnit;
+
+    #[test]
+    fn coordinates_of_any_survey_take_as_much_as_those_of_half_a_billion_voxels() {
+        let spacing = |size| {
+            let geometry = SurveyGeometry::regular(size, 25.0, 4.0, VerticalUnit::Milliseconds);
+            param_settings(&Document::empty(Some(geometry))).level_spacing
+        };
+        assert_eq!([spacing([20, 30, 40]), spacing([1024, 1024, 512])], [3.0; 2]);
+        assert_eq!([spacing([1024; 3]), spacing([2048, 2048, 1024])], [6.0, 24.0]);
+        assert_eq!(spacing([15_625, 15_625, 1024]), MOST_SPACING);
+        let settings = |level_spacing| ParamSettings { level_spacing, ..ParamSettings::default() };
+        let error = check_coordinates([100_000, 100_000, 10_000], &settings(64.0)).unwrap_err();
+        assert!(error.to_string().contains("the coordinates of layers"), "{error}");
+        assert!(check_coordinates([100; 3], &settings(3.0)).is_ok());
+    }
 }

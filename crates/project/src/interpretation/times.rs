@@ -14,7 +14,7 @@ use interp::reassembly::from_horizon;
 use model::FaultNetwork;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use survey::{Contact, Progress, Quality, SurveyGeometry, Volume, Well, well::is_same_surface};
+use survey::{Contact, Progress, Quality, SurveyGeometry, Volume, Well, memory, well::is_same_surface};
 
 /// What geologic time depends on: path, hash of its volume, key of the extraction, faults.
 type Key = (PathBuf, String, String, Vec<String>);
@@ -41,6 +41,9 @@ impl std::fmt::Debug for Times {
     }
 }
 
+/// Memory that times and reflections take for each sample while they are read.
+const HELD_BYTES: usize = 16;
+
 impl Times {
     /// Geologic time of the project in `root`: what someone holds if it is still right, otherwise read from disk.
     ///
@@ -51,6 +54,7 @@ impl Times {
         let candidates = document.extraction.as_ref().map_or_else(String::new, |entry| entry.key.clone());
         let faults = document.faults.iter().map(|entry| format!("{} {}", entry.name, entry.shape())).collect();
         HELD.get_or_make((root.join(&entry.file), entry.hash.clone(), candidates, faults), || {
+            memory::check("geologic time and all reflections", &document.frame()?.size(), HELD_BYTES)?;
             let candidates = Candidates::load(root, document, progress)?;
             let tau = content::read_volume(root, &entry, document.frame()?, progress)?;
             let blocks = assembly::blocks(root, document, progress)?;

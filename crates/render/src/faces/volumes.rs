@@ -34,7 +34,11 @@ impl VolumePlacement {
 
 /// Uploads a volume: texel (x, y, z) is sample (z, y, x). Needs memory for one plane beside the texture.
 pub fn upload_volume(gpu: &Gpu, volume: &NamedVolume) -> Result<wgpu::Texture, RenderError> {
-    let [nx, ny, nz] = volume.volume.size();
+    let Some(samples) = volume.volume.whole() else {
+        let reason = format!("only the part of the volume `{}` that faces need was read", volume.name);
+        return Err(RenderError::Unsuitable { adapter: gpu.adapter_name.clone(), reason });
+    };
+    let [nx, ny, nz] = samples.size();
     let limit = gpu.device.limits().max_texture_dimension_3d as usize;
     if [nx, ny, nz].into_iter().any(|n| n > limit) {
         return Err(RenderError::Unsuitable {
@@ -51,8 +55,8 @@ pub fn upload_volume(gpu: &Gpu, volume: &NamedVolume) -> Result<wgpu::Texture, R
     for x in 0..nx {
         for y in 0..ny {
             let trace = &mut plane[y * nz..(y + 1) * nz];
-            if volume.volume.is_live(x, y) {
-                for (to, from) in trace.iter_mut().zip(volume.volume.trace(x, y)) {
+            if samples.is_live(x, y) {
+                for (to, from) in trace.iter_mut().zip(samples.trace(x, y)) {
                     *to = if from.is_finite() { *from } else { NO_DATA };
                 }
             } else {

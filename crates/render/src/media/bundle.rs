@@ -46,7 +46,7 @@ pub fn gather_all(
     rays: &[(Ray, [f32; 2])],
 ) -> Vec<Gathered> {
     // Samples are addressed with 32 bits.
-    match field.only_medium().filter(|medium| medium.volume.volume.samples().len() < u32::MAX as usize) {
+    match field.only_medium().filter(|medium| medium.volume.volume.all().len() < u32::MAX as usize) {
         None => rays.iter().map(|(ray, between)| gather(field, light, solid, ray, *between)).collect(),
         Some(medium) => {
             let mut gathered = Vec::with_capacity(rays.len());

@@ -82,6 +82,9 @@ impl<'a> MediaField<'a> {
         let mut resolve = |name: &str, function: &ttf::RgbaFunction, zone: Zone| {
             function.validate(&format!("the medium `{name}`"))?;
             let volume = NamedVolume::find(inputs.volumes, name)?;
+            if volume.volume.whole().is_none() {
+                return Err(RenderError::ONLY_A_PART);
+            }
             let prepared = kept.of(inputs.data_version, &volume);
             Ok::<_, RenderError>(FieldMedium::new(volume, prepared, FunctionTable::new(function), zone))
         };

@@ -45,8 +45,8 @@ impl Preparations {
 
 impl Prepared {
     fn new(volume: &NamedVolume) -> Self {
-        let samples = volume.volume.samples();
-        let whole = volume.volume.live().is_none()
+        let samples = volume.volume.all();
+        let whole = volume.volume.whole().is_none_or(|volume| volume.live().is_none())
             && samples.par_chunks(1 << 16).all(|chunk| chunk.iter().all(|value| value.is_finite()));
         let size = volume.volume.size();
         let patched = (!whole).then(|| {
@@ -72,7 +72,7 @@ impl Prepared {
 
     /// The samples, without NaN.
     pub fn samples<'s>(&'s self, volume: &NamedVolume<'s>) -> &'s [f32] {
-        self.patched.as_deref().unwrap_or(volume.volume.samples())
+        self.patched.as_deref().unwrap_or(volume.volume.all())
     }
 
     /// Smallest and largest value that interpolation can give between two voxel positions; `None` if there is
@@ -135,7 +135,7 @@ mod tests {
         let mut volume = Volume::from_samples(size, values).unwrap();
         volume.samples_mut()[100] = f32::NAN;
         let covers = VoxelBox { min: [10.0, 20.0, 30.0], max: [29.0, 28.0, 45.0] };
-        let named = NamedVolume { name: "a", volume: &volume, covers };
+        let named = NamedVolume { name: "a", volume: crate::Samples::Whole(&volume), covers };
         let prepared = Preparations::default().of(1, &named);
         assert!(prepared.samples(&named)[100] < NO_DATA_BELOW);
         let (low, high) = (Vec3::new(12.0, 21.0, 31.0), Vec3::new(16.0, 24.5, 38.0));

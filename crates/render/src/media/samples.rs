@@ -232,7 +232,7 @@ mod tests {
                 volume.samples_mut()[91] = f32::INFINITY;
             }
             let covers = VoxelBox { min: [0.0; 3], max: size.map(|n| n.max(2) as f64 - 1.0) };
-            let named = NamedVolume { name: "v", volume: &volume, covers };
+            let named = NamedVolume { name: "v", volume: crate::Samples::Whole(&volume), covers };
             let patched: Vec<f32> = volume.samples().iter().map(|v| if v.is_finite() { *v } else { NO_DATA }).collect();
             let samples = VolumeSamples::new(&patched, size);
             let (mut missing, mut places, mut expected) = (0, IndexPositions::default(), [0.0; BATCH]);

@@ -121,7 +121,7 @@ const ROWS: usize = 16;
 impl<'c> BlockPassages<'c> {
     fn new(field: &'c MediaField<'c>, view: &'c View, solid: &Solid, grid: &'c LightGrid) -> Self {
         let [nu, nv, _] = grid.size;
-        let alone = field.only_medium().filter(|medium| medium.volume.volume.samples().len() < u32::MAX as usize);
+        let alone = field.only_medium().filter(|medium| medium.volume.volume.all().len() < u32::MAX as usize);
         let most = solid.cut_outs.len() * 2 + 1;
         let rows: Vec<Vec<Vec<Passage>>> = (0..nv)
             .into_par_iter()

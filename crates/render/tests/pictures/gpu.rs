@@ -8,7 +8,7 @@ use crate::compare::compare;
 use glam::DVec3;
 use render::{
     Background, Camera, CutShape, Ground, Inputs, Lookup, NamedVolume, Outlines, PatternSize, Projection, RenderError,
-    Renderer, Scene, Side, VoxelBox,
+    Renderer, Samples, Scene, Side, VoxelBox,
 };
 use survey::Progress;
 use synth::{SynthSettings, Synthetic};
@@ -103,7 +103,7 @@ fn gpu_and_cpu_agree() {
     };
     let volumes = [
         NamedVolume::whole("seismic", &synthetic.seismic),
-        NamedVolume { name: "impedance", volume: &synthetic.attribute.volume, covers },
+        NamedVolume { name: "impedance", volume: Samples::Whole(&synthetic.attribute.volume), covers },
     ];
     let inputs = block.inputs(&volumes);
     let whole = VoxelBox::of_size(synthetic.geometry.size());

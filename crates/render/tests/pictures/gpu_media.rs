@@ -6,8 +6,8 @@ use crate::media::{medium, part};
 use render::media::{Colouring, LayerOpacity, MediumColour, Paint, white_ramp};
 use render::{
     Background, Camera, CandidateVolume, DrawnWell, FaceData, Faces, Ground, Interleaved, Isosurface, IsosurfaceSource,
-    Media, Medium, NamedVolume, Occlusion, Outlines, Phong, PickedHorizon, Projection, Renderer, Scene, Scope, Shading,
-    VoxelBox,
+    Media, Medium, NamedVolume, Occlusion, Outlines, Phong, PickedHorizon, Projection, Renderer, Samples, Scene, Scope,
+    Shading, VoxelBox,
 };
 use survey::Progress;
 use synth::{SynthSettings, Synthetic};
@@ -257,7 +257,7 @@ fn gpu_and_cpu_render_media_alike() {
     };
     let volumes = [
         NamedVolume::whole("seismic", &synthetic.seismic),
-        NamedVolume { name: "impedance", volume: &synthetic.attribute.volume, covers },
+        NamedVolume { name: "impedance", volume: Samples::Whole(&synthetic.attribute.volume), covers },
     ];
     let made = candidates_of(&block);
     // Leaves of one horizon in two groups, one of them not shown.

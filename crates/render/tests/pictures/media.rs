@@ -7,7 +7,7 @@ use render::media::{Colouring, EmptySpace, LayerOpacity, MediumColour, white_ram
 use render::reference::render;
 use render::{
     Background, Camera, CandidateVolume, Faces, Inputs, Media, Medium, NamedVolume, Occlusion, Outlines, PickedHorizon,
-    Projection, Scene, Scope, Shading, VoxelBox,
+    Projection, Samples, Scene, Scope, Shading, VoxelBox,
 };
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 use synth::closed_form::ClosedForm;
@@ -125,7 +125,7 @@ fn volumes_of_any_size_and_extent_mix_by_their_extinction_and_no_data_is_clear()
     let mut part = Volume::filled([4, 5, 6], 0.5f32);
     part.samples_mut()[..60].fill(f32::NAN);
     let covers = VoxelBox { min: [0.0, 4.0, 0.0], max: [24.0, 14.0, 24.0] };
-    let volumes = [NamedVolume::whole("a", &whole), NamedVolume { name: "b", volume: &part, covers }];
+    let volumes = [NamedVolume::whole("a", &whole), NamedVolume { name: "b", volume: Samples::Whole(&part), covers }];
     let inputs = Inputs::raw(&geometry, &volumes);
     let media = Media {
         faces: Faces::None,

@@ -109,7 +109,8 @@ impl Functions {
         }
         let Ok(loaded) = rocks.try_read() else { return };
         let Some(found) = loaded.volumes.iter().find(|loaded| loaded.name == volume) else { return };
-        let histogram = Histogram::of(found.volume.samples(), version);
+        let Some(whole) = found.whole() else { return };
+        let histogram = Histogram::of(whole.samples(), version);
         self.histograms.insert(volume.to_owned(), histogram);
     }
 

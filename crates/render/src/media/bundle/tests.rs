@@ -84,7 +84,7 @@ fn rays_gather_together_what_each_gathers_alone() {
         let volumes = [if n == 0 {
             NamedVolume::whole("v", &volume)
         } else {
-            NamedVolume { name: "v", volume: &volume, covers }
+            NamedVolume { name: "v", volume: crate::Samples::Whole(&volume), covers }
         }];
         let inputs = Inputs::raw(&geometry, &volumes);
         for (shading, colours, projection, inside, empty_space) in shadings.iter().flat_map(|shading| {
