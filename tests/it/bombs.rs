@@ -179,7 +179,7 @@ fn counts_on_the_command_line_are_checked_before_they_are_multiplied() {
         assert!(!at.join("n.petro").exists());
     }
     limited(at, "synth n --size 100000x100000x100000").failed(&["more than a survey may have"]);
-    limited(at, "synth n --size 10000x10000x1000").failed(&["of memory"]);
+    limited(at, "synth n --size 10000x10000x10000").failed(&["the disk has room for"]);
     limited(at, "parameterize p.petro --size 100000x100000x100000").failed(&["more than a survey may have"]);
     limited(at, "render p.petro a.png --size 32768x32768 --samples 1 --device cpu").failed(&["of memory"]);
 }

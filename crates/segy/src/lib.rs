@@ -118,4 +118,4 @@ pub fn read(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<S
     SegyFile::open(path, options, progress)?.read(progress)
 }
 
-pub use write::{SampleSource, write, write_lines};
+pub use write::{SampleSource, check_room, write, write_lines};

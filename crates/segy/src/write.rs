@@ -17,6 +17,7 @@ use super::error::{SegyError, SegyProblem};
 use super::header::{FILE_HEADER_BYTES, ORDER_CONSTANT, TRACE_HEADER_BYTES, at};
 use super::sample::{ByteOrder, SampleFormat, ibm_from_f32};
 use super::text::encode_ebcdic;
+use survey::file;
 use survey::geometry::{LineAxis, SurveyGeometry, VerticalUnit};
 use survey::progress::Progress;
 use survey::volume::Volume;
@@ -178,6 +179,15 @@ pub fn write_lines(
     written.map_err(|problem| problem.in_file(path))
 }
 
+/// Checks that a file of all traces of a survey fits on the disk of its folder, before samples are made for it.
+///
+/// # Errors
+/// There is less room, or the survey cannot be written as SEG-Y.
+pub fn check_room(path: &Path, geometry: &SurveyGeometry, options: &WriteOptions) -> Result<(), SegyError> {
+    let checked = Plan::new(geometry, None, options).and_then(|plan| plan.check_room(path));
+    checked.map_err(|problem| problem.in_file(path))
+}
+
 fn temporary_beside(path: &Path) -> PathBuf {
     let mut name = std::ffi::OsString::from(".");
     name.push(path.file_name().unwrap_or_default());
@@ -188,6 +198,9 @@ fn temporary_beside(path: &Path) -> PathBuf {
 fn io(doing: &'static str, hint: &'static str) -> impl Fn(std::io::Error) -> SegyProblem {
     move |source| SegyProblem::Io { doing, hint, source }
 }
+
+/// What a full disk needs.
+const SPACE: &str = "make room on the disk, or choose another folder";
 
 /// A volume and the header values that hold it.
 struct Plan<'a> {
@@ -230,6 +243,15 @@ impl<'a> Plan<'a> {
         })
     }
 
+    /// Checks that the file fits on the disk.
+    fn check_room(&self, path: &Path) -> Result<(), SegyProblem> {
+        let [inlines, crosslines, samples] = self.geometry.size().map(|count| count as u64);
+        let traces = self.live.map_or(inlines * crosslines, |live| live.iter().filter(|live| **live).count() as u64);
+        let trace = TRACE_HEADER_BYTES as u64 + samples * self.options.format.sample_format().bytes() as u64;
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        file::check_room(folder, FILE_HEADER_BYTES as u64 + traces * trace).map_err(io("write it", SPACE))
+    }
+
     fn write(
         &self,
         path: &Path,
@@ -237,7 +259,7 @@ impl<'a> Plan<'a> {
         source: &mut SampleSource<'_>,
         progress: &Progress,
     ) -> Result<WriteReport, SegyProblem> {
-        const SPACE: &str = "make room on the disk, or choose another folder";
+        self.check_room(path)?;
         let [inlines, crosslines, samples] = self.geometry.size();
         progress.begin("writing traces", (inlines * crosslines) as u64);
         let file = OpenOptions::new()

@@ -8,6 +8,7 @@
 //! A file that was made or renamed is there after a power cut when the folder that names it was flushed
 //! ([`sync_folder`]), and that folder is there when the folder above it was ([`create_folders`]).
 
+use crate::memory;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
@@ -31,6 +32,41 @@ pub fn ordinary(path: &Path) -> io::Result<fs::Metadata> {
     }
     let kind = if facts.is_dir() { "a folder" } else { "a pipe or device" };
     Err(io::Error::new(io::ErrorKind::InvalidInput, format!("it is {kind}, not an ordinary file")))
+}
+
+/// Bytes that whoever runs this may still write to the disk of a folder; `None` where the system does not tell.
+#[cfg(unix)]
+pub fn room(folder: &Path) -> Option<u64> {
+    let disk = rustix::fs::statvfs(folder).ok().filter(|disk| disk.f_blocks > 0)?;
+    disk.f_bavail.checked_mul(disk.f_frsize)
+}
+
+/// The system is not asked.
+#[cfg(not(unix))]
+pub fn room(_folder: &Path) -> Option<u64> {
+    None
+}
+
+/// Checks that so many bytes fit on the disk of a folder.
+///
+/// ```
+/// let folder = std::env::temp_dir();
+/// assert!(survey::file::check_room(&folder, 1).is_ok());
+/// # #[cfg(unix)]
+/// assert!(survey::file::check_room(&folder, u64::MAX).unwrap_err().to_string().contains("room for"));
+/// ```
+///
+/// # Errors
+/// [`io::ErrorKind::StorageFull`].
+pub fn check_room(folder: &Path, bytes: u64) -> io::Result<()> {
+    match room(folder) {
+        Some(room) if room < bytes => {
+            let [bytes, room] = [bytes, room].map(|bytes| memory::size(Some(bytes)));
+            let message = format!("it takes {bytes}, and the disk has room for {room}");
+            Err(io::Error::new(io::ErrorKind::StorageFull, message))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The content of an ordinary file of at most `limit` bytes.

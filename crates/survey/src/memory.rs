@@ -24,7 +24,7 @@ pub struct NotEnough {
 }
 
 /// A number of bytes for people.
-fn size(bytes: Option<u64>) -> String {
+pub(crate) fn size(bytes: Option<u64>) -> String {
     match bytes {
         None => "more than 18 million TB".to_owned(),
         Some(bytes) if bytes < 10 << 30 => format!("{} MB", bytes >> 20),

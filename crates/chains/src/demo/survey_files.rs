@@ -140,6 +140,7 @@ pub fn write_files(
     let (horizons, faults) = (folder("horizons")?, folder("faults")?);
     let options = WriteOptions::default();
     let survey = out.join("survey.sgy");
+    segy::check_room(&survey, &design.geometry, &options)?;
     let mut seismic = design.seismic(progress)?;
     let together = seismic.together();
     let mut source = |lines: Range<usize>| Ok(Cow::Owned(seismic.lines(lines)));
