@@ -1,6 +1,7 @@
 //! Convex polygons on a page: whether they meet, and what lies in them.
 
 use glam::DVec2;
+use page::Rect;
 
 /// Whether two convex polygons have a place in common: no side of either, and no direction between, parts them.
 pub(crate) fn meet(one: &[DVec2], other: &[DVec2]) -> bool {
@@ -32,8 +33,54 @@ pub(crate) fn holds(polygon: &[DVec2], place: DVec2) -> bool {
     !(left && right)
 }
 
+/// The part of a convex polygon within a rectangle; `None` where there is none.
+pub(crate) fn within(polygon: &[DVec2], rect: Rect) -> Option<Vec<DVec2>> {
+    // Each side of the rectangle as the places where a measure is not negative.
+    let sides: [&dyn Fn(DVec2) -> f64; 4] =
+        [&|place| place.x - rect.min.x, &|place| place.y - rect.min.y, &|place| rect.max.x - place.x, &|place| {
+            rect.max.y - place.y
+        }];
+    let mut kept = polygon.to_vec();
+    for inside in sides {
+        let mut cut = Vec::new();
+        for (n, &from) in kept.iter().enumerate() {
+            let to = kept[(n + 1) % kept.len()];
+            let (here, there) = (inside(from), inside(to));
+            if here >= 0.0 {
+                cut.push(from);
+            }
+            if (here < 0.0) != (there < 0.0) {
+                cut.push(from.lerp(to, here / (here - there)));
+            }
+        }
+        kept = cut;
+    }
+    (kept.len() > 2 && area(&kept) > 0.0).then_some(kept)
+}
+
 /// The area of a polygon.
 pub(crate) fn area(polygon: &[DVec2]) -> f64 {
     let twice: f64 = (0..polygon.len()).map(|n| polygon[n].perp_dot(polygon[(n + 1) % polygon.len()])).sum();
     0.5 * twice.abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polygon_is_cut_by_the_sides_that_it_crosses() {
+        let rect = Rect::sized(DVec2::ZERO, DVec2::new(10.0, 6.0));
+        let corners = |places: &[[f64; 2]]| places.iter().copied().map(DVec2::from_array).collect::<Vec<_>>();
+        let inside = corners(&[[1.0, 1.0], [4.0, 1.0], [2.0, 5.0]]);
+        assert_eq!(within(&inside, rect), Some(inside));
+        // A diamond about the corner (10, 6): a quarter of it is left.
+        let diamond = corners(&[[10.0, 4.0], [12.0, 6.0], [10.0, 8.0], [8.0, 6.0]]);
+        let left = within(&diamond, rect).unwrap();
+        assert!((area(&left) - 2.0).abs() < 1e-12 && left.iter().all(|place| rect.grown(1e-12).contains(*place)));
+        // All of the rectangle lies in this one, and nothing of the rectangle in that one.
+        let large = within(&corners(&[[-20.0, -20.0], [40.0, -20.0], [40.0, 40.0], [-20.0, 40.0]]), rect).unwrap();
+        assert!((area(&large) - 60.0).abs() < 1e-9);
+        assert_eq!(within(&corners(&[[11.0, 1.0], [14.0, 1.0], [12.0, 5.0]]), rect), None);
+    }
 }

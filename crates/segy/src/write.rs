@@ -169,7 +169,7 @@ pub fn write_lines(
         let report = plan.write(&temporary, together.max(1), source, progress)?;
         fs::rename(&temporary, path).map_err(io("put the file in its place", "check that you may write there"))?;
         let folder = path.parent().unwrap_or(path);
-        survey::file::sync_folder(folder).map_err(io("flush the folder of", "check the disk"))?;
+        file::sync_folder(folder).map_err(io("flush the folder of", "check the disk"))?;
         Ok(report)
     });
     if written.is_err() {

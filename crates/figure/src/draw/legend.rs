@@ -169,14 +169,44 @@ impl Legend<'_> {
         wanted.min(if columns > 1.0 { widest } else { most })
     }
 
+    /// Columns across a room of this width, and the height of the legend in them. All names stand in letters of full size,
+    /// or, where that would be one column, in the smallest, without what stands in brackets.
+    pub fn across(&self, width: f64) -> (usize, f64) {
+        let short = self.names().map(|name| width_of(name.split(" (").next().unwrap_or(name), LEAST_TEXT_PT));
+        let short = SWATCH_PT[0] + GAP_PT + short.fold(LEAST_NAME_PT, f64::max) + 1.0;
+        let columns = |own: f64| ((width + COLUMN_GAP_PT) / (own + COLUMN_GAP_PT)).floor() as usize;
+        let columns = match columns(self.column(TEXT_PT)) {
+            0 | 1 => columns(short).clamp(1, 2),
+            several => several,
+        };
+        let heights = self.heights();
+        let all: f64 = heights.iter().flatten().sum();
+        // From equal columns on, an entry is added to their height until they hold all.
+        let least = (all / columns as f64).max(self.tightest());
+        let height = (0..=heights.len()).map(|n| least + n as f64 * self.tightest());
+        let holds = |height: &f64| self.packed(*height, columns, 1.0).places.len() == heights.len();
+        (columns, height.into_iter().find(holds).unwrap_or(all))
+    }
+
     /// The legend in its room; entries that do not fit stand closer, then in several columns. What has no room then is
     /// counted in the last line.
     ///
     /// # Errors
     /// A pattern that does not draw.
     pub fn drawn(&self, room: Rect) -> Result<Group, FigureError> {
+        self.arranged_as(self.arranged(room.size()), room)
+    }
+
+    /// The legend in a room of the height and with the columns that [`Self::across`] found.
+    ///
+    /// # Errors
+    /// A pattern that does not draw.
+    pub fn drawn_across(&self, room: Rect, columns: usize) -> Result<Group, FigureError> {
+        self.arranged_as(self.packed(room.height(), columns, 1.0), room)
+    }
+
+    fn arranged_as(&self, mut arranged: Arranged, room: Rect) -> Result<Group, FigureError> {
         let mut group = Group::new(GroupKind::Annotation, "legend");
-        let mut arranged = self.arranged(room.size());
         let left_out = self.heights().len() - arranged.places.len();
         let width = (room.width() + COLUMN_GAP_PT) / arranged.columns as f64 - COLUMN_GAP_PT;
         let share = arranged.share;

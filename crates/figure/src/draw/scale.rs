@@ -62,7 +62,13 @@ pub fn drawn(strip: Rect, points_per_m: Option<f64>, down: Option<(f64, &str)>, 
         group.push(end.anchored(Across::End, Upright::Top));
         left += room + 14.0;
     }
-    if let Some((bar, text)) = down.and_then(|down| upright(DVec2::new(left, strip.min.y), strip, down)) {
+    // What a reader must know comes before the second bar.
+    let bar = down.and_then(|down| upright(DVec2::new(left, strip.min.y), strip, down));
+    let is_said = |(_, text): &(Rect, Text)| {
+        let room = strip.max.x - (text.at.x + text.width() + 14.0);
+        caption_lines(caption, room).iter().all(|line| width_of(line, LEAST_TEXT_PT) <= room)
+    };
+    if let Some((bar, text)) = bar.filter(is_said) {
         left = text.at.x + text.width() + 14.0;
         group.push(PathItem::filled(Path::rect(bar), ttf::Colour::WHITE).outlined(Stroke::new(0.5, INK)));
         group.push(PathItem::filled(Path::rect(bar.split_down(0.5)[0]), INK));

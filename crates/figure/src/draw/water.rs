@@ -155,6 +155,15 @@ pub(crate) fn drawn(
     (!group.items.is_empty()).then_some(group)
 }
 
+/// Whether any water is seen of a scene.
+pub(crate) fn has_water(scene: &Scene, geometry: &SurveyGeometry, model: &StructuralModel) -> bool {
+    let Some(water) = scene.water.filter(|_| scene.ground.is_some()) else { return false };
+    let (_, solid) = below_level(scene, geometry, &water);
+    let air = render::ground::air_layer(model);
+    let is_wet = |face: &SeenSection| face.section.polygons.iter().any(|polygon| polygon.region.layer == air);
+    sections_of(&solid, &scene.view(geometry), model).iter().any(is_wet)
+}
+
 /// Where no ground that rises above the water hides it.
 fn before_ground(
     scene: &Scene,

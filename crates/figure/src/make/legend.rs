@@ -10,7 +10,7 @@ use crate::draw::legend::{Legend, LegendLine};
 use crate::draw::section::{Zoom, contact_pt, quality_stroke};
 use crate::draw::section_wells::TOP_PT;
 use crate::draw::seen::{Seen, seen};
-use crate::draw::water::colour_on_paper;
+use crate::draw::water::{colour_on_paper, has_water};
 use crate::spec::{BlockPart, Part};
 use crate::style::{FAULT_PT, HORIZON_PT, INK};
 use glam::DVec2;
@@ -147,12 +147,12 @@ impl Maker<'_> {
 
     /// Water, where a block shows it.
     fn water(&self) -> Option<LayerStyle> {
+        let model = self.inputs.source.data.model?;
         let shown = self.figure.parts.iter().find_map(|part| match part {
-            Part::Block(block) => block.scene.water.filter(|_| block.scene.ground.is_some()),
+            Part::Block(block) => block.scene.water.filter(|_| has_water(&block.scene, self.geometry, model)),
             _ => None,
         });
-        let is_modelled = self.inputs.source.data.model.is_some() && !self.figure.interpretation;
-        shown.filter(|_| is_modelled).map(|water| LayerStyle::plain("Water", colour_on_paper(&water)))
+        shown.filter(|_| !self.figure.interpretation).map(|water| LayerStyle::plain("Water", colour_on_paper(&water)))
     }
 
     /// The horizons that an interpreter sees in front of a block.

@@ -36,6 +36,8 @@ const LEAST_PT: f64 = 20.0;
 const LEAST_BLOCK_PT: f64 = 40.0;
 /// Share of the page that a legend may take.
 const LEGEND_SHARE: f64 = 0.36;
+/// On pages higher than so many widths a legend of several columns stands below the parts.
+const UPRIGHT: f64 = 1.1;
 /// Contacts of more layers than this are not dashed.
 const MOST_DASHED: usize = 150;
 /// Two parts stand beside one another where the room is broader than so many heights, else one over the other.
@@ -123,10 +125,18 @@ pub fn make(
         return Err(maker.no_room());
     }
     if let Some(legend) = &legend {
-        let width = legend.width(room.size(), LEGEND_SHARE * room.width());
-        let [left, right] = room.split_across(1.0 - width / room.width());
-        list.items.push(legend.drawn(right.inside([0.0, 2.0, 0.0, 0.0]))?.into());
-        room = left.inside([0.0, 0.0, GAP_PT, 0.0]);
+        let (columns, height) = legend.across(room.width());
+        let is_upright = room.height() > UPRIGHT * room.width();
+        if is_upright && columns > 1 && height < LEGEND_SHARE * room.height() {
+            let [above, below] = room.split_down(1.0 - height / room.height());
+            list.items.push(legend.drawn_across(below, columns)?.into());
+            room = above.inside([0.0, 0.0, 0.0, GAP_PT]);
+        } else {
+            let width = legend.width(room.size(), LEGEND_SHARE * room.width());
+            let [left, right] = room.split_across(1.0 - width / room.width());
+            list.items.push(legend.drawn(right.inside([0.0, 2.0, 0.0, 0.0]))?.into());
+            room = left.inside([0.0, 0.0, GAP_PT, 0.0]);
+        }
     }
     if !is_bare && room.size().min_element() < LEAST_PT {
         return Err(maker.no_room());

@@ -48,3 +48,20 @@ fn names_stay_in_the_room_and_apart_and_large_enough_however_many_there_are() {
         }
     }
 }
+
+#[test]
+fn across_a_page_all_entries_stand_in_columns_of_like_height() {
+    let lines: Vec<LegendLine> = (0..7)
+        .map(|n| LegendLine::new(&format!("Fault {n} (named)"), GroupKind::Fault, Stroke::new(1.0, INK)))
+        .collect();
+    let legend = Legend { layers: None, horizons: &[], lines: &lines, dpi: 100.0 };
+    let own = legend.column(TEXT_PT) + COLUMN_GAP_PT;
+    // Seven lines in three columns are three lines high, and in one column seven.
+    assert_eq!(legend.across(3.0 * own), (3, 3.0 * PITCH_PT[1]));
+    let (columns, height) = legend.across(3.0 * own);
+    let drawn = legend.drawn_across(Rect::sized(DVec2::ZERO, DVec2::new(3.0 * own, height)), columns).unwrap();
+    assert_eq!(drawn.items.len(), 7);
+    // Two columns fit where letters are small and brackets go; one alone where there is no room.
+    assert_eq!(legend.across(1.8 * own).0, 2);
+    assert_eq!(legend.across(0.5 * own), (1, 7.0 * PITCH_PT[1]));
+}

@@ -15,7 +15,7 @@ use render::{View, VoxelBox};
 use survey::{SurveyGeometry, VerticalUnit};
 
 /// Edges that are seen shorter than this carry no axis, points.
-const SHORTEST_PT: f64 = 30.0;
+const SHORTEST_PT: f64 = 18.0;
 /// Between a tick and its number, and between numbers and the title, points.
 const GAP_PT: f64 = 2.0;
 /// Least distance of numbers along an edge, points; the second one where there would be fewer than so many otherwise, if need
@@ -29,7 +29,9 @@ const STEP_PT: f64 = 0.25;
 /// How far within the block an edge is asked for, as a share of the way to the block's middle.
 const WITHIN: f64 = 1e-3;
 /// Where along its edge a title may stand, the best place first.
-const PLACES: [f64; 5] = [0.5, 0.4, 0.6, 0.25, 0.75];
+const PLACES: [f64; 9] = [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9];
+/// How much farther out than close to the numbers a title may stand, points.
+const FARTHER_PT: [f64; 3] = [0.0, 5.0, 10.0];
 
 /// An edge of the silhouette with its numbers.
 struct OuterEdge {
@@ -91,7 +93,7 @@ pub(super) fn drawn(
     let mut titles = Vec::new();
     for edge in &edges {
         let [from, to] = edge.ends.map(page);
-        for part in edge.bare(block.centre(), page, is_rock) {
+        for part in edge.bare((block.centre(), pane), page, is_rock) {
             marks.add_line(&part);
         }
         room.take_line(from, to);
@@ -115,8 +117,11 @@ pub(super) fn drawn(
     }
     // Titles yield to the numbers of all axes.
     for (edge, reach) in titles {
-        let mut titles = PLACES.iter().map(|share| edge.title(*share, reach, geometry, page));
-        if let Some(title) = titles.find(|title| room.is_free(title)) {
+        let seen = || PLACES.into_iter().filter(|share| pane.contains(page(edge.ends[0].lerp(edge.ends[1], *share))));
+        let places = FARTHER_PT.into_iter().flat_map(|farther| seen().map(move |share| (share, reach + farther)));
+        let mut titles = places.map(|(share, reach)| edge.title(share, reach, geometry, page));
+        let title = titles.find(|title| room.is_free(title)).or_else(|| edge.title_above(geometry, pane, page, room));
+        if let Some(title) = title {
             room.take(&title);
             group.push(title);
         }
@@ -145,13 +150,18 @@ fn close_step(least: f64) -> f64 {
 
 impl OuterEdge {
     /// The parts of its line on which the block has no edge.
-    fn bare(&self, middle: DVec3, page: &dyn Fn(DVec3) -> DVec2, is_rock: &dyn Fn(DVec3) -> bool) -> Vec<[DVec2; 2]> {
+    fn bare(
+        &self,
+        (middle, pane): (DVec3, Rect),
+        page: &dyn Fn(DVec3) -> DVec2,
+        is_rock: &dyn Fn(DVec3) -> bool,
+    ) -> Vec<[DVec2; 2]> {
         let [from, to] = self.ends;
         let count = (page(from).distance(page(to)) / STEP_PT).ceil().max(1.0) as usize;
         let at = |n: usize| from.lerp(to, n as f64 / count as f64);
         let is_bare = |n: &usize| {
             let p = at(*n).midpoint(at(n + 1));
-            !is_rock(p.lerp(middle, WITHIN))
+            pane.contains(page(p)) && !is_rock(p.lerp(middle, WITHIN))
         };
         let steps: Vec<usize> = (0..count).filter(is_bare).collect();
         let runs = steps.chunk_by(|one, next| one + 1 == *next);
@@ -195,14 +205,38 @@ impl OuterEdge {
         (first.ceil() as i64..=last.floor() as i64).map(tick).collect()
     }
 
-    /// The title beyond numbers that reach so far, at a share of the edge.
-    fn title(&self, share: f64, reach: f64, geometry: &SurveyGeometry, page: &dyn Fn(DVec3) -> DVec2) -> Text {
-        let name = match (self.axis, geometry.vertical.unit) {
+    fn name(&self, geometry: &SurveyGeometry) -> &'static str {
+        match (self.axis, geometry.vertical.unit) {
             (0, _) => "Inline",
             (1, _) => "Crossline",
             (_, VerticalUnit::Milliseconds) => "Two-way time (ms)",
             (_, VerticalUnit::Metres) => "Depth (m)",
+        }
+    }
+
+    /// The title of a vertical axis, upright over the axis' upper end, where there is no room along it.
+    fn title_above(
+        &self,
+        geometry: &SurveyGeometry,
+        pane: Rect,
+        page: &dyn Fn(DVec3) -> DVec2,
+        room: &LabelRoom,
+    ) -> Option<Text> {
+        let [start, end] = self.ends.map(page);
+        let top = if start.y < end.y { start } else { end };
+        let names = [self.name(geometry), geometry.vertical.unit.symbol()];
+        let at = top - DVec2::new(TICK_PT, 0.5 * HEIGHT * NUMBER_PT + 2.0 * GAP_PT);
+        let text = |name: &str, across: Across| {
+            Text::new(at, name).sized(TEXT_PT).inked(QUIET_INK).anchored(across, Upright::Baseline)
         };
+        let sides = [Across::Middle, Across::End];
+        let mut texts = names.into_iter().flat_map(|name| sides.map(|across| text(name, across)));
+        texts.find(|text| self.axis == 2 && pane.contains(top) && room.is_free(text))
+    }
+
+    /// The title beyond numbers that reach so far, at a share of the edge.
+    fn title(&self, share: f64, reach: f64, geometry: &SurveyGeometry, page: &dyn Fn(DVec3) -> DVec2) -> Text {
+        let name = self.name(geometry);
         let [start, end] = self.ends.map(page);
         let along = (end - start).normalize_or(DVec2::X);
         // Read from left to right, or upwards.

@@ -106,7 +106,7 @@ impl FaceWriter<'_> {
         written: &mut Vec<Item>,
         beside: &mut Vec<Beside>,
     ) -> Vec<Vec<DVec2>> {
-        let runs = faults::runs(self.model, faces, self.page_from_voxel, self.page, self.air);
+        let runs = faults::runs((self.model, self.geometry), faces, self.page_from_voxel, self.page, self.air);
         let lines: Vec<Vec<DVec2>> = runs.iter().map(faults::FaultRun::line).collect();
         let mut named = Vec::new();
         for run in &runs {
@@ -185,7 +185,12 @@ pub(crate) fn leader(anchors: &[DVec2], name: &str, faces: &[Vec<DVec2>], room: 
         (text, outline)
     });
     let mut best: Option<(f64, &Text, [DVec2; 2])> = None;
-    for (rank, anchor) in anchors.iter().enumerate() {
+    // The dots of two leaders touch neither one another nor the other's line.
+    let is_dot_free = |anchor: &DVec2| {
+        let [a, b, c, d] = dot(*anchor);
+        room.is_clear(a, c) && room.is_clear(b, d)
+    };
+    for (rank, anchor) in anchors.iter().enumerate().filter(|(_, anchor)| is_dot_free(anchor)) {
         for ring in 1..=LEADER_RINGS {
             let length = f64::from(ring) * LEADER_STEP_PT;
             for turn in 0..LEADER_TURNS {
@@ -209,7 +214,14 @@ pub(crate) fn leader(anchors: &[DVec2], name: &str, faces: &[Vec<DVec2>], room: 
     let text = Text { at: text.at + end, ..text.clone() };
     room.take(&text);
     room.take_area(&[anchor, end]);
+    room.take_area(&dot(anchor));
     Some(led([anchor, end], DOT_PT, name, text))
+}
+
+/// The square around a leader's dot.
+fn dot(at: DVec2) -> [DVec2; 4] {
+    let half = DOT_PT + 0.5;
+    [[-half, -half], [half, -half], [half, half], [-half, half]].map(|off| at + DVec2::from_array(off))
 }
 
 /// A name with a line from a dot on what it names.

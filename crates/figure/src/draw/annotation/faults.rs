@@ -10,7 +10,7 @@ use crate::cut::value_at;
 use crate::style::{INK, NUMBER_PT};
 use glam::{DVec2, DVec3};
 use model::StructuralModel;
-use model::section::LineKind;
+use model::section::{LineKind, LineQuality};
 use page::list::{Across, Group, GroupKind, Ink, Path, PathItem, Segment, Stroke, Text, Upright};
 use render::vector::SeenSection;
 use survey::SurveyGeometry;
@@ -30,6 +30,13 @@ const SHORTEST_PT: f64 = 16.0;
 const APART_PT: f64 = 6.0;
 /// How far beside a fault its blocks are looked up, voxels.
 const BESIDE: f64 = 0.75;
+/// A line this flat on its face shows no up and down, as that of a steep fault does on a face along its strike: cosine of
+/// 75° from upright, in metres. Half-arrows there would tell of a movement along strike.
+const FLAT: f64 = 0.26;
+/// The flattest line counts this share of its length against steep ones.
+const FLAT_SHARE: f64 = 0.3;
+/// How far from a horizon's end at a fault its line is looked up, voxels.
+const NEAR_END: f64 = 3.0;
 /// Throws below this are not stated, samples.
 const LEAST_THROW: f64 = 0.25;
 /// Where along its line a name or an arrow may stand, in shares on both sides of the middle.
@@ -41,8 +48,10 @@ pub(super) struct FaultRun<'a> {
     pub fault: usize,
     /// Places from one end to the other: voxels and the page.
     places: Vec<(DVec3, DVec2)>,
-    /// Length on the page, points.
-    length: f64,
+    /// How much of its length runs up and down, in metres: 1 if it is upright, 0 if it is level.
+    steepness: f64,
+    /// Its length on the page, points, less where it is flat.
+    worth: f64,
     face: &'a SeenSection,
     /// The parts of its face that are seen, on the page.
     seen: Vec<Vec<DVec2>>,
@@ -52,7 +61,9 @@ pub(super) struct FaultRun<'a> {
 struct CutOff {
     /// Where along the run, in places.
     at: f64,
-    /// Voxel z.
+    /// Its place, voxels.
+    place: DVec3,
+    /// Its z.
     z: f64,
     /// Whether the older rock lies below.
     is_upright: bool,
@@ -67,11 +78,13 @@ pub(super) struct Throw {
     share: f64,
     /// Whether the side to which the face's first axis points went down.
     is_ahead_down: bool,
+    /// Whether the horizon was only continued to the fault, on either side.
+    is_inferred: bool,
 }
 
-/// The longest seen run of each fault on upright faces, by fault.
+/// The longest seen run of each fault on upright faces, by fault; a flat one counts less.
 pub(super) fn runs<'a>(
-    model: &StructuralModel,
+    (model, geometry): (&StructuralModel, &SurveyGeometry),
     faces: &'a [SeenSection],
     page_from_voxel: &dyn Fn(DVec3) -> DVec2,
     page: &dyn Fn(DVec2) -> DVec2,
@@ -96,12 +109,14 @@ pub(super) fn runs<'a>(
             let places: Vec<Option<(DVec3, DVec2)>> = line.points.iter().map(place).collect();
             for part in places.split(Option::is_none) {
                 let places: Vec<(DVec3, DVec2)> = part.iter().flatten().copied().collect();
-                let length = places.windows(2).map(|pair| pair[0].1.distance(pair[1].1)).sum();
+                let length: f64 = places.windows(2).map(|pair| pair[0].1.distance(pair[1].1)).sum();
                 let known = longest.iter().position(|run| run.fault == fault);
-                if length < SHORTEST_PT || known.is_some_and(|n| longest[n].length >= length) {
+                let steepness = steepness(&places, geometry);
+                let worth = length * (FLAT_SHARE + (1.0 - FLAT_SHARE) * steepness);
+                if length < SHORTEST_PT || known.is_some_and(|n| longest[n].worth >= worth) {
                     continue;
                 }
-                let run = FaultRun { fault, places, length, face, seen: seen.clone() };
+                let run = FaultRun { fault, places, steepness, worth, face, seen: seen.clone() };
                 match known {
                     Some(n) => longest[n] = run,
                     None => longest.push(run),
@@ -113,8 +128,15 @@ pub(super) fn runs<'a>(
     longest
 }
 
+/// How much of the way from one end to the other runs up and down, in metres.
+fn steepness(places: &[(DVec3, DVec2)], geometry: &SurveyGeometry) -> f64 {
+    let (Some(first), Some(last)) = (places.first(), places.last()) else { return 0.0 };
+    (geometry.metric_from_voxel() * (last.0 - first.0)).normalize_or_zero().z.abs()
+}
+
 impl FaultRun<'_> {
-    /// The throw from the cut-offs of the horizon that is nearest to the middle; `None` where no horizon has both.
+    /// The throw from the cut-offs of the horizon that is nearest to the middle, of those that are known on both sides if
+    /// there are any; `None` where no horizon has both.
     pub(super) fn throw(&self, model: &StructuralModel, geometry: &SurveyGeometry) -> Option<Throw> {
         let middle = self.places[self.places.len() / 2].0;
         let aside = self.face.section.plane.s_axis * BESIDE;
@@ -132,12 +154,29 @@ impl FaultRun<'_> {
                 let [above, below] = [from.z, to.z].map(|z| value_at(geometry, 2, z));
                 let is_seen = (to.z - from.z).abs() >= LEAST_THROW;
                 let share = 0.5 * (from.at + to.at) / last;
-                is_seen.then_some(Throw { size: (below - above).abs(), share, is_ahead_down: to.z > from.z })
+                let is_inferred = [from, to].into_iter().any(|end| self.is_inferred(horizon, end.place));
+                let is_ahead_down = to.z > from.z;
+                is_seen.then_some(Throw { size: (below - above).abs(), share, is_ahead_down, is_inferred })
             };
             behind.iter().filter_map(pair).collect::<Vec<_>>()
         };
         let horizons = (0..model.stratigraphy().horizons.len()).filter(|&horizon| !model.is_body(horizon));
-        horizons.flat_map(throws).min_by(|a, b| (a.share - 0.5).abs().total_cmp(&(b.share - 0.5).abs()))
+        let order = |a: &Throw, b: &Throw| {
+            let aside = |throw: &Throw| (throw.share - 0.5).abs();
+            a.is_inferred.cmp(&b.is_inferred).then(aside(a).total_cmp(&aside(b)))
+        };
+        horizons.flat_map(throws).min_by(order)
+    }
+
+    /// Whether the line of a horizon that ends at a place is only continued there.
+    fn is_inferred(&self, horizon: usize, place: DVec3) -> bool {
+        let own = self.face.section.lines.iter().filter(|line| line.kind == LineKind::Horizon { horizon });
+        let plane = self.face.section.plane;
+        let near = own.flat_map(|line| {
+            let of = move |st: &DVec2| (plane.voxel(*st).distance(place), line.quality == LineQuality::Inferred);
+            line.points.iter().map(of).filter(|(distance, _)| *distance < NEAR_END)
+        });
+        near.min_by(|a, b| a.0.total_cmp(&b.0)).is_some_and(|(_, is_inferred)| is_inferred)
     }
 
     /// Where a horizon ends at the fault within a block, limb by limb.
@@ -156,7 +195,7 @@ impl FaultRun<'_> {
             let [without, with] = [false, true].map(|below_it| model.rules().layer(&below.with(horizon, below_it)));
             let is_there = with != without;
             let is_upright = (off_b > off_a) == (b.z > a.z);
-            is_there.then_some(CutOff { at: n as f64 + share, z: p.z, is_upright })
+            is_there.then_some(CutOff { at: n as f64 + share, place: p, z: p.z, is_upright })
         };
         self.places.windows(2).enumerate().filter_map(crossing).collect()
     }
@@ -190,6 +229,9 @@ impl FaultRun<'_> {
         page_from_voxel: &dyn Fn(DVec3) -> DVec2,
         room: &mut LabelRoom,
     ) -> Option<Group> {
+        if self.steepness < FLAT {
+            return None;
+        }
         let [half, off, ..] = ARROW_PT;
         let place = |step: &f64| {
             let (middle, along) = self.at(throw.share + step);
@@ -256,12 +298,11 @@ impl FaultRun<'_> {
     }
 }
 
-/// "F1, 45 m": a name with the throw.
+/// "F1, 45 m": a name with the throw, queried where it was measured on a horizon that is only continued.
 pub(super) fn said(name: &str, throw: Option<Throw>, geometry: &SurveyGeometry) -> String {
     let unit = geometry.vertical.unit.symbol();
-    match throw {
-        Some(throw) if throw.size >= 10.0 => measured(name, &format!("{:.0} {unit}", throw.size)),
-        Some(throw) => measured(name, &format!("{:.1} {unit}", throw.size)),
-        None => name.to_owned(),
-    }
+    let Some(throw) = throw else { return name.to_owned() };
+    let query = if throw.is_inferred { " (?)" } else { "" };
+    let decimals = usize::from(throw.size < 10.0);
+    measured(name, &format!("{:.decimals$} {unit}{query}", throw.size))
 }

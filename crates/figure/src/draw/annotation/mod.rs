@@ -22,6 +22,7 @@ use super::moved::ON_BLOCK;
 use super::seen::Sight;
 use super::vector_block::BlockNames;
 use crate::annotation::Annotation;
+use crate::convex::within;
 use glam::{DVec2, DVec3};
 use model::StructuralModel;
 use page::Rect;
@@ -144,7 +145,13 @@ impl BlockAnnotation<'_> {
                 faults: self.wants(Annotation::Faults),
                 queries: scene.outlines.unpicked == Unpicked::Dashed,
             };
-            let faces = if wanted.any() { seen_sections(scene, self.geometry, model) } else { Vec::new() };
+            let mut faces = if wanted.any() { seen_sections(scene, self.geometry, model) } else { Vec::new() };
+            // Of a block that is larger than its picture, what lies beyond is not seen.
+            let picture = Rect::sized(DVec2::ZERO, DVec2::from(scene.size_px.map(f64::from)));
+            for face in &mut faces {
+                face.pieces = face.pieces.iter().filter_map(|piece| within(piece, picture)).collect();
+            }
+            faces.retain(|face| !face.pieces.is_empty());
             if self.wants(Annotation::Wells) && scene.wells.radius > 0.0 {
                 let sight = Sight::new(scene, self.geometry, model);
                 let frame = (self.geometry, &model.stratigraphy().horizons[..]);

@@ -40,15 +40,15 @@ pub(super) fn drawn(
     placed: &Placed,
     room: &mut LabelRoom,
 ) -> Vec<Group> {
+    let sees = |voxel: DVec3| sight.sees(voxel) && placed.pane.contains(placed.page_from_voxel(voxel));
     // No letters on the wells themselves.
     for well in wells {
-        for pair in well.path_in_voxels(geometry).windows(2).filter(|pair| pair.iter().all(|place| sight.sees(*place)))
-        {
+        for pair in well.path_in_voxels(geometry).windows(2).filter(|pair| pair.iter().all(|place| sees(*place))) {
             room.take_line(placed.page_from_voxel(pair[0]), placed.page_from_voxel(pair[1]));
         }
     }
     // The heads of all wells first: names of tops yield to them.
-    let heads = wells.iter().map(|well| head(&well.path_in_voxels(geometry), sight));
+    let heads = wells.iter().map(|well| head(&well.path_in_voxels(geometry), sight, &sees));
     let heads: Vec<Option<DVec3>> = heads.collect();
     let mut groups: Vec<Group> = Vec::new();
     for (well, head) in wells.iter().zip(heads) {
@@ -71,7 +71,7 @@ pub(super) fn drawn(
     }
     for (well, group) in wells.iter().zip(&mut groups) {
         for top in &well.tops {
-            let Some(voxel) = well.voxel_at_md(top.md_m, geometry).filter(|voxel| sight.sees(*voxel)) else { continue };
+            let Some(voxel) = well.voxel_at_md(top.md_m, geometry).filter(|voxel| sees(*voxel)) else { continue };
             let at = placed.page_from_voxel(voxel);
             let known = horizons.iter().find(|horizon| is_same_surface(&horizon.name, &top.name));
             let said = known.map_or(&top.name, |horizon| &horizon.name);
@@ -88,12 +88,12 @@ pub(super) fn drawn(
 }
 
 /// Where a path enters the block, if that is seen.
-fn head(path: &[DVec3], sight: &Sight) -> Option<DVec3> {
+fn head(path: &[DVec3], sight: &Sight, sees: &dyn Fn(DVec3) -> bool) -> Option<DVec3> {
     let places = path.windows(2).flat_map(|pair| (0..8).map(|n| pair[0].lerp(pair[1], f64::from(n) / 8.0)));
     let places: Vec<DVec3> = places.filter(|place| sight.is_within(*place)).collect();
     let entered = *places.first()?;
     let in_rock = places.iter().find(|place| sight.is_rock(**place)).copied();
-    [Some(entered), in_rock].into_iter().flatten().find(|place| sight.sees(*place))
+    [Some(entered), in_rock].into_iter().flatten().find(|place| sees(*place))
 }
 
 /// A name about a place where there is room for it, no nearer than `sign`.
