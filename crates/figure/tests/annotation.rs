@@ -531,3 +531,64 @@ fn water_lies_between_the_ground_and_the_top_of_the_block_and_not_in_cut_outs() 
     assert!(up_to(20.0).is_empty());
     assert!(drawn(&Scene { water: None, ..scene }).0.is_empty());
 }
+
+/// Of a block that is larger than its picture, nothing is written beyond what is seen of it.
+#[test]
+fn nothing_is_written_on_the_parts_of_a_block_that_the_picture_cuts_off() {
+    let survey = Survey::new(|geometry| ClosedForm::flat(geometry, &[14.0, 26.0, 38.0]).with_fault(65.0, 6.0));
+    for (zoom, azimuth) in [(1.8, 35.0), (3.0, 120.0), (6.0, 300.0)] {
+        let mut scene = Scene::default();
+        (scene.camera.zoom, scene.camera.azimuth_deg) = (zoom, Some(azimuth));
+        let (page, asked) = survey.page(&scene, &[Annotation::Axes, Annotation::Layers, Annotation::Faults]);
+        let size = DVec2::from(asked.size_px.map(f64::from)) * 72.0 / DPI;
+        let seen = page::Rect::sized(corner(&page), size);
+        let mut leaders = Vec::new();
+        for item in page.leaves() {
+            match item {
+                // Names along layers stand on what is seen of them, and leaders begin there.
+                Item::Text(text) if !text.letters.is_empty() => {
+                    assert!(seen.grown(1.0).contains(text.bounds().centre()), "{} at zoom {zoom}", text.text);
+                }
+                Item::Path(path) => leaders.extend(path.path.segments.first().cloned()),
+                _ => {}
+            }
+        }
+        for from in leaders {
+            let Segment::Move(from) = from else { continue };
+            assert!(seen.grown(12.0).contains(from), "a line begins at {from} beside {seen:?}, zoom {zoom}");
+        }
+    }
+}
+
+/// A steep fault runs level on a face along its strike: arrows there would tell of a movement along strike.
+#[test]
+fn a_fault_has_no_half_arrows_where_its_line_is_level() {
+    let survey = Survey::new(|geometry| ClosedForm::flat(geometry, &[14.0, 26.0, 38.0]).with_fault(65.0, 6.0));
+    let mut named = 0;
+    for azimuth in [0.0, 90.0, 180.0, 270.0] {
+        // The fault strikes along inlines, and meets the inline at x = 35 near sample 36.
+        let block = VoxelBox { min: [35.0, 0.0, 0.0], max: [60.0, 40.0, 50.0] };
+        let mut scene = Scene { roaming_box: Some(block), ..Scene::default() };
+        (scene.camera.azimuth_deg, scene.camera.elevation_deg) = (Some(azimuth), 10.0);
+        let (page, asked) = survey.page(&scene, &[Annotation::Faults]);
+        let mut arrows = Vec::new();
+        groups(&page.items, "half-arrows", &mut arrows);
+        let is_across_strike = asked.view(&survey.geometry).towards_camera(block.centre()).normalize().y.abs() > 0.5;
+        assert_eq!(arrows.len(), usize::from(is_across_strike), "from {azimuth}");
+        named += usize::from(said(&page).iter().any(|text| text.starts_with("F1")));
+    }
+    assert_eq!(named, 3, "it does not reach the inline at x = 60");
+}
+
+/// Water that lies nowhere above the ground is not in the legend.
+#[test]
+fn a_legend_lists_water_only_where_there_is_some() {
+    let survey = Survey { has_legend: true, ..Survey::new(|geometry| ClosedForm::flat(geometry, &[20.0, 36.0])) };
+    let lists_water = |level: f64| {
+        let water = Water { level: Some(level), ..Water::default() };
+        let scene = Scene { ground: Some(Ground::default()), water: Some(water), ..Scene::default() };
+        said(&survey.page(&scene, &[]).0).contains(&"Water".to_owned())
+    };
+    // The ground lies at sample 20.
+    assert!(lists_water(10.0) && !lists_water(32.0));
+}

@@ -183,9 +183,10 @@ impl Legend<'_> {
         let all: f64 = heights.iter().flatten().sum();
         // From equal columns on, an entry is added to their height until they hold all.
         let least = (all / columns as f64).max(self.tightest());
-        let height = (0..=heights.len()).map(|n| least + n as f64 * self.tightest());
-        let holds = |height: &f64| self.packed(*height, columns, 1.0).places.len() == heights.len();
-        (columns, height.into_iter().find(holds).unwrap_or(all))
+        let tried = (0..=heights.len()).map(|n| self.packed(least + n as f64 * self.tightest(), columns, 1.0));
+        let held = tried.into_iter().find(|arranged| arranged.places.len() == heights.len());
+        let bottoms = held.iter().flat_map(|held| held.places.iter().zip(&heights)).map(|((_, top), own)| top + own[1]);
+        (columns, bottoms.reduce(f64::max).unwrap_or(all))
     }
 
     /// The legend in its room; entries that do not fit stand closer, then in several columns. What has no room then is

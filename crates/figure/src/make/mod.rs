@@ -38,6 +38,8 @@ const LEAST_BLOCK_PT: f64 = 40.0;
 const LEGEND_SHARE: f64 = 0.36;
 /// On pages higher than so many widths a legend of several columns stands below the parts.
 const UPRIGHT: f64 = 1.1;
+/// Share of their height that it may take.
+const BELOW_SHARE: f64 = 0.48;
 /// Contacts of more layers than this are not dashed.
 const MOST_DASHED: usize = 150;
 /// Two parts stand beside one another where the room is broader than so many heights, else one over the other.
@@ -127,7 +129,7 @@ pub fn make(
     if let Some(legend) = &legend {
         let (columns, height) = legend.across(room.width());
         let is_upright = room.height() > UPRIGHT * room.width();
-        if is_upright && columns > 1 && height < LEGEND_SHARE * room.height() {
+        if is_upright && columns > 1 && height < BELOW_SHARE * room.height() {
             let [above, below] = room.split_down(1.0 - height / room.height());
             list.items.push(legend.drawn_across(below, columns)?.into());
             room = above.inside([0.0, 0.0, 0.0, GAP_PT]);

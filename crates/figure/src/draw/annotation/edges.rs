@@ -224,13 +224,12 @@ impl OuterEdge {
     ) -> Option<Text> {
         let [start, end] = self.ends.map(page);
         let top = if start.y < end.y { start } else { end };
-        let names = [self.name(geometry), geometry.vertical.unit.symbol()];
         let at = top - DVec2::new(TICK_PT, 0.5 * HEIGHT * NUMBER_PT + 2.0 * GAP_PT);
-        let text = |name: &str, across: Across| {
-            Text::new(at, name).sized(TEXT_PT).inked(QUIET_INK).anchored(across, Upright::Baseline)
+        let text = |across: Across| {
+            let text = Text::new(at, self.name(geometry)).sized(TEXT_PT).inked(QUIET_INK);
+            text.anchored(across, Upright::Baseline)
         };
-        let sides = [Across::Middle, Across::End];
-        let mut texts = names.into_iter().flat_map(|name| sides.map(|across| text(name, across)));
+        let mut texts = [Across::Middle, Across::End].map(text).into_iter();
         texts.find(|text| self.axis == 2 && pane.contains(top) && room.is_free(text))
     }
 

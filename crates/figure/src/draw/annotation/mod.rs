@@ -22,7 +22,7 @@ use super::moved::ON_BLOCK;
 use super::seen::Sight;
 use super::vector_block::BlockNames;
 use crate::annotation::Annotation;
-use crate::convex::within;
+use crate::convex::{area, within};
 use glam::{DVec2, DVec3};
 use model::StructuralModel;
 use page::Rect;
@@ -37,6 +37,8 @@ const MOST_SHRUNK: f64 = 0.55;
 const SLACK_PT: f64 = 2.5;
 /// How often room is made for labels: a picture in the middle of its room moves by half of what is taken off one side.
 const ROUNDS: usize = 16;
+/// Pieces of faces that are smaller than this are too thin to be written on, square pixels.
+const LEAST_PIECE_PX: f64 = 0.5;
 /// Pixels a point at which room is made.
 const PROBE_PX: f64 = 8.0;
 
@@ -149,7 +151,9 @@ impl BlockAnnotation<'_> {
             // Of a block that is larger than its picture, what lies beyond is not seen.
             let picture = Rect::sized(DVec2::ZERO, DVec2::from(scene.size_px.map(f64::from)));
             for face in &mut faces {
-                face.pieces = face.pieces.iter().filter_map(|piece| within(piece, picture)).collect();
+                let seen = face.pieces.iter().filter_map(|piece| within(piece, picture));
+                // Faces seen along their plane are not seen.
+                face.pieces = seen.filter(|piece| area(piece) > LEAST_PIECE_PX).collect();
             }
             faces.retain(|face| !face.pieces.is_empty());
             if self.wants(Annotation::Wells) && scene.wells.radius > 0.0 {
