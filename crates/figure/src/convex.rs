@@ -33,16 +33,15 @@ pub(crate) fn holds(polygon: &[DVec2], place: DVec2) -> bool {
     !(left && right)
 }
 
-/// The part of a convex polygon within a rectangle; `None` where there is none.
-pub(crate) fn within(polygon: &[DVec2], rect: Rect) -> Option<Vec<DVec2>> {
-    // Each side of the rectangle as the places where a measure is not negative.
-    let sides: [&dyn Fn(DVec2) -> f64; 4] =
-        [&|place| place.x - rect.min.x, &|place| place.y - rect.min.y, &|place| rect.max.x - place.x, &|place| {
-            rect.max.y - place.y
-        }];
+/// The part of a polygon within a convex one; `None` where there is none. Where a polygon that is not convex falls into
+/// parts, they are joined along the sides of the other, which fills the same by the even-odd rule.
+pub(crate) fn common(polygon: &[DVec2], convex: &[DVec2]) -> Option<Vec<DVec2>> {
+    let turns: f64 = (0..convex.len()).map(|n| convex[n].perp_dot(convex[(n + 1) % convex.len()])).sum();
     let mut kept = polygon.to_vec();
-    for inside in sides {
-        let mut cut = Vec::new();
+    for n in 0..convex.len() {
+        let (corner, side) = (convex[n], (convex[(n + 1) % convex.len()] - convex[n]) * turns.signum());
+        let inside = |place: DVec2| side.perp_dot(place - corner);
+        let mut cut = Vec::with_capacity(kept.len() + 2);
         for (n, &from) in kept.iter().enumerate() {
             let to = kept[(n + 1) % kept.len()];
             let (here, there) = (inside(from), inside(to));
@@ -56,6 +55,12 @@ pub(crate) fn within(polygon: &[DVec2], rect: Rect) -> Option<Vec<DVec2>> {
         kept = cut;
     }
     (kept.len() > 2 && area(&kept) > 0.0).then_some(kept)
+}
+
+/// The part of a polygon within a rectangle.
+pub(crate) fn within(polygon: &[DVec2], rect: Rect) -> Option<Vec<DVec2>> {
+    let [low, high] = [rect.min, rect.max];
+    common(polygon, &[low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)])
 }
 
 /// The area of a polygon.
@@ -81,6 +86,21 @@ mod tests {
         // All of the rectangle lies in this one, and nothing of the rectangle in that one.
         let large = within(&corners(&[[-20.0, -20.0], [40.0, -20.0], [40.0, 40.0], [-20.0, 40.0]]), rect).unwrap();
         assert!((area(&large) - 60.0).abs() < 1e-9);
+        // Either way round, and of a polygon that falls into two parts both are kept.
+        let fork = corners(&[
+            [1.0, -4.0],
+            [9.0, -4.0],
+            [9.0, 4.0],
+            [7.0, 4.0],
+            [7.0, -2.0],
+            [3.0, -2.0],
+            [3.0, 4.0],
+            [1.0, 4.0],
+        ]);
+        let backwards: Vec<DVec2> = fork.iter().rev().copied().collect();
+        for prongs in [fork, backwards] {
+            assert!((area(&within(&prongs, rect).unwrap()) - 16.0).abs() < 1e-12);
+        }
         assert_eq!(within(&corners(&[[11.0, 1.0], [14.0, 1.0], [12.0, 5.0]]), rect), None);
     }
 }

@@ -1,13 +1,14 @@
 //! The paths of a block on a page: a group for each layer, horizon and fault.
 
 use super::NamedColour;
+use crate::convex::common;
 use glam::DVec2;
 use image::RgbaImage;
 use page::Rect;
 use page::list::{Cap, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Rule, Segment, Stroke};
 use render::vector::{AreaFill, PatternPaint, PatternPart, Polyline, VectorArea, VectorBlock, VectorLineKind};
 use std::sync::Arc;
-use ttf::LayerStyle;
+use ttf::{Colour, LayerStyle};
 
 /// A line of its own colour around an area, so that no ground shows between neighbours, points.
 const BLEED_PT: f64 = 0.12;
@@ -120,6 +121,9 @@ fn filled(
     page: &dyn Fn(DVec2) -> DVec2,
     points_per_px: f64,
 ) -> Item {
+    if let (AreaFill::Colour(colour), None, Some(pieces)) = (&area.fill, &area.band, &area.seen) {
+        return seen_colour(area, *colour, pieces, page);
+    }
     let mut outline = Path::default();
     area.rings.iter().for_each(|ring| append(&mut outline, ring, true, page));
     let mut band = Path::default();
@@ -155,6 +159,24 @@ fn filled(
             Group::new(GroupKind::Part, "seen").clipped(seen).with([item]).into()
         }
     }
+}
+
+/// The seen part of an area in one colour: cut, not clipped, so that it bleeds as others do and no seam shows between the
+/// facets of a curved wall.
+fn seen_colour(area: &VectorArea, colour: Colour, pieces: &[Vec<DVec2>], page: &dyn Fn(DVec2) -> DVec2) -> Item {
+    let bounds = |polygon: &[DVec2]| {
+        let ends = |fold: fn(DVec2, DVec2) -> DVec2, from: DVec2| polygon.iter().copied().fold(from, fold);
+        Rect::new(ends(DVec2::min, DVec2::INFINITY), ends(DVec2::max, DVec2::NEG_INFINITY))
+    };
+    let mut path = Path::default();
+    for piece in pieces {
+        let around = bounds(piece);
+        for ring in area.rings.iter().filter(|ring| bounds(ring).meets(&around)) {
+            common(ring, piece).into_iter().for_each(|part| append(&mut path, &part, true, page));
+        }
+    }
+    let filled = PathItem { rule: Rule::EvenOdd, ..PathItem::filled(path, colour) };
+    filled.outlined(Stroke::new(BLEED_PT, colour)).into()
 }
 
 /// A polygon that turns clockwise on the page: pieces side by side fill as one.

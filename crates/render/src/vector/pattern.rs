@@ -42,6 +42,8 @@ const DOT: f64 = 0.12;
 const SQUEEZED: f64 = 0.3;
 /// Beds thinner than this have no pattern, heights of a tile: less than a row of bricks.
 const SCRAP: f64 = 0.06;
+/// The mapping whose v runs across the map and not down the layers, by its number.
+const MAP: usize = 2;
 /// An area over less than this share of its layer's thickness is no bed but a corner of one.
 const ACROSS: f64 = 0.5;
 /// A line is torn where its places still lie this far apart after [`DEEPEST`] divisions, pixels.
@@ -184,7 +186,9 @@ impl FacePattern<'_> {
             if is_mine.iter().any(|mine| *mine) {
                 let cells = MappedCells { face: self, mapping, scale, lattice: &lattice, is_mine };
                 let px_from_tile = cells.px_from_tile();
-                let is_thin = thickness_px < SCRAP * px_from_tile.x_axis.length() / tile.aspect;
+                // A narrow part of a wall is as thick as its bed.
+                let of_bed = if n == MAP { 0.0 } else { cells.bed_px(self.depths(rings), px_from_tile) };
+                let is_thin = thickness_px.max(of_bed) < SCRAP * px_from_tile.x_axis.length() / tile.aspect;
                 if is_thin && self.is_across(rings) {
                     return None;
                 }
@@ -207,10 +211,15 @@ impl FacePattern<'_> {
 
     /// Whether an area reaches over most of its layer's thickness.
     fn is_across(&self, rings: &[Vec<DVec2>]) -> bool {
+        let [low, high] = self.depths(rings);
+        high - low > ACROSS
+    }
+
+    /// The least and the largest k on the rim of an area.
+    fn depths(&self, rings: &[Vec<DVec2>]) -> [f64; 2] {
         let depths = rings.iter().flatten().map(|at| self.depth(*at));
         let ends = [f64::INFINITY, f64::NEG_INFINITY];
-        let [low, high] = depths.fold(ends, |[low, high], depth| [low.min(depth), high.max(depth)]);
-        high - low > ACROSS
+        depths.fold(ends, |[low, high], depth| [low.min(depth), high.max(depth)])
     }
 
     /// k at a place of the face.
@@ -403,6 +412,14 @@ impl MappedCells<'_> {
         let mut maps: Vec<DMat2> = mine.iter().step_by(every).map(map).filter(DMat2::is_finite).collect();
         maps.sort_by(|a, b| a.determinant().abs().total_cmp(&b.determinant().abs()));
         maps.get(maps.len() / 2).copied().unwrap_or(DMat2::ZERO)
+    }
+}
+
+impl MappedCells<'_> {
+    /// How thick a bed between two k is in the middle of the area, pixels, where v is k.
+    fn bed_px(&self, [low, high]: [f64; 2], px_from_tile: DMat2) -> f64 {
+        let px_per_v = px_from_tile.determinant().abs() / px_from_tile.x_axis.length().max(1e-9);
+        ((high - low).max(0.0) * self.scale[1] * px_per_v).max(0.0)
     }
 }
 
