@@ -49,12 +49,13 @@ impl<'a> Outline<'a> {
     fn rows_between(&self, a: f64, b: f64) -> std::ops::Range<usize> {
         let row = |y: f64| ((y - self.low) / self.step).floor();
         let (first, last) = (row(a.min(b)), row(a.max(b)));
-        // Neither holds for NaN.
-        let is_within = last >= 0.0 && first < self.rows.len() as f64;
+        // Neither holds for NaN. Sides along the lower end belong to the last row.
+        let count = self.rows.len();
+        let is_within = last >= 0.0 && first <= count as f64;
         if !is_within {
             return 0..0;
         }
-        first.max(0.0) as usize..(last as usize + 1).min(self.rows.len())
+        (first.max(0.0) as usize).min(count - 1)..(last as usize + 1).min(count)
     }
 
     /// Whether a place lies within.

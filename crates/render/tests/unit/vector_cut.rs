@@ -42,6 +42,26 @@ fn a_line_is_parted_at_the_outline_and_around_holes() {
     assert!(!parts[0].closed);
 }
 
+/// A line that enters through any side, of squares whose heights are and are not whole rows.
+#[test]
+fn a_line_that_comes_from_outside_is_kept_from_where_it_enters() {
+    for high in [90.0, 92.0, 93.7, 3.0, 100.0 / 3.0] {
+        let rings = vec![ring(&[[0.0, 0.0], [90.0, 0.0], [90.0, high], [0.0, high]])];
+        let outline = Outline::new(&rings);
+        let middle = [45.0, 0.5 * high];
+        for (from, enters) in [
+            ([45.0, high + 7.0], [45.0, high]),
+            ([45.0, -7.0], [45.0, 0.0]),
+            ([-7.0, 0.5 * high], [0.0, 0.5 * high]),
+            ([97.0, 0.5 * high], [90.0, 0.5 * high]),
+        ] {
+            let parts = outline.cut_line(line(&[from, middle]));
+            assert_eq!(parts.len(), 1, "from {from:?} into a height of {high}");
+            assert!(parts[0].points[0].distance(DVec2::from_array(enters)) < 1e-9);
+        }
+    }
+}
+
 /// The area of what is left is known.
 #[test]
 fn an_area_keeps_its_part_within_whichever_way_it_turns() {
