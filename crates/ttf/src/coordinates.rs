@@ -13,15 +13,20 @@
 //! y, x for a horizontal face, and the true direction for an oblique one, so that a pattern keeps its size on
 //! any vertical cut. The paper always uses `along` on top faces, with t = x. Where a layer dips towards x, i
 //! and k then change together and nothing changes along y, so the pattern smears into stripes. We take the
-//! horizontal coordinate that runs along strike. Where the face is parallel to the layer, k does not change
-//! at all, and the way across t takes its place: j on a top face, the way down the layer on a side face that shows a
-//! steep limb. At an angle of 30° between face and layer `along` is stretched by 2, which is as much as a calm pattern
-//! may be (`render::distortion`), so from there on the map begins to replace it.
+//! horizontal coordinate that runs along strike. Where the face is nearly parallel to the layer, k hardly changes, and the
+//! way across t takes its place: j on a top face, the way down the layer on a side face that shows a steep limb. A thick
+//! layer comes to that at larger angles than a thin one. So what counts is how calm the pattern would be on the face
+//! ([`crate::Stretch::calmness`]). In a layer of its nominal thickness that is |s|, the sine of the angle between face and
+//! layer; s = n × g is the strike line on the face, for face normal n and g = ∇k/|∇k|. From 0.6 the map begins to replace k,
+//! from 0.5 on, the limit of what is calm, it alone is used, unless it is no calmer.
 //!
-//! The weights follow from the strike line on the face, s = n × g, for face normal n and g = ∇k/|∇k|: |s| is
-//! the sine of the angle between face and layer. With S(a, b, x) the cubic smoothstep: `map = 1 − S(sin² 24°,
-//! sin² 30°, |s|²)`, `r = (s·t)²/((s·t)² + (s·t′)²)`, `along = (1 − map)·S(0.35, 0.65, r)`, `across = 1 − map
-//! − along`; t′ = t turned by 90°.
+//! With S(a, b, x) the cubic smoothstep, c₀, c₁ and c₂ the calmness of along, across and map:
+//!
+//! ```text
+//! r = (s·t)²/((s·t)² + (s·t′)²)         along t, a share of R = S(0.35, 0.65, r); t′ = t turned by 90°
+//! c² = R·c₀² + (1 − R)·c₁²
+//! map = (1 − S(0.5², 0.6², c²))·(1 − S(0.8, 1, c²/c₂²)),   along = (1 − map)·R,   across = 1 − map − along
+//! ```
 //!
 //! On a wall that turns, `along` continues from one plane to the next: u is shifted so that it is the same on both sides
 //! of their edge wherever (i, j) is the place on the map.
@@ -30,10 +35,14 @@
 //! metres downwards); their signs do not matter. All arithmetic is f32, so that the WGSL twin computes the
 //! same.
 
-/// sin² of the angle between face and layer below which only the map mapping is used (24°).
-pub const MAP_ONLY_SIN_SQ: f32 = 0.165_434_7;
-/// sin² of the angle between face and layer above which the map mapping is not used (30°).
-pub const NO_MAP_SIN_SQ: f32 = 0.25;
+use crate::stretch::Stretch;
+
+/// Square of the calmness of a pattern over k at and below which the map mapping replaces it.
+pub const MAP_ONLY_CALMNESS_SQ: f32 = 0.25;
+/// Square of the calmness of a pattern over k above which the map mapping is not used.
+pub const NO_MAP_CALMNESS_SQ: f32 = 0.36;
+/// The map mapping is used alone only if the square of the other's calmness is at most this share of the square of its own.
+pub const MAP_RATHER_SQ: f32 = 0.8;
 /// Share of the strike line along t below which the across mapping alone is used.
 pub const ACROSS_ONLY_SHARE: f32 = 0.35;
 /// Share of the strike line along t above which the along mapping alone is used.
@@ -104,31 +113,56 @@ impl FaceFrame {
         Self { normal: unit(normal), along, shift }
     }
 
-    /// The weights at a point where k rises along `grad_k` (any length). A gradient that is zero or NaN gives
-    /// the along mapping alone.
+    /// The weights at a point where k rises along `grad_k` (any length) and the mappings have these stretches
+    /// ([`Self::stretches`]). A gradient that is zero or NaN gives the along mapping alone.
     ///
     /// ```
     /// use ttf::FaceFrame;
+    /// // i, j and k over 1 km by 1 km by 100 m; a flat layer on a top face is seen as a map.
     /// let top = FaceFrame::new([0.0, 0.0, 1.0]);
-    /// // A flat layer on a top face is seen as a map; on a side face k runs upwards.
-    /// assert_eq!(top.weights([0.0, 0.0, -1.0]).to_array(), [0.0, 0.0, 1.0]);
-    /// assert_eq!(FaceFrame::new([1.0, 0.0, 0.0]).weights([0.0, 0.0, -1.0]).to_array(), [1.0, 0.0, 0.0]);
+    /// let on_top = top.stretches(1.0, [1e3, 1e2], [[1e-3, 0.0, 0.0], [0.0, 1e-3, 0.0]]);
+    /// assert_eq!(top.weights([0.0, 0.0, -1e-2], &on_top).to_array(), [0.0, 0.0, 1.0]);
+    /// // On a side face k runs upwards.
+    /// let side = FaceFrame::new([1.0, 0.0, 0.0]);
+    /// let on_side = side.stretches(1.0, [1e3, 1e2], [[0.0, 1e-3, 0.0], [0.0, 0.0, -1e-2]]);
+    /// assert_eq!(side.weights([0.0, 0.0, -1e-2], &on_side).to_array(), [1.0, 0.0, 0.0]);
     /// ```
-    pub fn weights(&self, grad_k: [f32; 3]) -> MappingWeights {
+    pub fn weights(&self, grad_k: [f32; 3], stretches: &[Stretch; 3]) -> MappingWeights {
         let g = unit(grad_k);
         let n = self.normal;
         let s = [n[1] * g[2] - n[2] * g[1], n[2] * g[0] - n[0] * g[2], n[0] * g[1] - n[1] * g[0]];
-        let sin_sq = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
-        if g == [0.0; 3] || !sin_sq.is_finite() {
-            return MappingWeights { along: 1.0, across: 0.0, map: 0.0 };
+        if g == [0.0; 3] || !s.iter().all(|part| part.is_finite()) {
+            return MappingWeights::ALONG;
         }
-        let map = 1.0 - smoothstep(MAP_ONLY_SIN_SQ, NO_MAP_SIN_SQ, sin_sq);
         let along_t = s[0] * self.along[0] + s[1] * self.along[1];
         let across_t = s[1] * self.along[0] - s[0] * self.along[1];
         let horizontal_sq = along_t * along_t + across_t * across_t;
         let share = if horizontal_sq > 1e-12 { along_t * along_t / horizontal_sq } else { 1.0 };
-        let along = (1.0 - map) * smoothstep(ACROSS_ONLY_SHARE, ALONG_ONLY_SHARE, share);
+        let share = smoothstep(ACROSS_ONLY_SHARE, ALONG_ONLY_SHARE, share);
+        let [along_sq, across_sq, map_sq] = stretches.map(|stretch| stretch.calmness() * stretch.calmness());
+        let k_sq = across_sq + share * (along_sq - across_sq);
+        let sparse = 1.0 - smoothstep(MAP_ONLY_CALMNESS_SQ, NO_MAP_CALMNESS_SQ, k_sq);
+        let better = if map_sq > 0.0 { 1.0 - smoothstep(MAP_RATHER_SQ, 1.0, k_sq / map_sq) } else { 0.0 };
+        let map = sparse * better;
+        let along = (1.0 - map) * share;
         MappingWeights { along, across: (1.0 - map - along).max(0.0), map }
+    }
+
+    /// How far each mapping (along, across, map) is stretched where (i, j, k) changes by `changes` for a metre along two
+    /// perpendicular directions of the face. i and k stand for `[extent_i_m, thickness_m]` metres.
+    pub fn stretches(
+        &self,
+        aspect_j: f32,
+        [extent_i_m, thickness_m]: [f32; 2],
+        changes: [[f32; 3]; 2],
+    ) -> [Stretch; 3] {
+        let lengths = [[extent_i_m, thickness_m], [extent_i_m, thickness_m], [extent_i_m, extent_i_m]];
+        let mappings = self.mappings(aspect_j);
+        [0, 1, 2].map(|n: usize| {
+            let [p, q] = changes.map(|change| mappings[n].apply(change));
+            let [u_m, v_m] = lengths[n];
+            Stretch::of([[u_m * p[0], u_m * q[0]], [v_m * p[1], v_m * q[1]]])
+        })
     }
 
     /// The three mappings (along, across, map) for a block whose j axis is `aspect_j` times as long as its i
@@ -146,6 +180,9 @@ impl FaceFrame {
 }
 
 impl MappingWeights {
+    /// The along mapping alone.
+    pub const ALONG: Self = Self { along: 1.0, across: 0.0, map: 0.0 };
+
     /// The weights in the order of [`FaceFrame::mappings`].
     pub fn to_array(self) -> [f32; 3] {
         [self.along, self.across, self.map]
