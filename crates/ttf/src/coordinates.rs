@@ -226,8 +226,31 @@ mod tests {
 
     const UP: [f32; 3] = [0.0, 0.0, -1.0];
 
+    /// The weights in a layer of its nominal thickness whose (i, j) are lengths along it.
     fn weights(normal: [f32; 3], grad_k: [f32; 3]) -> [f32; 3] {
-        FaceFrame::new(normal).weights(grad_k).to_array()
+        let frame = FaceFrame::new(normal);
+        frame.weights(grad_k, &stretches(&frame, grad_k, 1.0)).to_array()
+    }
+
+    /// The stretches where k rises so many times as fast as in a layer of its nominal thickness.
+    fn stretches(frame: &FaceFrame, grad_k: [f32; 3], rate: f32) -> [Stretch; 3] {
+        let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let cross = |a: [f32; 3], b: [f32; 3]| {
+            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+        };
+        let g = unit(grad_k);
+        let g = if g[2] > 0.0 { g.map(|part| -part) } else { g };
+        // A layer that lay flat, turned about its strike.
+        let axis = cross(UP, g);
+        let turned = |v: [f32; 3]| {
+            let (turn, share) = (cross(axis, v), dot(axis, v) / (1.0 - g[2]));
+            [0, 1, 2].map(|n| -g[2] * v[n] + turn[n] + share * axis[n])
+        };
+        let n = frame.normal;
+        let p = unit(cross(n, if n[0].abs() < 0.7 { [1.0, 0.0, 0.0] } else { UP }));
+        let change =
+            |step| [dot(step, turned([1.0, 0.0, 0.0])), dot(step, turned([0.0, 1.0, 0.0])), rate * dot(step, g)];
+        frame.stretches(1.0, [1.0; 2], [change(p), change(cross(n, p))])
     }
 
     fn near(found: [f32; 3], expected: [f32; 3]) {
@@ -260,27 +283,39 @@ mod tests {
     }
 
     #[test]
-    fn the_map_takes_over_between_30_and_24_degrees_without_a_jump() {
-        let at = |degrees: f32| {
-            let (sin, cos) = degrees.to_radians().sin_cos();
-            weights([0.0, 0.0, 1.0], [0.0, sin, -cos])
-        };
-        near(at(23.9), [0.0, 0.0, 1.0]);
-        near(at(30.1), [1.0, 0.0, 0.0]);
-        let mut previous = at(0.0);
-        for step in 1..=900 {
-            let now = at(step as f32 * 0.1);
-            assert!((now.iter().sum::<f32>() - 1.0).abs() < 1e-5);
-            assert!(now[2] <= previous[2] && previous[2] - now[2] < 0.03);
-            previous = now;
+    fn the_map_takes_over_where_k_is_no_longer_calm_without_a_jump() {
+        let top = FaceFrame::new([0.0, 0.0, 1.0]);
+        // In a layer of its nominal thickness between 36.9° and 30°, in a thicker or thinner one where lines of k are as far
+        // apart on the face.
+        for rate in [0.7, 1.0, 1.5] {
+            let at = |sin: f32| {
+                let grad_k = [0.0, sin, -(1.0 - sin * sin).sqrt()];
+                top.weights(grad_k, &stretches(&top, grad_k, rate)).to_array()
+            };
+            near(at(0.49 / rate), [0.0, 0.0, 1.0]);
+            near(at(0.61 / rate), [1.0, 0.0, 0.0]);
+            let mut previous = at(0.0);
+            for step in 1..=600 {
+                let now = at(step as f32 * 0.001 / rate);
+                assert!((now.iter().sum::<f32>() - 1.0).abs() < 1e-5);
+                assert!(now[2] <= previous[2] && previous[2] - now[2] < 0.03);
+                previous = now;
+            }
         }
+    }
+
+    #[test]
+    fn the_map_is_not_taken_where_it_is_no_calmer() {
+        // A layer four times as thick as usual in a section across it: i alone changes with the map.
+        let (face, grad_k) = (FaceFrame::new([0.0, 1.0, 0.0]), [0.0, 0.0, -1.0]);
+        near(face.weights(grad_k, &stretches(&face, grad_k, 0.25)).to_array(), [1.0, 0.0, 0.0]);
     }
 
     #[test]
     fn a_steep_limb_on_a_side_face_lies_along_the_horizontal() {
         for (normal, limb) in [([1.0, 0.0, 0.0], [1.0, 0.0, -0.1]), ([0.0, 1.0, 0.0], [0.0, -1.0, 0.1])] {
             let frame = FaceFrame::new(normal);
-            near(frame.weights(limb).to_array(), [0.0, 0.0, 1.0]);
+            near(weights(normal, limb), [0.0, 0.0, 1.0]);
             let [along, _, map] = frame.mappings(2.0);
             let (strike, dip) =
                 if normal[0] == 1.0 { ([0.0, 0.3, 0.0], [0.4, 0.0, 0.0]) } else { ([0.3, 0.0, 0.0], [0.0, 0.4, 0.0]) };

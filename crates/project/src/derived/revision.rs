@@ -8,8 +8,7 @@
 pub const MODEL: u32 = 3;
 
 /// The parameterization.
-pub const PARAMETERIZATION: u32 = 6;
-
+pub const PARAMETERIZATION: u32 = 7;
 /// Horizon candidates: extrema, growing, surface trees, distances.
 pub const EXTRACTION: u32 = 2;
 
@@ -142,7 +141,7 @@ mod tests {
     fn a_changed_result_has_a_changed_revision() {
         let known = [
             ("MODEL", MODEL, of_model(), (3, "f3513521b9d7")),
-            ("PARAMETERIZATION", PARAMETERIZATION, of_parameterization(), (6, "29c9a61fc71d")),
+            ("PARAMETERIZATION", PARAMETERIZATION, of_parameterization(), (7, "29c9a61fc71d")),
             ("EXTRACTION", EXTRACTION, of_extraction(), (2, "7a7715634834")),
             ("PROPOSALS", PROPOSALS, of_proposals(), (1, "1fc6c26217e7")),
             ("FOUND_FAULTS", FOUND_FAULTS, of_found_faults(), (1, "e89afb8fab47")),
