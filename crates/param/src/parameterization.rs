@@ -75,9 +75,9 @@ impl Parameterization {
                 let closed =
                     of_layer().filter(|&n| planned[n].1 == Method::Unfolded && planned[n].0.thickness_m.is_none());
                 let rates = closed.flat_map(|n| planned[n].0.rises(model, &metric, &touched[n], region(n)));
-                let mut rates: Vec<f64> = rates.collect();
-                rates.sort_by(f64::total_cmp);
-                rates.get(rates.len() / 2).map(|rate| 1.0 / rate)
+                // The geometric mean: a fold thickens as many beds as it thins.
+                let (count, sum) = rates.fold((0.0, 0.0), |(count, sum), rate| (count + 1.0, sum - rate.ln()));
+                (count > 0.0).then(|| (sum / count).exp())
             })
             .collect();
         // [layer][block]

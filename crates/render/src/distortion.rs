@@ -1,13 +1,7 @@
 //! How much patterns are distorted on the faces of a picture.
 //!
 //! A face lays its pattern on by a map from the plane of the face, in metres of the displayed (exaggerated) block, to
-//! the pattern, in tiles. Each tile has a nominal size: the block's length over the horizontal frequency, and
-//! the layer's mean thickness over the vertical one. Counted in nominal metres, an undistorted pattern is a rotation. The
-//! two singular values of the map's derivative are how many nominal metres of pattern lie on a metre of rock:
-//!
-//! ```text
-//! aspect ratio = σ₁/σ₂        area factor = σ₁·σ₂        (both 1 where the pattern has its printed size)
-//! ```
+//! the pattern. How far that is from the pattern's nominal size and shape is its [`Stretch`].
 //!
 //! Where a face blends several mappings ([`ttf::FaceFrame`]) each counts with its weight.
 
@@ -23,51 +17,7 @@ use glam::{DMat3, DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
 use survey::Progress;
-use survey::block::BodyPlane;
-
-/// The largest aspect ratio that counts as calm.
-pub const CALM_ASPECT: f32 = 2.0;
-/// The area factor above which, or below whose inverse, a pattern counts as distorted.
-pub const CALM_AREA: f32 = 2.0;
-
-/// The singular values of the map from rock to pattern, in nominal metres of pattern for a metre of rock.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stretch {
-    /// Along the direction in which the pattern is densest.
-    pub densest: f32,
-    /// Across it.
-    pub sparsest: f32,
-}
-
-impl Stretch {
-    /// From the derivative `[[∂u/∂x, ∂u/∂y], [∂v/∂x, ∂v/∂y]]`, (x, y) Cartesian on the face.
-    ///
-    /// ```
-    /// // Twice as dense along v, sheared by nothing.
-    /// let stretch = render::distortion::Stretch::of([[1.0, 0.0], [0.0, 2.0]]);
-    /// assert_eq!((stretch.aspect(), stretch.area()), (2.0, 2.0));
-    /// ```
-    pub fn of([[a, b], [c, d]]: [[f32; 2]; 2]) -> Self {
-        let sum = 0.5 * (a + d).hypot(c - b);
-        let difference = 0.5 * (a - d).hypot(c + b);
-        Self { densest: sum + difference, sparsest: (sum - difference).abs() }
-    }
-
-    /// Length of an element of the pattern over its width, at least 1; infinite where it is smeared to a line.
-    pub fn aspect(self) -> f32 {
-        self.densest / self.sparsest
-    }
-
-    /// Elements on an area of rock over those of the nominal size.
-    pub fn area(self) -> f32 {
-        self.densest * self.sparsest
-    }
-
-    /// Whether the aspect ratio is at most 2 and the area factor in [½, 2].
-    pub fn is_calm(self) -> bool {
-        self.aspect() <= CALM_ASPECT && (1.0 / CALM_AREA..=CALM_AREA).contains(&self.area())
-    }
-}
+pub use ttf::stretch::{CALM_AREA, CALM_ASPECT, Stretch};
 
 /// The distortion of one layer in a picture.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -113,7 +63,6 @@ pub fn measure(scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<Ve
     let resolved = ResolvedScene::new(scene, inputs, &mut Kept::default())?;
     let Some(interpretation) = resolved.interpretation else { return Ok(Vec::new()) };
     let layers = interpretation.model.layer_count();
-    let faces = FaceMetric::of(&resolved);
     let [width, height] = scene.size_px;
     progress.begin("measuring distortion", u64::from(height));
     let rows: Vec<Vec<LayerDistortion>> = (0..height)
@@ -124,7 +73,7 @@ pub fn measure(scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<Ve
                 let view_ray = resolved.view.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
                 if let RayHit::Face(hit) = stopping_hit(&resolved, &Ray::from(view_ray), Start::OF_RAY) {
                     let place = FacePlace::new(&resolved, &interpretation, &hit);
-                    row[place.layer].add(&place.distortion(faces.pixel_m2(&view_ray, &hit)));
+                    row[place.layer].add(&place.distortion(pixel_m2(&resolved, &view_ray, &hit)));
                 }
             }
             progress.step(1).map(|()| row)
@@ -169,41 +118,11 @@ pub fn tone(stretch: Stretch) -> Vec3 {
     SCALE[cell].lerp(SCALE[cell + 1], at - cell as f32)
 }
 
-/// The metric of displayed space.
-struct FaceMetric {
-    metres: DMat3,
-}
-
-/// Two directions that span a plane, voxels, and the inverse of the matrix whose columns they are, Cartesian on the plane.
-struct InFace {
-    steps: [Vec3; 2],
-    inverse: [[f32; 2]; 2],
-}
-
-impl FaceMetric {
-    fn of(resolved: &ResolvedScene) -> Self {
-        let stretch = DMat3::from_diagonal(DVec3::new(1.0, 1.0, resolved.scene.exaggeration));
-        Self { metres: stretch * resolved.metric }
-    }
-
-    fn on(&self, plane: &BodyPlane) -> InFace {
-        let steps = match plane.axis {
-            Some(axis) => [[1, 2], [0, 2], [0, 1]][axis].map(|n: usize| DVec3::AXES[n]),
-            None => plane.normal.as_dvec3().any_orthonormal_pair().into(),
-        };
-        let [p, q] = steps.map(|step| self.metres * step);
-        let (length, along) = (p.length(), p.dot(q) / p.length());
-        let across = (q.length_squared() - along * along).max(0.0).sqrt();
-        // The inverse of [[length, along], [0, across]].
-        let inverse = [[1.0 / length, -along / (length * across)], [0.0, 1.0 / across]];
-        InFace { steps: steps.map(|step| step.as_vec3()), inverse: inverse.map(|row| row.map(|value| value as f32)) }
-    }
-
-    /// Area of a pixel on the face, m².
-    fn pixel_m2(&self, ray: &ViewRay, hit: &FaceHit) -> f64 {
-        let [right, down] = [0, 1].map(|n| self.metres * pixel_shift(ray, hit, n).as_dvec3());
-        right.cross(down).length()
-    }
+/// Area of a pixel on a face, m².
+fn pixel_m2(resolved: &ResolvedScene, ray: &ViewRay, hit: &FaceHit) -> f64 {
+    let displayed = DMat3::from_diagonal(DVec3::new(1.0, 1.0, resolved.scene.exaggeration)) * resolved.metric;
+    let [right, down] = [0, 1].map(|n| displayed * pixel_shift(ray, hit, n).as_dvec3());
+    right.cross(down).length()
 }
 
 /// A place on a face: its layer, and the weight and stretch of each mapping.
@@ -214,27 +133,11 @@ struct FacePlace {
 
 impl FacePlace {
     fn new(resolved: &ResolvedScene, interpretation: &ResolvedInterpretation, hit: &FaceHit) -> Self {
-        let tables = &resolved.tables;
         let (flat, jacobian) = interpretation.flat_at(hit.point, None);
-        let layer = usize::from(flat.region.layer);
-        let frame = resolved.frame(&hit.plane);
-        let weights = frame.weights((Vec3::from_array(jacobian[2]) / resolved.voxel_m).to_array()).to_array();
-        let (horizontal_m, vertical_m) = (tables.extent_i_m, tables.thicknesses_m.get(layer).copied().unwrap_or(1.0));
-        let InFace { steps, inverse } = FaceMetric::of(resolved).on(&hit.plane);
-        let mut number = 0;
-        let mappings = frame.mappings(tables.globals.aspect_j).map(|mapping| {
-            let is_map = number == 2;
-            number += 1;
-            // Derivatives of u and v along the two directions in the face, per voxel.
-            let along = |step: Vec3| mapping.apply(jacobian.map(|row| Vec3::from_array(row).dot(step)));
-            let [along_p, along_q] = steps.map(along);
-            let row = |n: usize, nominal_m: f32| {
-                let (p, q) = (along_p[n] * nominal_m, along_q[n] * nominal_m);
-                [p * inverse[0][0], p * inverse[0][1] + q * inverse[1][1]]
-            };
-            let stretch = Stretch::of([row(0, horizontal_m), row(1, if is_map { horizontal_m } else { vertical_m })]);
-            (weights[number - 1], stretch)
-        });
+        let (map, layer) = (resolved.face_map(&hit.plane), flat.region.layer);
+        let weights = map.weights(&resolved.tables, layer, &jacobian).to_array();
+        let stretches = map.stretches(&resolved.tables, layer, &jacobian);
+        let (layer, mappings) = (usize::from(layer), [0, 1, 2].map(|n| (weights[n], stretches[n])));
         Self { layer, mappings }
     }
 
@@ -256,21 +159,6 @@ impl FacePlace {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn singular_values_are_those_of_known_maps() {
-        let (sin, cos) = 0.7f32.sin_cos();
-        // A rotation after a stretch by 3 and ½.
-        let stretch = Stretch::of([[3.0 * cos, -0.5 * sin], [3.0 * sin, 0.5 * cos]]);
-        assert!((stretch.densest - 3.0).abs() < 1e-5 && (stretch.sparsest - 0.5).abs() < 1e-5, "{stretch:?}");
-        // A shear by γ keeps areas; σ₁ = (γ + √(γ² + 4))/2.
-        let stretch = Stretch::of([[1.0, 0.8], [0.0, 1.0]]);
-        assert!((stretch.densest - 0.5 * (0.8 + 4.64f32.sqrt())).abs() < 1e-5);
-        assert!((stretch.area() - 1.0).abs() < 1e-5);
-        // A mirrored map is as calm as its image.
-        assert_eq!(Stretch::of([[-1.0, 0.0], [0.0, 1.0]]), Stretch { densest: 1.0, sparsest: 1.0 });
-        assert!(!Stretch::of([[1.0, 1.0], [1.0, 1.0]]).is_calm(), "smeared to lines");
-    }
 
     #[test]
     fn the_scale_is_told_apart_in_grey_and_ends_at_its_limits() {

@@ -24,6 +24,7 @@ pub mod camera;
 pub mod cover;
 pub mod distortion;
 pub mod error;
+mod face_map;
 pub mod faces;
 mod gpu;
 pub mod ground;

@@ -9,6 +9,7 @@
 
 use crate::camera::ViewRay;
 use crate::distortion;
+use crate::face_map::FaceMap;
 use crate::ground::GroundHit;
 use crate::inputs::NamedVolume;
 use crate::leaves::{FaceData, cover, distance_tone, leaf_colour};
@@ -17,13 +18,13 @@ use crate::shade::{RayHit, pixel_shift};
 use crate::visible::FaceHit;
 use glam::{Vec3, Vec4};
 use survey::block::BodyPlane;
-use ttf::{FaceFrame, FlatFootprint, LayerPoint, ShadePoint};
+use ttf::{FaceFrame, FlatFootprint, LayerPoint, MappingWeights, ShadePoint};
 
 /// Points of rays that are neighbours in the picture.
 #[derive(Debug, Default)]
 pub(crate) struct Points {
     /// The planes on which they lie.
-    planes: Vec<BodyPlane>,
+    planes: Vec<(BodyPlane, FaceMap)>,
     points: Vec<SurfacePoint>,
 }
 
@@ -45,7 +46,8 @@ struct FacePoint {
     /// (i, j, k); NaN where no illustration is visible.
     flat: [f32; 3],
     footprint: FlatFootprint,
-    grad_k: [f32; 3],
+    /// Of the mappings of the face.
+    weights: MappingWeights,
 }
 
 /// A point of the ground.
@@ -79,7 +81,7 @@ impl Points {
     /// Straight RGBA of the points.
     pub fn colours(&self, resolved: &ResolvedScene) -> Vec<Vec4> {
         let planes: Vec<(FaceFrame, f32)> =
-            self.planes.iter().map(|plane| (resolved.frame(plane), resolved.tone(plane))).collect();
+            self.planes.iter().map(|(plane, _)| (resolved.frame(plane), resolved.tone(plane))).collect();
         let opacity = resolved.relief.as_ref().map_or(1.0, |relief| relief.opacity);
         let mut scalars = vec![f32::NAN; resolved.volumes.len()];
         let colour = |point: &SurfacePoint| match point {
@@ -104,20 +106,27 @@ impl Points {
     }
 }
 
-fn face_point(resolved: &ResolvedScene, ray: &ViewRay, hit: &FaceHit, planes: &mut Vec<BodyPlane>) -> SurfacePoint {
+fn face_point(
+    resolved: &ResolvedScene,
+    ray: &ViewRay,
+    hit: &FaceHit,
+    planes: &mut Vec<(BodyPlane, FaceMap)>,
+) -> SurfacePoint {
     if resolved.scene.face_data == FaceData::Distortion
         && let Some(interpretation) = resolved.interpretation
     {
         return SurfacePoint::Fixed(distortion::colour_at(resolved, &interpretation, hit));
     }
-    let plane = planes.iter().position(|known| *known == hit.plane).unwrap_or_else(|| {
-        planes.push(hit.plane);
+    let plane = planes.iter().position(|(known, _)| *known == hit.plane).unwrap_or_else(|| {
+        planes.push((hit.plane, resolved.face_map(&hit.plane)));
         planes.len() - 1
-    }) as u16;
+    });
+    let map = planes[plane].1;
+    let plane = plane as u16;
     let Some(interpretation) = resolved.interpretation.filter(|_| resolved.illustrated) else {
         let footprint = FlatFootprint::default();
-        let (flat, grad_k) = ([f32::NAN; 3], [0.0; 3]);
-        return SurfacePoint::Face(FacePoint { point: hit.point, plane, layer: 0, flat, footprint, grad_k });
+        let (flat, weights) = ([f32::NAN; 3], MappingWeights::ALONG);
+        return SurfacePoint::Face(FacePoint { point: hit.point, plane, layer: 0, flat, footprint, weights });
     };
     let (flat, jacobian) = interpretation.flat_at(hit.point, None);
     let step = |n: usize| {
@@ -130,7 +139,7 @@ fn face_point(resolved: &ResolvedScene, ray: &ViewRay, hit: &FaceHit, planes: &m
         layer: flat.region.layer,
         flat: [flat.i, flat.j, flat.k],
         footprint: FlatFootprint { dx: step(0), dy: step(1) },
-        grad_k: (Vec3::from_array(jacobian[2]) / resolved.voxel_m).to_array(),
+        weights: map.weights(&resolved.tables, flat.region.layer, &jacobian),
     })
 }
 
@@ -141,7 +150,7 @@ fn face_colour(resolved: &ResolvedScene, point: &FacePoint, face: FaceFrame, sca
     }
     let [i, j, k] = point.flat;
     let flat = LayerPoint { i, j, k, layer: u32::from(point.layer) };
-    let shaded = ShadePoint { flat, footprint: point.footprint, face, grad_k: point.grad_k };
+    let shaded = ShadePoint { flat, footprint: point.footprint, face, weights: point.weights };
     let rock = Vec4::from_array(ttf::shade(&resolved.tables, &shaded, scalars)).truncate();
     with_candidates(resolved, point.point, rock)
 }

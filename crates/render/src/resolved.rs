@@ -12,6 +12,7 @@ use crate::pattern_size::Frequencies;
 use crate::scene::{Lookup, Scene};
 use crate::visible::Solid;
 use crate::wells::Tubes;
+use bytemuck::Zeroable;
 use glam::{DMat3, DVec3, Vec2, Vec3};
 use model::StructuralModel;
 use param::{PackedVolume, Parameterization};
@@ -138,7 +139,7 @@ impl ResolvedScene<'_> {
             return FaceFrame::new(exact);
         };
         let along = Vec2::from(wall.along) * self.voxel_m.truncate();
-        FaceFrame::on_wall(normal, along.normalize().to_array(), wall.shift_m / self.tables.extent_i_m)
+        FaceFrame::on_wall(normal, along.normalize().to_array(), wall.shift_m / self.tables.globals.extent_i_m)
     }
 
     /// The factor on colours of a plane of the block: of its direction between those of constant x and y.
@@ -225,7 +226,7 @@ fn resolve_tables(scene: &Scene, inputs: &Inputs, view: &View, illustrated: bool
         tables.globals.blend = 1.0;
         tables.globals.scalar_count = 0;
         tables.scalars.clear();
-        let plain = LayerEntry { colour: PLAIN, frequency: [1.0; 2], first_interval: 0, interval_count: 0 };
+        let plain = LayerEntry { colour: PLAIN, frequency: [1.0; 2], ..LayerEntry::zeroed() };
         tables.layers = vec![plain];
     }
     if tables.globals.blend == 0.0 {
@@ -246,10 +247,9 @@ fn no_tables() -> TtfTables {
             scalar_count: 0,
             stop_count: 0,
             finer_share: 0.0,
-            padding: [0; 3],
+            extent_i_m: 1.0,
+            padding: [0; 2],
         },
-        extent_i_m: 1.0,
-        thicknesses_m: Vec::new(),
         layers: Vec::new(),
         intervals: Vec::new(),
         scalars: Vec::new(),

@@ -13,15 +13,20 @@
 //! y, x for a horizontal face, and the true direction for an oblique one, so that a pattern keeps its size on
 //! any vertical cut. The paper always uses `along` on top faces, with t = x. Where a layer dips towards x, i
 //! and k then change together and nothing changes along y, so the pattern smears into stripes. We take the
-//! horizontal coordinate that runs along strike. Where the face is parallel to the layer, k does not change
-//! at all, and the way across t takes its place: j on a top face, the way down the layer on a side face that shows a
-//! steep limb. At an angle of 30° between face and layer `along` is stretched by 2, which is as much as a calm pattern
-//! may be (`render::distortion`), so from there on the map begins to replace it.
+//! horizontal coordinate that runs along strike. Where the face is nearly parallel to the layer, k hardly changes, and the
+//! way across t takes its place: j on a top face, the way down the layer on a side face that shows a steep limb. A thick
+//! layer comes to that at larger angles than a thin one. So what counts is how calm the pattern would be on the face
+//! ([`crate::Stretch::calmness`]). In a layer of its nominal thickness that is |s|, the sine of the angle between face and
+//! layer; s = n × g is the strike line on the face, for face normal n and g = ∇k/|∇k|. From 0.6 the map begins to replace k,
+//! from 0.5 on, the limit of what is calm, it alone is used, unless it is no calmer.
 //!
-//! The weights follow from the strike line on the face, s = n × g, for face normal n and g = ∇k/|∇k|: |s| is
-//! the sine of the angle between face and layer. With S(a, b, x) the cubic smoothstep: `map = 1 − S(sin² 24°,
-//! sin² 30°, |s|²)`, `r = (s·t)²/((s·t)² + (s·t′)²)`, `along = (1 − map)·S(0.35, 0.65, r)`, `across = 1 − map
-//! − along`; t′ = t turned by 90°.
+//! With S(a, b, x) the cubic smoothstep, c₀, c₁ and c₂ the calmness of along, across and map:
+//!
+//! ```text
+//! r = (s·t)²/((s·t)² + (s·t′)²)         along t, a share of R = S(0.35, 0.65, r); t′ = t turned by 90°
+//! c² = R·c₀² + (1 − R)·c₁²
+//! map = (1 − S(0.5², 0.6², c²))·(1 − S(0.8, 1, c²/c₂²)),   along = (1 − map)·R,   across = 1 − map − along
+//! ```
 //!
 //! On a wall that turns, `along` continues from one plane to the next: u is shifted so that it is the same on both sides
 //! of their edge wherever (i, j) is the place on the map.
@@ -30,10 +35,14 @@
 //! metres downwards); their signs do not matter. All arithmetic is f32, so that the WGSL twin computes the
 //! same.
 
-/// sin² of the angle between face and layer below which only the map mapping is used (24°).
-pub const MAP_ONLY_SIN_SQ: f32 = 0.165_434_7;
-/// sin² of the angle between face and layer above which the map mapping is not used (30°).
-pub const NO_MAP_SIN_SQ: f32 = 0.25;
+use crate::stretch::Stretch;
+
+/// Square of the calmness of a pattern over k at and below which the map mapping replaces it.
+pub const MAP_ONLY_CALMNESS_SQ: f32 = 0.25;
+/// Square of the calmness of a pattern over k above which the map mapping is not used.
+pub const NO_MAP_CALMNESS_SQ: f32 = 0.36;
+/// The map mapping is used alone only if the square of the other's calmness is at most this share of the square of its own.
+pub const MAP_RATHER_SQ: f32 = 0.8;
 /// Share of the strike line along t below which the across mapping alone is used.
 pub const ACROSS_ONLY_SHARE: f32 = 0.35;
 /// Share of the strike line along t above which the along mapping alone is used.
@@ -104,31 +113,56 @@ impl FaceFrame {
         Self { normal: unit(normal), along, shift }
     }
 
-    /// The weights at a point where k rises along `grad_k` (any length). A gradient that is zero or NaN gives
-    /// the along mapping alone.
+    /// The weights at a point where k rises along `grad_k` (any length) and the mappings have these stretches
+    /// ([`Self::stretches`]). A gradient that is zero or NaN gives the along mapping alone.
     ///
     /// ```
     /// use ttf::FaceFrame;
+    /// // i, j and k over 1 km by 1 km by 100 m; a flat layer on a top face is seen as a map.
     /// let top = FaceFrame::new([0.0, 0.0, 1.0]);
-    /// // A flat layer on a top face is seen as a map; on a side face k runs upwards.
-    /// assert_eq!(top.weights([0.0, 0.0, -1.0]).to_array(), [0.0, 0.0, 1.0]);
-    /// assert_eq!(FaceFrame::new([1.0, 0.0, 0.0]).weights([0.0, 0.0, -1.0]).to_array(), [1.0, 0.0, 0.0]);
+    /// let on_top = top.stretches(1.0, [1e3, 1e2], [[1e-3, 0.0, 0.0], [0.0, 1e-3, 0.0]]);
+    /// assert_eq!(top.weights([0.0, 0.0, -1e-2], &on_top).to_array(), [0.0, 0.0, 1.0]);
+    /// // On a side face k runs upwards.
+    /// let side = FaceFrame::new([1.0, 0.0, 0.0]);
+    /// let on_side = side.stretches(1.0, [1e3, 1e2], [[0.0, 1e-3, 0.0], [0.0, 0.0, -1e-2]]);
+    /// assert_eq!(side.weights([0.0, 0.0, -1e-2], &on_side).to_array(), [1.0, 0.0, 0.0]);
     /// ```
-    pub fn weights(&self, grad_k: [f32; 3]) -> MappingWeights {
+    pub fn weights(&self, grad_k: [f32; 3], stretches: &[Stretch; 3]) -> MappingWeights {
         let g = unit(grad_k);
         let n = self.normal;
         let s = [n[1] * g[2] - n[2] * g[1], n[2] * g[0] - n[0] * g[2], n[0] * g[1] - n[1] * g[0]];
-        let sin_sq = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
-        if g == [0.0; 3] || !sin_sq.is_finite() {
-            return MappingWeights { along: 1.0, across: 0.0, map: 0.0 };
+        if g == [0.0; 3] || !s.iter().all(|part| part.is_finite()) {
+            return MappingWeights::ALONG;
         }
-        let map = 1.0 - smoothstep(MAP_ONLY_SIN_SQ, NO_MAP_SIN_SQ, sin_sq);
         let along_t = s[0] * self.along[0] + s[1] * self.along[1];
         let across_t = s[1] * self.along[0] - s[0] * self.along[1];
         let horizontal_sq = along_t * along_t + across_t * across_t;
         let share = if horizontal_sq > 1e-12 { along_t * along_t / horizontal_sq } else { 1.0 };
-        let along = (1.0 - map) * smoothstep(ACROSS_ONLY_SHARE, ALONG_ONLY_SHARE, share);
+        let share = smoothstep(ACROSS_ONLY_SHARE, ALONG_ONLY_SHARE, share);
+        let [along_sq, across_sq, map_sq] = stretches.map(|stretch| stretch.calmness() * stretch.calmness());
+        let k_sq = across_sq + share * (along_sq - across_sq);
+        let sparse = 1.0 - smoothstep(MAP_ONLY_CALMNESS_SQ, NO_MAP_CALMNESS_SQ, k_sq);
+        let better = if map_sq > 0.0 { 1.0 - smoothstep(MAP_RATHER_SQ, 1.0, k_sq / map_sq) } else { 0.0 };
+        let map = sparse * better;
+        let along = (1.0 - map) * share;
         MappingWeights { along, across: (1.0 - map - along).max(0.0), map }
+    }
+
+    /// How far each mapping (along, across, map) is stretched where (i, j, k) changes by `changes` for a metre along two
+    /// perpendicular directions of the face. i and k stand for `[extent_i_m, thickness_m]` metres.
+    pub fn stretches(
+        &self,
+        aspect_j: f32,
+        [extent_i_m, thickness_m]: [f32; 2],
+        changes: [[f32; 3]; 2],
+    ) -> [Stretch; 3] {
+        let lengths = [[extent_i_m, thickness_m], [extent_i_m, thickness_m], [extent_i_m, extent_i_m]];
+        let mappings = self.mappings(aspect_j);
+        [0, 1, 2].map(|n: usize| {
+            let [p, q] = changes.map(|change| mappings[n].apply(change));
+            let [u_m, v_m] = lengths[n];
+            Stretch::of([[u_m * p[0], u_m * q[0]], [v_m * p[1], v_m * q[1]]])
+        })
     }
 
     /// The three mappings (along, across, map) for a block whose j axis is `aspect_j` times as long as its i
@@ -146,6 +180,9 @@ impl FaceFrame {
 }
 
 impl MappingWeights {
+    /// The along mapping alone.
+    pub const ALONG: Self = Self { along: 1.0, across: 0.0, map: 0.0 };
+
     /// The weights in the order of [`FaceFrame::mappings`].
     pub fn to_array(self) -> [f32; 3] {
         [self.along, self.across, self.map]
@@ -189,8 +226,31 @@ mod tests {
 
     const UP: [f32; 3] = [0.0, 0.0, -1.0];
 
+    /// The weights in a layer of its nominal thickness whose (i, j) are lengths along it.
     fn weights(normal: [f32; 3], grad_k: [f32; 3]) -> [f32; 3] {
-        FaceFrame::new(normal).weights(grad_k).to_array()
+        let frame = FaceFrame::new(normal);
+        frame.weights(grad_k, &stretches(&frame, grad_k, 1.0)).to_array()
+    }
+
+    /// The stretches where k rises so many times as fast as in a layer of its nominal thickness.
+    fn stretches(frame: &FaceFrame, grad_k: [f32; 3], rate: f32) -> [Stretch; 3] {
+        let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let cross = |a: [f32; 3], b: [f32; 3]| {
+            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+        };
+        let g = unit(grad_k);
+        let g = if g[2] > 0.0 { g.map(|part| -part) } else { g };
+        // A layer that lay flat, turned about its strike.
+        let axis = cross(UP, g);
+        let turned = |v: [f32; 3]| {
+            let (turn, share) = (cross(axis, v), dot(axis, v) / (1.0 - g[2]));
+            [0, 1, 2].map(|n| -g[2] * v[n] + turn[n] + share * axis[n])
+        };
+        let n = frame.normal;
+        let p = unit(cross(n, if n[0].abs() < 0.7 { [1.0, 0.0, 0.0] } else { UP }));
+        let change =
+            |step| [dot(step, turned([1.0, 0.0, 0.0])), dot(step, turned([0.0, 1.0, 0.0])), rate * dot(step, g)];
+        frame.stretches(1.0, [1.0; 2], [change(p), change(cross(n, p))])
     }
 
     fn near(found: [f32; 3], expected: [f32; 3]) {
@@ -223,27 +283,39 @@ mod tests {
     }
 
     #[test]
-    fn the_map_takes_over_between_30_and_24_degrees_without_a_jump() {
-        let at = |degrees: f32| {
-            let (sin, cos) = degrees.to_radians().sin_cos();
-            weights([0.0, 0.0, 1.0], [0.0, sin, -cos])
-        };
-        near(at(23.9), [0.0, 0.0, 1.0]);
-        near(at(30.1), [1.0, 0.0, 0.0]);
-        let mut previous = at(0.0);
-        for step in 1..=900 {
-            let now = at(step as f32 * 0.1);
-            assert!((now.iter().sum::<f32>() - 1.0).abs() < 1e-5);
-            assert!(now[2] <= previous[2] && previous[2] - now[2] < 0.03);
-            previous = now;
+    fn the_map_takes_over_where_k_is_no_longer_calm_without_a_jump() {
+        let top = FaceFrame::new([0.0, 0.0, 1.0]);
+        // In a layer of its nominal thickness between 36.9° and 30°, in a thicker or thinner one where lines of k are as far
+        // apart on the face.
+        for rate in [0.7, 1.0, 1.5] {
+            let at = |sin: f32| {
+                let grad_k = [0.0, sin, -(1.0 - sin * sin).sqrt()];
+                top.weights(grad_k, &stretches(&top, grad_k, rate)).to_array()
+            };
+            near(at(0.49 / rate), [0.0, 0.0, 1.0]);
+            near(at(0.61 / rate), [1.0, 0.0, 0.0]);
+            let mut previous = at(0.0);
+            for step in 1..=600 {
+                let now = at(step as f32 * 0.001 / rate);
+                assert!((now.iter().sum::<f32>() - 1.0).abs() < 1e-5);
+                assert!(now[2] <= previous[2] && previous[2] - now[2] < 0.03);
+                previous = now;
+            }
         }
+    }
+
+    #[test]
+    fn the_map_is_not_taken_where_it_is_no_calmer() {
+        // A layer four times as thick as usual in a section across it: i alone changes with the map.
+        let (face, grad_k) = (FaceFrame::new([0.0, 1.0, 0.0]), [0.0, 0.0, -1.0]);
+        near(face.weights(grad_k, &stretches(&face, grad_k, 0.25)).to_array(), [1.0, 0.0, 0.0]);
     }
 
     #[test]
     fn a_steep_limb_on_a_side_face_lies_along_the_horizontal() {
         for (normal, limb) in [([1.0, 0.0, 0.0], [1.0, 0.0, -0.1]), ([0.0, 1.0, 0.0], [0.0, -1.0, 0.1])] {
             let frame = FaceFrame::new(normal);
-            near(frame.weights(limb).to_array(), [0.0, 0.0, 1.0]);
+            near(weights(normal, limb), [0.0, 0.0, 1.0]);
             let [along, _, map] = frame.mappings(2.0);
             let (strike, dip) =
                 if normal[0] == 1.0 { ([0.0, 0.3, 0.0], [0.4, 0.0, 0.0]) } else { ([0.3, 0.0, 0.0], [0.0, 0.4, 0.0]) };

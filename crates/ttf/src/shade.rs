@@ -15,7 +15,7 @@
 //! lies in no interval. A missing raw value takes the no-data colour, or leaves the illustration unchanged if
 //! there is none.
 
-use crate::coordinates::FaceFrame;
+use crate::coordinates::{FaceFrame, MappingWeights};
 use crate::tables::{FINER, NONE, TtfGlobals, TtfTables};
 
 /// A point of a face in flat space.
@@ -49,8 +49,8 @@ pub struct ShadePoint {
     pub footprint: FlatFootprint,
     /// The face it lies on.
     pub face: FaceFrame,
-    /// Gradient of k in metric space (x, y, z down), any length.
-    pub grad_k: [f32; 3],
+    /// How much of each mapping of the face is seen ([`FaceFrame::weights`]).
+    pub weights: MappingWeights,
 }
 
 /// Straight RGBA of a point, sRGB-encoded. Alpha is 1 where the layer exists and 0 where it does not.
@@ -58,8 +58,8 @@ pub struct ShadePoint {
 /// `scalars` holds one value per entry of [`TtfTables::volumes`]; a missing entry counts as no data.
 ///
 /// ```
-/// use ttf::{BlockExtent, Colour, FaceFrame, FlatFootprint, LayerExtent, LayerPoint, LayerStyle, ShadePoint};
-/// use ttf::{TextureLibrary, TransferFunctions, TtfTables};
+/// use ttf::{BlockExtent, Colour, FaceFrame, FlatFootprint, LayerExtent, LayerPoint, LayerStyle, MappingWeights};
+/// use ttf::{ShadePoint, TextureLibrary, TransferFunctions, TtfTables};
 /// let mut functions = TransferFunctions::default();
 /// functions.layers.set(LayerStyle::plain("Salt", Colour::new(255, 0, 51)));
 /// let layers = vec![LayerExtent { name: "Salt".into(), thickness_m: 200.0 }];
@@ -69,7 +69,7 @@ pub struct ShadePoint {
 ///     flat: LayerPoint { i: 0.5, j: 0.5, k: 0.5, layer: 0 },
 ///     footprint: FlatFootprint::default(),
 ///     face: FaceFrame::new([0.0, 1.0, 0.0]),
-///     grad_k: [0.0, 0.0, -1.0],
+///     weights: MappingWeights::ALONG,
 /// };
 /// assert_eq!(ttf::shade(&tables, &point, &[]), [1.0, 0.0, 0.2, 1.0]);
 /// ```
@@ -170,7 +170,7 @@ impl<'a> Sampler<'a> {
             .face
             .mappings(tables.globals.aspect_j)
             .map(|mapping| [mapping.place(flat), mapping.apply(dx), mapping.apply(dy)]);
-        Self { tables, weights: point.face.weights(point.grad_k).to_array(), coordinates }
+        Self { tables, weights: point.weights.to_array(), coordinates }
     }
 
     /// A texture at a frequency, dissolved into the finer one as the tables say.
@@ -249,7 +249,7 @@ mod tests {
             flat: LayerPoint { i, j: 0.1, k, layer },
             footprint: FlatFootprint::default(),
             face: FaceFrame::new([0.0, 1.0, 0.0]),
-            grad_k: [0.0, 0.0, -1.0],
+            weights: MappingWeights::ALONG,
         }
     }
 

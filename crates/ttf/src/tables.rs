@@ -59,8 +59,10 @@ pub struct TtfGlobals {
     pub stop_count: u32,
     /// Share of every pattern that is [`FINER`] times as dense, 0 to 1.
     pub finer_share: f32,
+    /// Metres that i in [0, 1] stands for ([`BlockExtent::extent_i_m`]).
+    pub extent_i_m: f32,
     /// The shader's struct is a multiple of 16 bytes.
-    pub padding: [u32; 3],
+    pub padding: [u32; 2],
 }
 
 /// How much denser the finer of two patterns is that are dissolved into one another: a quarter of an octave.
@@ -78,6 +80,10 @@ pub struct LayerEntry {
     pub first_interval: u32,
     /// Number of entries there.
     pub interval_count: u32,
+    /// Metres that k in [0, 1] stands for ([`LayerExtent::thickness_m`]).
+    pub thickness_m: f32,
+    /// Zero.
+    pub padding: [u32; 3],
 }
 
 /// A depth interval of a layer.
@@ -148,10 +154,6 @@ pub struct StopEntry {
 pub struct TtfTables {
     /// Numbers that hold for the whole scene.
     pub globals: TtfGlobals,
-    /// Metres that i in [0, 1] stands for ([`BlockExtent::extent_i_m`]).
-    pub extent_i_m: f32,
-    /// Metres that k in [0, 1] stands for in each layer, bottom to top ([`LayerExtent::thickness_m`]).
-    pub thicknesses_m: Vec<f32>,
     /// One entry per layer, bottom to top.
     pub layers: Vec<LayerEntry>,
     /// Depth intervals. Those of one layer follow one another, rising in k.
@@ -205,6 +207,8 @@ impl TtfTables {
                 frequency: [frequency.horizontal, frequency.vertical],
                 first_interval,
                 interval_count: intervals.len() as u32 - first_interval,
+                thickness_m: layer.thickness_m,
+                padding: [0; 3],
             });
         }
         let mut scalars = Vec::new();
@@ -234,26 +238,13 @@ impl TtfTables {
             scalar_count: scalars.len() as u32,
             stop_count: stops.len() as u32,
             finer_share: 0.0,
-            padding: [0; 3],
+            extent_i_m: block.extent_i_m,
+            padding: [0; 2],
         };
         let Slots { volumes, textures, library_indices: patterns, .. } = slots;
-        let thicknesses_m = block.layers.iter().map(|layer| layer.thickness_m).collect();
-        let extent_i_m = block.extent_i_m;
         let preset = functions.settings.preset;
         let faults = functions.faults.iter().map(|own| own.map(|colour| preset.line(colour))).collect();
-        Ok(Self {
-            globals,
-            extent_i_m,
-            thicknesses_m,
-            layers,
-            intervals,
-            scalars,
-            stops,
-            volumes,
-            textures,
-            patterns,
-            faults,
-        })
+        Ok(Self { globals, layers, intervals, scalars, stops, volumes, textures, patterns, faults })
     }
 
     /// The colour that a fault's lines were given; `None`: they are drawn as the scene's outlines say.
@@ -448,7 +439,7 @@ mod tests {
     #[test]
     fn entries_are_laid_out_for_the_gpu() {
         assert_eq!(size_of::<TtfGlobals>(), 64);
-        assert_eq!(size_of::<LayerEntry>(), 32);
+        assert_eq!(size_of::<LayerEntry>(), 48);
         assert_eq!(size_of::<IntervalEntry>(), 64);
         assert_eq!(size_of::<ScalarEntry>(), 64);
         assert_eq!(size_of::<StopEntry>(), 32);

@@ -108,6 +108,9 @@ fn face_colour(ray: PixelRay, t: f32, p: vec3<f32>, plane: u32) -> vec3<f32> {
         point.ijk = flat.ijk;
         point.dx = vec3(dot(flat.di, dx), dot(flat.dj, dx), dot(flat.dk, dx));
         point.dy = vec3(dot(flat.di, dy), dot(flat.dj, dy), dot(flat.dk, dy));
+        let info = params.planes[plane];
+        point.metre_p = vec3(dot(flat.di, info.metre_p.xyz), dot(flat.dj, info.metre_p.xyz), dot(flat.dk, info.metre_p.xyz));
+        point.metre_q = vec3(dot(flat.di, info.metre_q.xyz), dot(flat.dj, info.metre_q.xyz), dot(flat.dk, info.metre_q.xyz));
         point.grad_k = flat.dk / params.voxel_m.xyz;
         point.defined = 1u;
     }

@@ -2,6 +2,7 @@
 //!
 //! A test reads the WGSL with naga and compares every offset.
 
+use crate::face_map::FaceMap;
 use crate::resolved::ResolvedScene;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
@@ -57,6 +58,8 @@ pub struct PlaneInfo {
     pub along: [f32; 2],
     pub shift: f32,
     pub axis: u32,
+    pub metre_p: [f32; 4],
+    pub metre_q: [f32; 4],
 }
 
 /// A height field in the pool. A horizon that is none has a level field there as well, and this is its topmost part.
@@ -133,13 +136,16 @@ fn bodies(resolved: &ResolvedScene) -> ([[u32; 4]; BODIES], [PlaneInfo; PLANES])
     for (to, body) in bodies.iter_mut().zip(all) {
         *to = [next as u32, body.planes.len() as u32, 0, 0];
         for (to, plane) in planes[next..].iter_mut().zip(&body.planes) {
-            let frame = resolved.frame(plane);
+            let FaceMap { frame, metre_steps, .. } = resolved.face_map(plane);
+            let [metre_p, metre_q] = metre_steps.map(|step| step.extend(0.0).to_array());
             *to = PlaneInfo {
                 normal: plane.normal.extend(plane.offset).to_array(),
                 metric_normal: Vec3::from_array(frame.normal).extend(resolved.tone(plane)).to_array(),
                 along: frame.along,
                 shift: frame.shift,
                 axis: plane.axis.map_or(NONE, |axis| axis as u32),
+                metre_p,
+                metre_q,
             };
         }
         next += body.planes.len();

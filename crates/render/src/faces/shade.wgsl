@@ -11,9 +11,9 @@ struct TtfGlobals {
     scalar_count: u32,
     stop_count: u32,
     finer_share: f32,
+    extent_i_m: f32,
     padding_0: u32,
     padding_1: u32,
-    padding_2: u32,
 }
 
 // How much denser the finer of two patterns is that are dissolved into one another: `ttf::FINER`.
@@ -24,6 +24,11 @@ struct LayerEntry {
     frequency: vec2<f32>,
     first_interval: u32,
     interval_count: u32,
+    // Metres that k in [0, 1] stands for.
+    thickness_m: f32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
 }
 
 struct IntervalEntry {
@@ -68,8 +73,9 @@ override with_raw: u32 = 1u;
 override with_scalars: u32 = 1u;
 
 const NONE: u32 = 0xffffffffu;
-const MAP_ONLY_SIN_SQ: f32 = 0.1654347;
-const NO_MAP_SIN_SQ: f32 = 0.25;
+const MAP_ONLY_CALMNESS_SQ: f32 = 0.25;
+const NO_MAP_CALMNESS_SQ: f32 = 0.36;
+const MAP_RATHER_SQ: f32 = 0.8;
 const ACROSS_ONLY_SHARE: f32 = 0.35;
 const ALONG_ONLY_SHARE: f32 = 0.65;
 
@@ -79,6 +85,9 @@ struct ShadePoint {
     // Change of (i, j, k) per sample step to the right and down the image.
     dx: vec3<f32>,
     dy: vec3<f32>,
+    // The same for a metre along two perpendicular directions of the face.
+    metre_p: vec3<f32>,
+    metre_q: vec3<f32>,
     // Gradient of k in metric space.
     grad_k: vec3<f32>,
     layer: u32,
@@ -102,19 +111,32 @@ fn unit_or_zero(v: vec3<f32>) -> vec3<f32> {
     return vec3(0.0);
 }
 
-fn face_mappings(plane: u32, grad_k: vec3<f32>) -> Mappings {
+// How calm a mapping is, from the derivatives of u (xy) and v (zw) over the face, in nominal metres for a metre: the twin of
+// `ttf::Stretch::calmness`.
+fn calmness(change: vec4<f32>) -> f32 {
+    let sum = 0.5 * length(vec2(change.x + change.w, change.z - change.y));
+    let difference = 0.5 * length(vec2(change.x - change.w, change.z + change.y));
+    let densest = sum + difference;
+    let sparsest = abs(sum - difference);
+    let area = densest * sparsest;
+    if densest > 0.0 && area > 0.0 && area < 3e38 {
+        return min(min(sparsest / densest, area), 1.0 / area);
+    }
+    return 0.0;
+}
+
+fn face_mappings(plane: u32, point: ShadePoint, thickness_m: f32) -> Mappings {
     let info = params.planes[plane];
     var mappings: Mappings;
     mappings.along = info.along;
     mappings.shift = info.shift;
     let n = info.metric_normal.xyz;
-    let g = unit_or_zero(grad_k);
+    let g = unit_or_zero(point.grad_k);
     if all(g == vec3(0.0)) {
         mappings.weights = vec3(1.0, 0.0, 0.0);
         return mappings;
     }
     let s = cross(n, g);
-    let map = 1.0 - smoothstep(MAP_ONLY_SIN_SQ, NO_MAP_SIN_SQ, dot(s, s));
     let along_t = s.x * mappings.along.x + s.y * mappings.along.y;
     let across_t = s.y * mappings.along.x - s.x * mappings.along.y;
     let horizontal_sq = along_t * along_t + across_t * across_t;
@@ -122,7 +144,22 @@ fn face_mappings(plane: u32, grad_k: vec3<f32>) -> Mappings {
     if horizontal_sq > 1e-12 {
         share = along_t * along_t / horizontal_sq;
     }
-    let along = (1.0 - map) * smoothstep(ACROSS_ONLY_SHARE, ALONG_ONLY_SHARE, share);
+    share = smoothstep(ACROSS_ONLY_SHARE, ALONG_ONLY_SHARE, share);
+    var squares: vec3<f32>;
+    for (var mapping = 0u; mapping < 3u; mapping += 1u) {
+        let nominal_m = vec2(ttf.extent_i_m, select(thickness_m, ttf.extent_i_m, mapping == 2u));
+        let p = nominal_m * map_flat(mappings, mapping, point.metre_p);
+        let q = nominal_m * map_flat(mappings, mapping, point.metre_q);
+        let calm = calmness(vec4(p.x, q.x, p.y, q.y));
+        squares[mapping] = calm * calm;
+    }
+    let over_k = squares.y + share * (squares.x - squares.y);
+    let sparse = 1.0 - smoothstep(MAP_ONLY_CALMNESS_SQ, NO_MAP_CALMNESS_SQ, over_k);
+    var map = 0.0;
+    if squares.z > 0.0 {
+        map = sparse * (1.0 - smoothstep(MAP_RATHER_SQ, 1.0, over_k / squares.z));
+    }
+    let along = (1.0 - map) * share;
     mappings.weights = vec3(along, max(1.0 - map - along, 0.0), map);
     return mappings;
 }
@@ -233,7 +270,7 @@ fn shade(point: ShadePoint, plane: u32, p: vec3<f32>) -> vec3<f32> {
     var colour = layer.colour.rgb;
     var frequency = layer.frequency;
     if point.defined == 1u {
-        let mappings = face_mappings(plane, point.grad_k);
+        let mappings = face_mappings(plane, point, layer.thickness_m);
         let covering = interval_at(layer, point.ijk.z);
         if covering != NONE {
             let interval = intervals[covering];

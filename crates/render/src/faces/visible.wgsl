@@ -16,6 +16,9 @@ struct PlaneInfo {
     shift: f32,
     // Axis of a plane of constant x, y or z, else NONE.
     axis: u32,
+    // Two directions in the face, voxels: perpendicular and a metre long in displayed space; w unused.
+    metre_p: vec4<f32>,
+    metre_q: vec4<f32>,
 }
 
 // The interval of t over which a ray is inside a body, and the planes at its ends.

@@ -135,7 +135,7 @@ impl FacePainter<'_> {
         FacePattern {
             resolved: self.resolved,
             interpretation: self.interpretation,
-            frame: self.resolved.frame(&self.face.plane),
+            map: self.resolved.face_map(&self.face.plane),
             plane: self.plane,
             region,
             frequency: interval.frequency.map(|part| part * Frequencies::nearest(&self.resolved.tables.globals)),

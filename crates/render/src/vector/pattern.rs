@@ -7,6 +7,7 @@
 //! is whole and the area's outline cuts it.
 
 use super::{PatternPaint, Polyline};
+use crate::face_map::FaceMap;
 use crate::resolved::{ResolvedInterpretation, ResolvedScene};
 use glam::{DMat2, DVec2, Vec3};
 use model::Region;
@@ -14,7 +15,7 @@ use model::section::{SectionPlane, band};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use ttf::{FaceFrame, Mapping, TileDrawing, TilePaint, TileSegment, TileShape};
+use ttf::{Mapping, TileDrawing, TilePaint, TileSegment, TileShape};
 
 /// Longest side of a cell of the lattice, voxels.
 const CELL: f64 = 1.0;
@@ -60,7 +61,7 @@ pub(super) struct FacePattern<'a> {
     pub resolved: &'a ResolvedScene<'a>,
     pub interpretation: ResolvedInterpretation<'a>,
     /// How patterns lie on the face.
-    pub frame: FaceFrame,
+    pub map: FaceMap,
     pub plane: SectionPlane,
     pub region: Region,
     /// Repeats of the tile over i and over k.
@@ -174,12 +175,11 @@ impl FacePattern<'_> {
     pub(super) fn drawn(&self, rings: &[Vec<DVec2>], tile: &Tile, thickness_px: f64) -> Option<Vec<DrawnPart>> {
         let groups = tile.drawing.alike();
         let Some(lattice) = Lattice::over(rings).filter(|_| !groups.is_empty()) else { return Some(Vec::new()) };
-        let frame = self.frame;
-        let mappings = frame.mappings(self.resolved.tables.globals.aspect_j);
+        let mappings = self.map.frame.mappings(self.resolved.tables.globals.aspect_j);
         let [horizontal, vertical] = self.frequency.map(f64::from);
         let scales = [[horizontal, vertical], [horizontal, vertical], [horizontal, horizontal]];
         let leading: Vec<Option<usize>> =
-            (0..lattice.is_inside.len()).map(|cell| self.leading(&frame, &lattice, cell)).collect();
+            (0..lattice.is_inside.len()).map(|cell| self.leading(&lattice, cell)).collect();
         let mut parts = Vec::new();
         for (n, (mapping, scale)) in mappings.into_iter().zip(scales).enumerate() {
             let is_mine: Vec<bool> = leading.iter().map(|leading| *leading == Some(n)).collect();
@@ -199,13 +199,13 @@ impl FacePattern<'_> {
     }
 
     /// The mapping with the largest weight in a cell of the area.
-    fn leading(&self, frame: &FaceFrame, lattice: &Lattice, cell: usize) -> Option<usize> {
+    fn leading(&self, lattice: &Lattice, cell: usize) -> Option<usize> {
         if !lattice.is_inside[cell] {
             return None;
         }
         let p = self.plane.voxel(lattice.middle(cell)).as_vec3();
         let (_, jacobian) = self.interpretation.flat_at(p, Some(self.region));
-        let weights = frame.weights((Vec3::from_array(jacobian[2]) / self.resolved.voxel_m).to_array()).to_array();
+        let weights = self.map.weights(&self.resolved.tables, self.region.layer, &jacobian).to_array();
         (0..3).max_by(|a, b| weights[*a].total_cmp(&weights[*b]))
     }
 

@@ -71,7 +71,7 @@ fn structs_have_the_same_layout() {
     check!(m, FaceParams: origin, origin_dx, origin_dy, direction, direction_dx, direction_dy, box_low, box_high,
         background, voxel_m, light, display_normal_x, display_normal_y, display_normal_z, relief, reference_px,
         samples, cut_count, map_low, map_cells, ground_horizons, ground_opacity, tile, bodies, planes);
-    check!(m, PlaneInfo: normal, metric_normal, along, shift, axis);
+    check!(m, PlaneInfo: normal, metric_normal, along, shift, axis, metre_p, metre_q);
     check!(m, SheetInfo: origin, size, offset, level, at, scale_m);
     check!(m, FaultInfo: u, v, w, surface);
     check!(m, ModelInfo: centre, horizons, blocks, faults, layers, unit_from_voxel);
@@ -81,8 +81,8 @@ fn structs_have_the_same_layout() {
     check!(m, TextureInfo: mean, offset, side, levels);
     check!(m, VolumePlacement: scale, offset, size);
     check!(m, TtfGlobals: no_data, raw_domain, blend, global_frequency, aspect_j, raw_volume, scalar_count, stop_count,
-        finer_share);
-    check!(m, LayerEntry: colour, frequency, first_interval, interval_count);
+        finer_share, extent_i_m);
+    check!(m, LayerEntry: colour, frequency, first_interval, interval_count, thickness_m);
     check!(m, IntervalEntry: colour, ink, k, frequency, texture);
     check!(m, ScalarEntry: colour, ink, range, factor, texture, volume, opacity);
     check!(m, StopEntry: colour, at);
@@ -127,8 +127,9 @@ fn constants_are_the_same() {
         ("NO_WEIGHT", f64::from(inputs::NO_WEIGHT)),
         ("SLACK", f64::from(inputs::SLACK)),
         ("MAX_TAPS", f64::from(ttf::texture::MAX_TAPS)),
-        ("MAP_ONLY_SIN_SQ", f64::from(ttf::coordinates::MAP_ONLY_SIN_SQ)),
-        ("NO_MAP_SIN_SQ", f64::from(ttf::coordinates::NO_MAP_SIN_SQ)),
+        ("MAP_ONLY_CALMNESS_SQ", f64::from(ttf::coordinates::MAP_ONLY_CALMNESS_SQ)),
+        ("NO_MAP_CALMNESS_SQ", f64::from(ttf::coordinates::NO_MAP_CALMNESS_SQ)),
+        ("MAP_RATHER_SQ", f64::from(ttf::coordinates::MAP_RATHER_SQ)),
         ("ACROSS_ONLY_SHARE", f64::from(ttf::coordinates::ACROSS_ONLY_SHARE)),
         ("ALONG_ONLY_SHARE", f64::from(ttf::coordinates::ALONG_ONLY_SHARE)),
         ("NONE", f64::from(ttf::tables::NONE)),
