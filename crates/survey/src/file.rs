@@ -34,10 +34,12 @@ pub fn ordinary(path: &Path) -> io::Result<fs::Metadata> {
     Err(io::Error::new(io::ErrorKind::InvalidInput, format!("it is {kind}, not an ordinary file")))
 }
 
-/// Bytes that whoever runs this may still write to the disk of a folder; `None` where the system does not tell.
+/// Bytes that whoever runs this may still write to the disk of a folder, which may yet have to be made; `None` where the
+/// system does not tell.
 #[cfg(unix)]
 pub fn room(folder: &Path) -> Option<u64> {
-    let disk = rustix::fs::statvfs(folder).ok().filter(|disk| disk.f_blocks > 0)?;
+    let here = folder.ancestors().find(|folder| folder.exists()).unwrap_or(Path::new("."));
+    let disk = rustix::fs::statvfs(here).ok().filter(|disk| disk.f_blocks > 0)?;
     disk.f_bavail.checked_mul(disk.f_frsize)
 }
 

@@ -21,7 +21,7 @@ use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use store::{StoreError, replace_file};
-use survey::{Contact, Fault, Horizon, Progress, file};
+use survey::{Contact, Fault, Horizon, Progress, file, memory};
 use synth::{Overturned, SynthDesign, SynthSettings, SynthTruth};
 
 /// Files of a synthetic survey.
@@ -82,6 +82,9 @@ impl fmt::Display for SynthSurvey {
 /// The size is too small for the survey's folds and faults, a file could not be written, or the user cancelled.
 pub fn write(out: &Path, settings: &SynthSettings, progress: &Progress) -> Result<SynthSurvey, ProjectError> {
     let design = SynthDesign::new(settings)?;
+    segy::check_room(&out.join("survey.sgy"), &design.geometry, &WriteOptions::default())?;
+    let [inlines, crosslines, _] = settings.size;
+    memory::check("the horizons of the survey", &[inlines, crosslines], TRACE_BYTES)?;
     let made_faults = design.faults();
     let files = write_files(&design, &made_faults, out, progress)?;
     let stratigraphy = design.stratigraphy();
@@ -120,6 +123,9 @@ pub struct SynthFiles {
     pub truth: PathBuf,
 }
 
+/// Memory that horizons take for each trace while they are made and written, bytes.
+const TRACE_BYTES: usize = 200;
+
 /// Lines of the attribute that are made at a time.
 const ATTRIBUTE_LINES: usize = 16;
 
@@ -140,7 +146,6 @@ pub fn write_files(
     let (horizons, faults) = (folder("horizons")?, folder("faults")?);
     let options = WriteOptions::default();
     let survey = out.join("survey.sgy");
-    segy::check_room(&survey, &design.geometry, &options)?;
     let mut seismic = design.seismic(progress)?;
     let together = seismic.together();
     let mut source = |lines: Range<usize>| Ok(Cow::Owned(seismic.lines(lines)));
