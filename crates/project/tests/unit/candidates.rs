@@ -81,7 +81,7 @@ fn a_part_of_the_candidates_tells_the_same_of_picks_as_all_of_them() {
             let leaf = leaf.map_err(|error| error.to_string());
             let number = leaf.as_ref().map_or(1, |hit| hit.0);
             let node = candidates.forest.leaves[number as usize - 1];
-            let nodes = leaf.is_ok().then(|| candidates.forest.climb(node).collect::<Vec<_>>()).unwrap_or_default();
+            let nodes = if leaf.is_ok() { candidates.forest.climb(node).collect() } else { Vec::new() };
             let prints = nodes.iter().map(|&node| Fingerprint::of(&candidates.forest, node)).collect::<Vec<_>>();
             (leaf, candidates.levels(number), prints)
         });
