@@ -31,8 +31,8 @@ const APART_PT: f64 = 6.0;
 /// How far beside a fault its blocks are looked up, voxels.
 const BESIDE: f64 = 0.75;
 /// A line this flat on its face shows no up and down, as that of a steep fault does on a face along its strike: cosine of
-/// 75° from upright, in metres. Half-arrows there would tell of a movement along strike.
-const FLAT: f64 = 0.26;
+/// 83° from upright, in metres. Half-arrows there would tell of a movement along strike.
+const FLAT: f64 = 0.12;
 /// The flattest line counts this share of its length against steep ones.
 const FLAT_SHARE: f64 = 0.3;
 /// How far from a horizon's end at a fault its line is looked up, voxels.
