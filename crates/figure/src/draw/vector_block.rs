@@ -67,19 +67,7 @@ pub(super) fn items(
         group.push(Picture::in_rect(Arc::clone(picture), pane));
         items.push(group.into());
     }
-    let mut layers: Vec<(u16, Group)> = Vec::new();
-    for area in &block.areas {
-        let place = match block.is_ordered {
-            true => layers.len().checked_sub(1).filter(|last| layers[*last].0 == area.layer),
-            false => layers.iter().position(|(layer, _)| *layer == area.layer),
-        };
-        let place = place.unwrap_or_else(|| {
-            layers.push((area.layer, Group::new(GroupKind::Layer, names.layer(area.layer))));
-            layers.len() - 1
-        });
-        layers[place].1.push(filled(area, picture, pane, page, points_per_px));
-    }
-    items.extend(layers.into_iter().map(|(_, group)| Item::from(group)));
+    items.extend(layers(block, picture, pane, names, page));
     if let Some(over) = &block.over {
         let mut group = Group::new(GroupKind::Data, "ground and wells");
         group.push(Picture::in_rect(Arc::clone(over), pane));
@@ -111,6 +99,63 @@ pub(super) fn items(
         items.push(group.into());
     }
     items
+}
+
+/// A group for each layer: what is seen of two areas of different layers or faces does not overlap.
+fn layers(
+    block: &VectorBlock,
+    picture: Option<&Arc<RgbaImage>>,
+    pane: Rect,
+    names: &BlockNames,
+    page: &dyn Fn(DVec2) -> DVec2,
+) -> Vec<Item> {
+    let points_per_px = page(DVec2::X).x - page(DVec2::ZERO).x;
+    // Of each layer what it has on one face after the other.
+    let mut layers: Vec<(u16, Vec<(usize, Vec<Item>)>)> = Vec::new();
+    // Plain colours first: where facets of a wall meet, their bleed would cover patterns.
+    let (colours, others): (Vec<_>, Vec<_>) = block.areas.iter().partition(|area| is_plain(area));
+    for area in colours.into_iter().chain(others) {
+        let place = layers.iter().position(|(layer, _)| *layer == area.layer).unwrap_or_else(|| {
+            layers.push((area.layer, Vec::new()));
+            layers.len() - 1
+        });
+        let item = filled(area, picture, pane, page, points_per_px);
+        let faces = &mut layers[place].1;
+        match faces.last_mut().filter(|(face, _)| *face == area.face) {
+            Some((_, items)) => items.push(item),
+            None => faces.push((area.face, vec![item])),
+        }
+    }
+    let group = |(layer, faces): (u16, Vec<(usize, Vec<Item>)>)| {
+        let seen = |(face, items): (usize, Vec<Item>)| {
+            let hidden = block.hidden.get(face).map_or(&[][..], Vec::as_slice);
+            hidden.iter().fold(items, |items, hidden| {
+                let rest = less(pane, hidden, page);
+                vec![Group::new(GroupKind::Part, "seen").clipped(rest).with(items).into()]
+            })
+        };
+        Group::new(GroupKind::Layer, names.layer(layer)).with(faces.into_iter().flat_map(seen)).into()
+    };
+    layers.into_iter().map(group).collect()
+}
+
+/// Whether an area is all of one colour.
+fn is_plain(area: &VectorArea) -> bool {
+    matches!(area.fill, AreaFill::Colour(_)) && area.band.is_none()
+}
+
+/// All of the pane less what is hidden: by the non-zero rule rings that turn against its own turn are holes.
+fn less(pane: Rect, hidden: &[Vec<DVec2>], page: &dyn Fn(DVec2) -> DVec2) -> Path {
+    let Rect { min, max } = pane;
+    let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
+    let mut path = Path::default();
+    append(&mut path, &corners, true, &|at| at);
+    let is_alike = hidden.iter().map(|ring| twice_area(ring)).sum::<f64>() > 0.0;
+    for ring in hidden {
+        let against: Vec<DVec2> = if is_alike { ring.iter().rev().copied().collect() } else { ring.clone() };
+        append(&mut path, &against, true, page);
+    }
+    path
 }
 
 /// An area, within the part of its face that is seen.
@@ -181,8 +226,12 @@ fn seen_colour(area: &VectorArea, colour: Colour, pieces: &[Vec<DVec2>], page: &
 
 /// A polygon that turns clockwise on the page: pieces side by side fill as one.
 fn same_turn(piece: &[DVec2]) -> Vec<DVec2> {
-    let area: f64 = (0..piece.len()).map(|n| piece[n].perp_dot(piece[(n + 1) % piece.len()])).sum();
-    if area < 0.0 { piece.iter().rev().copied().collect() } else { piece.to_vec() }
+    if twice_area(piece) < 0.0 { piece.iter().rev().copied().collect() } else { piece.to_vec() }
+}
+
+/// Twice the area of a polygon, with the sign of its turn.
+fn twice_area(polygon: &[DVec2]) -> f64 {
+    (0..polygon.len()).map(|n| polygon[n].perp_dot(polygon[(n + 1) % polygon.len()])).sum()
 }
 
 fn part_item(part: &PatternPart, page: &dyn Fn(DVec2) -> DVec2, points_per_px: f64) -> PathItem {

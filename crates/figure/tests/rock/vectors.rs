@@ -3,7 +3,7 @@
 use crate::fold::Fold;
 use image::{GrayImage, RgbaImage};
 use page::list::{GroupKind, Item};
-use page::raster;
+use page::{DisplayList, raster};
 use render::{Camera, Ground, Scene, VoxelBox};
 
 fn scene(ground: Option<Ground>) -> Scene {
@@ -79,9 +79,15 @@ fn paths_look_like_the_picture() {
 }
 
 #[test]
-fn groups_have_the_names_of_layers_horizons_and_faults() {
+fn each_layer_horizon_and_fault_has_one_group_of_its_name() {
     let fold = Fold::new();
-    let page = fold.page(&scene(None), true);
+    for ground in [None, Some(Ground::default())] {
+        let has_ground = ground.is_some();
+        groups_of(&fold, &fold.page(&scene(ground), true), has_ground);
+    }
+}
+
+fn groups_of(fold: &Fold, page: &DisplayList, has_ground: bool) {
     let mut names: Vec<(GroupKind, String)> = Vec::new();
     fn gather(items: &[Item], names: &mut Vec<(GroupKind, String)>) {
         for item in items {
@@ -101,10 +107,12 @@ fn groups_have_the_names_of_layers_horizons_and_faults() {
     let mut layers = of(GroupKind::Layer);
     layers.sort_unstable();
     let mut expected: Vec<&str> = fold.layers.iter().map(|style| style.layer.as_str()).collect();
+    // Above the first horizon there is air over a ground.
+    expected.retain(|name| !(has_ground && *name == "above H1"));
     expected.sort_unstable();
     assert_eq!(layers, expected);
     assert_eq!(of(GroupKind::Horizon)[..3], ["H1", "H2", "H3"]);
     assert_eq!(of(GroupKind::Fault), ["F1"]);
-    // No pixels at all.
-    assert!(page.leaves().iter().all(|item| !matches!(item, Item::Picture(_))));
+    // No pixels at all but those of a ground.
+    assert_eq!(page.leaves().iter().any(|item| matches!(item, Item::Picture(_))), has_ground);
 }

@@ -208,7 +208,7 @@ fn is_convex(points: &[DVec2]) -> bool {
 }
 
 /// A ring within a convex polygon that has its inside on the left.
-fn clipped(ring: &[DVec2], convex: &[DVec2]) -> Vec<DVec2> {
+pub(super) fn clipped(ring: &[DVec2], convex: &[DVec2]) -> Vec<DVec2> {
     let mut points = ring.to_vec();
     for n in 0..convex.len() {
         let (corner, along) = (convex[n], convex[(n + 1) % convex.len()] - convex[n]);

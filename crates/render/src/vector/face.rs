@@ -2,7 +2,7 @@
 
 use super::cut::Outline;
 use super::pattern::{FacePattern, Tile};
-use super::visible::{seen_faces, seen_pieces};
+use super::visible::{HiddenParts, SeenFace, hidden_parts, seen_faces, seen_pieces};
 use super::{AreaFill, PatternPart, VectorArea};
 use crate::error::RenderError;
 use crate::ground::air_layer;
@@ -17,17 +17,28 @@ use survey::Progress;
 use ttf::tables::IntervalEntry;
 use ttf::{Colour, TextureLibrary};
 
-/// The areas of all faces that are seen, back to front.
+/// The areas of all faces that are seen, and of each face what is hidden of it ([`VectorBlock::hidden`]).
+///
+/// [`VectorBlock::hidden`]: super::VectorBlock::hidden
 pub(super) fn face_areas(
     resolved: &ResolvedScene,
     library: &TextureLibrary,
     tolerance_px: f64,
     progress: &Progress,
-) -> Result<Vec<VectorArea>, RenderError> {
-    let Some(interpretation) = resolved.interpretation else { return Ok(Vec::new()) };
+) -> Result<(Vec<VectorArea>, Vec<HiddenParts>), RenderError> {
+    let Some(interpretation) = resolved.interpretation else { return Ok(Default::default()) };
     let tiles = tiles(resolved, library)?;
     let faces = seen_faces(&resolved.solid, &resolved.view);
     let air = resolved.relief.as_ref().map(|_| air_layer(interpretation.model));
+    // Over a relief faces may be partly air, so that what they hide is known from their sections alone.
+    let hidden = match air.filter(|_| !resolved.solid.cut_outs.is_empty()) {
+        Some(air) => {
+            let rock = |face: &SeenFace| rock_rings(resolved, interpretation, face, air);
+            let rock: Vec<_> = faces.par_iter().map(rock).collect();
+            (0..faces.len()).into_par_iter().map(|n| hidden_parts(&faces, n, &resolved.view, &rock)).collect()
+        }
+        None => vec![HiddenParts::new(); faces.len()],
+    };
     progress.begin("pattern", faces.len() as u64);
     let mut areas = Vec::new();
     for (index, face) in faces.iter().enumerate() {
@@ -49,13 +60,33 @@ pub(super) fn face_areas(
                 Some(region) => painter.intervals(region, rings),
             };
             let (outline, seen) = (painter.outline(rings), seen.clone());
-            let area = move |(band, fill)| VectorArea { layer, rings: outline.clone(), seen: seen.clone(), band, fill };
+            let area = move |(band, fill)| VectorArea {
+                layer,
+                face: index,
+                rings: outline.clone(),
+                seen: seen.clone(),
+                band,
+                fill,
+            };
             fills.into_iter().map(area)
         });
         areas.extend(drawn.collect::<Vec<_>>());
         progress.check()?;
     }
-    Ok(areas)
+    Ok((areas, hidden))
+}
+
+/// The outlines of the rock on a face, pixels: of each area that is not air its rings, holes turned against them.
+fn rock_rings(
+    resolved: &ResolvedScene,
+    interpretation: ResolvedInterpretation,
+    face: &SeenFace,
+    air: u16,
+) -> Vec<Vec<DVec2>> {
+    let plane = face.face.section_plane();
+    let layers = Section::new(interpretation.model, &plane).layers;
+    let rings = layers.into_iter().filter(|area| area.layer != air).flat_map(|area| area.rings);
+    rings.map(|ring| ring.into_iter().map(|st| resolved.view.project(plane.voxel(st))).collect()).collect()
 }
 
 /// The drawing of each texture in use, by slot.

@@ -47,10 +47,11 @@ use ttf::{Colour, TextureLibrary};
 pub struct VectorBlock {
     /// Whether `areas` are all faces of rock; otherwise the picture has to be painted below the lines.
     pub has_areas: bool,
-    /// Areas of rock, back to front.
+    /// Areas of rock. What is seen of those of two faces does not overlap; of one face later ones lie above.
     pub areas: Vec<VectorArea>,
-    /// Whether areas of different faces may lie over one another, so that their order counts.
-    pub is_ordered: bool,
+    /// For each face, by its number in the areas, what the rock of each of several nearer faces hides of it: rings by the
+    /// non-zero rule. It comes on top of [`VectorArea::seen`], in which only faces that are all rock hide others.
+    pub hidden: Vec<Vec<Vec<Vec<DVec2>>>>,
     /// Lines over them, in the order of drawing.
     pub lines: Vec<VectorLine>,
     /// The ground and wells over the areas, straight alpha, as large as the picture that was asked for; `None`: nowhere.
@@ -62,6 +63,8 @@ pub struct VectorBlock {
 pub struct VectorArea {
     /// Layer, 0 = deepest.
     pub layer: u16,
+    /// The number of its face.
+    pub face: usize,
     /// Its outer ring and holes, by the even-odd rule.
     pub rings: Vec<Vec<DVec2>>,
     /// The part of its face that is seen, in convex pieces that only share edges; `None`: all of it.
@@ -171,8 +174,7 @@ pub fn vectors(
         return Ok(Some(block));
     }
     block.has_areas = true;
-    block.is_ordered = resolved.relief.is_some() && !resolved.solid.cut_outs.is_empty();
-    block.areas = face_areas(&resolved, library, tolerance_px, progress)?;
+    (block.areas, block.hidden) = face_areas(&resolved, library, tolerance_px, progress)?;
     let picture = Scene { size_px: picture_px, ..scene.clone() };
     block.over = over(&ResolvedScene::new(&picture, inputs, &mut kept)?, progress)?.map(Arc::new);
     Ok(Some(block))

@@ -4,9 +4,10 @@
 //! face lies on the camera's side of its plane, and every ray enters rock through a face that looks at the camera, so the
 //! projected pieces of those faces are cut off. All are convex, and so are the pieces left.
 //!
-//! Over a relief a piece may be partly air; there nothing is cut off, and what is nearer is drawn later
-//! ([`back_to_front`]).
+//! Over a relief a piece may be partly air; there nothing is cut off, and what the rock of nearer faces hides is said in
+//! outlines ([`hidden_parts`]).
 
+use super::cut::clipped;
 use crate::camera::View;
 use crate::outline::solid::{Face, faces, is_rock};
 use crate::visible::Solid;
@@ -17,6 +18,10 @@ use survey::block::part_behind;
 const BESIDE: f64 = 1e-3;
 /// Pieces smaller than this are left out, square pixels.
 const LEAST_AREA: f64 = 1e-4;
+/// A strip of a face that is thinner is not hidden, pixels.
+const LEAST_HIDDEN: f64 = 1e-3;
+/// What is hidden is known so far beyond a face: what is drawn on it has bleed, pixels.
+const AROUND_PX: f64 = 4.0;
 /// Pieces of a face smaller than this are left out, square voxels.
 const LEAST_ROCK: f64 = 1e-6;
 
@@ -135,6 +140,34 @@ pub(crate) fn seen_pieces(faces: &[SeenFace], index: usize, view: &View, is_reli
         }
     }
     is_cut.then_some(pieces)
+}
+
+/// For each of several nearer faces the outlines of what its rock hides of a face, pixels, by the non-zero rule.
+pub(super) type HiddenParts = Vec<Vec<Vec<DVec2>>>;
+
+/// What the rock of other faces hides of a face, up to a little beyond the rectangle around its pieces. `rock` holds the
+/// outlines of the rock on each face, which turn alike, holes against them.
+pub(super) fn hidden_parts(faces: &[SeenFace], index: usize, view: &View, rock: &[Vec<Vec<DVec2>>]) -> HiddenParts {
+    let face = &faces[index];
+    let to_left =
+        |polygon: Vec<DVec2>| if area(&polygon) < 0.0 { polygon.into_iter().rev().collect() } else { polygon };
+    let quads: Vec<Vec<DVec2>> = face.quads(view).into_iter().map(to_left).collect();
+    let corners = || quads.iter().flatten().copied();
+    let low = corners().fold(DVec2::INFINITY, DVec2::min) - AROUND_PX;
+    let high = corners().fold(DVec2::NEG_INFINITY, DVec2::max) + AROUND_PX;
+    let around = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+    let others = faces.iter().zip(rock).enumerate().filter(|(n, _)| *n != index).map(|(_, other)| other);
+    let hidden = others.map(|(other, rock)| {
+        let cells = other.cells.iter().map(|cell| in_front(&face.face, cell)).filter(|cell| cell.len() > 2);
+        let cells: Vec<Vec<DVec2>> = cells.map(|cell| clipped(&to_left(projected(view, &cell)), &around)).collect();
+        let cells = cells.iter().filter(|cell| cell.len() > 2);
+        let rings = cells.flat_map(|cell| rock.iter().map(|ring| clipped(ring, cell)));
+        rings.filter(|ring| ring.len() > 2).collect::<Vec<_>>()
+    });
+    let overlap = |ring: &Vec<DVec2>| quads.iter().map(|quad| area(&clipped(ring, quad))).sum::<f64>();
+    // Neighbours on a curved wall overlap by rounding: cut off there, the bleed that closes their seam would be lost.
+    let least = 2.0 * LEAST_HIDDEN * low.distance(high);
+    hidden.filter(|rings| rings.iter().map(overlap).sum::<f64>().abs() > least).collect()
 }
 
 /// Twice the area of a polygon, with the sign of its turn.

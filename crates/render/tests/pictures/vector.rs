@@ -3,7 +3,7 @@
 use crate::block::Block;
 use glam::{DVec2, DVec3};
 use render::vector::{AreaFill, Polyline, VectorBlock, VectorLineKind, vectors};
-use render::{Background, Camera, DrawnWell, Ground, Inputs, Outlines, Scene, VoxelBox};
+use render::{Background, Camera, CutShape, DrawnWell, Ground, Inputs, Outlines, Scene, VoxelBox};
 use survey::{Progress, SurveyGeometry, VerticalUnit};
 use synth::closed_form::ClosedForm;
 use ttf::{Colour, LayerStyle, TextureLibrary, TransferFunctions};
@@ -121,25 +121,17 @@ fn areas_are_the_layers_that_rays_meet() {
     };
     let traced = traced(&scene, &block);
     let picture = render::reference::render(&scene, &block.inputs(&[]), &Progress::silent()).unwrap();
-    let winding = |rings: &[Vec<DVec2>], p: DVec2| {
-        let crossings = rings.iter().flat_map(|ring| (0..ring.len()).map(|n| (ring[n], ring[(n + 1) % ring.len()])));
-        crossings
-            .filter(|(a, b)| (a.y <= p.y) != (b.y <= p.y) && a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) > p.x)
-            .count()
-            % 2
-            == 1
-    };
     let (mut wrong, mut rock) = (0, 0);
     for (x, y, pixel) in picture.enumerate_pixels() {
         let p = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-        let holds = |area: &&render::vector::VectorArea| {
-            let is_seen = |pieces: &Vec<Vec<DVec2>>| pieces.iter().any(|piece| winding(std::slice::from_ref(piece), p));
-            winding(&area.rings, p) && area.seen.as_ref().is_none_or(is_seen)
+        let is_met = |area: &&render::vector::VectorArea| {
+            let is_seen = |pieces: &Vec<Vec<DVec2>>| pieces.iter().any(|piece| holds(std::slice::from_ref(piece), p));
+            holds(&area.rings, p) && area.seen.as_ref().is_none_or(is_seen)
         };
         let found: Vec<Colour> = traced
             .areas
             .iter()
-            .filter(holds)
+            .filter(is_met)
             .filter_map(|area| match area.fill {
                 AreaFill::Colour(colour) => Some(colour),
                 _ => None,
@@ -156,6 +148,51 @@ fn areas_are_the_layers_that_rays_meet() {
     }
     // Rays that graze a line may fall on either side of it.
     assert!(rock > 20_000 && wrong * 400 < rock, "{wrong} of {rock}");
+}
+
+/// Whether a place lies within rings, by the even-odd rule.
+fn holds(rings: &[Vec<DVec2>], p: DVec2) -> bool {
+    let sides = rings.iter().flat_map(|ring| (0..ring.len()).map(|n| (ring[n], ring[(n + 1) % ring.len()])));
+    let crossed =
+        sides.filter(|(a, b)| (a.y <= p.y) != (b.y <= p.y) && a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) > p.x);
+    crossed.count() % 2 == 1
+}
+
+#[test]
+fn under_a_ground_faces_are_seen_where_no_nearer_rock_hides_them() {
+    let geometry = SurveyGeometry::regular([41, 41, 41], 10.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::dome(&geometry, &[8.0, 20.0, 30.0], 35.0);
+    let block = bricks(&closed);
+    let corner = VoxelBox::of_size([41, 41, 41]).corner_cut(render::Corner::MinMin, [0.5, 0.6]);
+    let shaft = CutShape::round(DVec2::splat(20.0), 130.0, None, &geometry);
+    let (mut hidden, mut seen) = (0, 0);
+    for (cut_outs, cut_shapes) in [(vec![corner], Vec::new()), (Vec::new(), vec![shaft])] {
+        let camera = Camera { azimuth_deg: Some(30.0), elevation_deg: 28.0, ..Camera::default() };
+        let ground = Some(Ground::default());
+        let scene = Scene { size_px: [320, 240], camera, cut_outs, cut_shapes, ground, ..Scene::default() };
+        let traced = traced(&scene, &block);
+        let colours: Vec<_> = traced.areas.iter().filter(|area| matches!(area.fill, AreaFill::Colour(_))).collect();
+        // Facets side by side hide nothing of one another: only the two sides of the block hide parts of them.
+        assert!(traced.hidden.iter().all(|faces| faces.len() <= 2));
+        for n in 0..320 * 240 {
+            let p = DVec2::new(f64::from(n % 320) + 0.37, f64::from(n / 320) + 0.61);
+            let met: Vec<_> = colours
+                .iter()
+                .filter(|area| holds(&area.rings, p))
+                .filter(|area| {
+                    area.seen.iter().all(|pieces| pieces.iter().any(|piece| holds(std::slice::from_ref(piece), p)))
+                })
+                .collect();
+            let is_seen = |face: usize| traced.hidden[face].iter().all(|rings| !holds(rings, p));
+            let left: Vec<_> = met.iter().filter(|area| is_seen(area.face)).collect();
+            // Faces come back to front, so that the last one is the nearest.
+            assert!(left.len() <= 1, "{p}: {:?}", left.iter().map(|area| (area.face, area.layer)).collect::<Vec<_>>());
+            let nearest = met.last().map(|area| (area.face, area.layer));
+            assert_eq!(left.first().map(|area| (area.face, area.layer)), nearest, "{p}");
+            (hidden, seen) = (hidden + met.len() - left.len(), seen + left.len());
+        }
+    }
+    assert!(hidden > 1000 && seen > 20_000, "{hidden} {seen}");
 }
 
 #[test]
