@@ -4,6 +4,7 @@ use super::cut::Outline;
 use super::pattern::{FacePattern, Tile};
 use super::visible::{HiddenParts, SeenFace, hidden_parts, seen_faces, seen_pieces};
 use super::{AreaFill, PatternPart, VectorArea};
+use crate::camera::View;
 use crate::error::RenderError;
 use crate::ground::air_layer;
 use crate::outline::solid::Face;
@@ -30,25 +31,27 @@ pub(super) fn face_areas(
     let tiles = tiles(resolved, library)?;
     let faces = seen_faces(&resolved.solid, &resolved.view);
     let air = resolved.relief.as_ref().map(|_| air_layer(interpretation.model));
+    let section = |face: &SeenFace| Section::new(interpretation.model, &face.face.section_plane());
+    let sections: Vec<Section> = faces.par_iter().map(section).collect();
     // Over a relief faces may be partly air, so that what they hide is known from their sections alone.
     let hidden = match air.filter(|_| !resolved.solid.cut_outs.is_empty()) {
         Some(air) => {
-            let rock = |face: &SeenFace| rock_rings(resolved, interpretation, face, air);
-            let rock: Vec<_> = faces.par_iter().map(rock).collect();
+            let rock =
+                faces.iter().zip(&sections).map(|(face, section)| rock_rings(&resolved.view, face, section, air));
+            let rock: Vec<_> = rock.collect();
             (0..faces.len()).into_par_iter().map(|n| hidden_parts(&faces, n, &resolved.view, &rock)).collect()
         }
         None => vec![HiddenParts::new(); faces.len()],
     };
     progress.begin("pattern", faces.len() as u64);
     let mut areas = Vec::new();
-    for (index, face) in faces.iter().enumerate() {
+    for (index, (face, section)) in faces.iter().zip(&sections).enumerate() {
         let seen = seen_pieces(&faces, index, &resolved.view, air.is_some());
         progress.step(1)?;
         if seen.as_ref().is_some_and(Vec::is_empty) {
             continue;
         }
         let plane = face.face.section_plane();
-        let section = Section::new(interpretation.model, &plane);
         let painter = FacePainter { resolved, interpretation, face: &face.face, plane, tiles: &tiles, tolerance_px };
         // Colours of whole layers, so that no seam shows where a fault is only continued; then what lies on them.
         let colours = section.layers.iter().map(|area| (area.layer, None, &area.rings));
@@ -77,16 +80,10 @@ pub(super) fn face_areas(
 }
 
 /// The outlines of the rock on a face, pixels: of each area that is not air its rings, holes turned against them.
-fn rock_rings(
-    resolved: &ResolvedScene,
-    interpretation: ResolvedInterpretation,
-    face: &SeenFace,
-    air: u16,
-) -> Vec<Vec<DVec2>> {
+fn rock_rings(view: &View, face: &SeenFace, section: &Section, air: u16) -> Vec<Vec<DVec2>> {
     let plane = face.face.section_plane();
-    let layers = Section::new(interpretation.model, &plane).layers;
-    let rings = layers.into_iter().filter(|area| area.layer != air).flat_map(|area| area.rings);
-    rings.map(|ring| ring.into_iter().map(|st| resolved.view.project(plane.voxel(st))).collect()).collect()
+    let rings = section.layers.iter().filter(|area| area.layer != air).flat_map(|area| &area.rings);
+    rings.map(|ring| ring.iter().map(|st| view.project(plane.voxel(*st))).collect()).collect()
 }
 
 /// The drawing of each texture in use, by slot.
