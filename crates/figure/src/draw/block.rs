@@ -5,7 +5,7 @@ use super::moved::BLOCK;
 use super::north;
 use super::overlay;
 use super::surfaces::{self, Cells, OPACITY};
-use super::vector_block::{self, BlockNames};
+use super::vector_block::{self, BlockNames, OnPage};
 use super::water;
 use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
@@ -171,7 +171,7 @@ pub(crate) fn painted(
         true => Some(Arc::new(painter.paint(&Scene { outlines: Outlines::none(), ..scene.clone() })?)),
         false => None,
     };
-    let items = vector_block::items(&traced, picture.as_ref(), pane, names, &page);
+    let items = vector_block::items(&traced, &OnPage { picture: picture.as_ref(), pane, names, page: &page });
     Ok((items, picture.or(traced.over)))
 }
 

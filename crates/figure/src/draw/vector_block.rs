@@ -46,35 +46,51 @@ impl BlockNames<'_> {
     }
 }
 
+/// Where a block lies on its page, and what its parts are called there.
+pub(super) struct OnPage<'a> {
+    /// The painted picture, where it is needed.
+    pub picture: Option<&'a Arc<RgbaImage>>,
+    /// What the picture fills.
+    pub pane: Rect,
+    /// Names of layers, horizons and faults.
+    pub names: &'a BlockNames<'a>,
+    /// From pixels of the picture to the page.
+    pub page: &'a dyn Fn(DVec2) -> DVec2,
+}
+
+impl OnPage<'_> {
+    fn points_per_px(&self) -> f64 {
+        (self.page)(DVec2::X).x - (self.page)(DVec2::ZERO).x
+    }
+
+    fn picture_of(&self, picture: &Arc<RgbaImage>) -> Picture {
+        Picture::in_rect(Arc::clone(picture), self.pane)
+    }
+}
+
 /// Whether the painted picture is needed as well.
 pub(super) fn needs_picture(block: &VectorBlock) -> bool {
     let is_painted = |area: &VectorArea| matches!(area.fill, AreaFill::Picture);
     !block.has_areas || block.areas.iter().any(is_painted)
 }
 
-/// The items of a block whose picture fills `pane`; `page` takes its pixels to the page.
-pub(super) fn items(
-    block: &VectorBlock,
-    picture: Option<&Arc<RgbaImage>>,
-    pane: Rect,
-    names: &BlockNames,
-    page: &dyn Fn(DVec2) -> DVec2,
-) -> Vec<Item> {
-    let points_per_px = page(DVec2::X).x - page(DVec2::ZERO).x;
+/// The items of a block.
+pub(super) fn items(block: &VectorBlock, on_page: &OnPage) -> Vec<Item> {
+    let OnPage { names, page, .. } = *on_page;
     let mut items: Vec<Item> = Vec::new();
-    if let Some(picture) = picture.filter(|_| !block.has_areas) {
+    if let Some(picture) = on_page.picture.filter(|_| !block.has_areas) {
         let mut group = Group::new(GroupKind::Data, "picture");
-        group.push(Picture::in_rect(Arc::clone(picture), pane));
+        group.push(on_page.picture_of(picture));
         items.push(group.into());
     }
-    items.extend(layers(block, picture, pane, names, page));
+    items.extend(layers(block, on_page));
     if let Some(over) = &block.over {
         let mut group = Group::new(GroupKind::Data, "ground and wells");
-        group.push(Picture::in_rect(Arc::clone(over), pane));
+        group.push(on_page.picture_of(over));
         items.push(group.into());
     }
     let contacts = block.lines.iter().filter(|line| matches!(line.kind, VectorLineKind::Horizon(Some(_)))).count();
-    let widest = LAYER_SHARE * pane.height() / contacts.max(1) as f64;
+    let widest = LAYER_SHARE * on_page.pane.height() / contacts.max(1) as f64;
     for line in &block.lines {
         let (kind, name) = match line.kind {
             VectorLineKind::Horizon(Some(index)) => {
@@ -91,7 +107,7 @@ pub(super) fn items(
             let points = if is_ring { &part[..part.len() - 1] } else { &part[..] };
             append(&mut path, points, is_ring, page);
         }
-        let width = line.width_px * points_per_px;
+        let width = line.width_px * on_page.points_per_px();
         let width = if kind == GroupKind::Horizon { width.min(widest) } else { width };
         let stroke = Stroke::new(width, line.colour).round();
         let mut group = Group::new(kind, name);
@@ -102,14 +118,7 @@ pub(super) fn items(
 }
 
 /// A group for each layer: what is seen of two areas of different layers or faces does not overlap.
-fn layers(
-    block: &VectorBlock,
-    picture: Option<&Arc<RgbaImage>>,
-    pane: Rect,
-    names: &BlockNames,
-    page: &dyn Fn(DVec2) -> DVec2,
-) -> Vec<Item> {
-    let points_per_px = page(DVec2::X).x - page(DVec2::ZERO).x;
+fn layers(block: &VectorBlock, on_page: &OnPage) -> Vec<Item> {
     // Of each layer what it has on one face after the other.
     let mut layers: Vec<(u16, Vec<(usize, Vec<Item>)>)> = Vec::new();
     // Plain colours first: where facets of a wall meet, their bleed would cover patterns.
@@ -119,7 +128,7 @@ fn layers(
             layers.push((area.layer, Vec::new()));
             layers.len() - 1
         });
-        let item = filled(area, picture, pane, page, points_per_px);
+        let item = filled(area, on_page);
         let faces = &mut layers[place].1;
         match faces.last_mut().filter(|(face, _)| *face == area.face) {
             Some((_, items)) => items.push(item),
@@ -130,11 +139,11 @@ fn layers(
         let seen = |(face, items): (usize, Vec<Item>)| {
             let hidden = block.hidden.get(face).map_or(&[][..], Vec::as_slice);
             hidden.iter().fold(items, |items, hidden| {
-                let rest = less(pane, hidden, page);
+                let rest = less(hidden, on_page);
                 vec![Group::new(GroupKind::Part, "seen").clipped(rest).with(items).into()]
             })
         };
-        Group::new(GroupKind::Layer, names.layer(layer)).with(faces.into_iter().flat_map(seen)).into()
+        Group::new(GroupKind::Layer, on_page.names.layer(layer)).with(faces.into_iter().flat_map(seen)).into()
     };
     layers.into_iter().map(group).collect()
 }
@@ -145,27 +154,22 @@ fn is_plain(area: &VectorArea) -> bool {
 }
 
 /// All of the pane less what is hidden: by the non-zero rule rings that turn against its own turn are holes.
-fn less(pane: Rect, hidden: &[Vec<DVec2>], page: &dyn Fn(DVec2) -> DVec2) -> Path {
-    let Rect { min, max } = pane;
+fn less(hidden: &[Vec<DVec2>], on_page: &OnPage) -> Path {
+    let Rect { min, max } = on_page.pane;
     let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
     let mut path = Path::default();
     append(&mut path, &corners, true, &|at| at);
     let is_alike = hidden.iter().map(|ring| twice_area(ring)).sum::<f64>() > 0.0;
     for ring in hidden {
         let against: Vec<DVec2> = if is_alike { ring.iter().rev().copied().collect() } else { ring.clone() };
-        append(&mut path, &against, true, page);
+        append(&mut path, &against, true, on_page.page);
     }
     path
 }
 
 /// An area, within the part of its face that is seen.
-fn filled(
-    area: &VectorArea,
-    picture: Option<&Arc<RgbaImage>>,
-    pane: Rect,
-    page: &dyn Fn(DVec2) -> DVec2,
-    points_per_px: f64,
-) -> Item {
+fn filled(area: &VectorArea, on_page: &OnPage) -> Item {
+    let page = on_page.page;
     if let (AreaFill::Colour(colour), None, Some(pieces)) = (&area.fill, &area.band, &area.seen) {
         return seen_colour(area, *colour, pieces, page);
     }
@@ -184,11 +188,11 @@ fn filled(
             filled.outlined(Stroke::new(BLEED_PT, *colour)).into()
         }
         AreaFill::Pattern(parts) => {
-            let drawn = parts.iter().map(|part| part_item(part, page, points_per_px).into());
+            let drawn = parts.iter().map(|part| part_item(part, page, on_page.points_per_px()).into());
             Group::new(GroupKind::Part, "pattern").clipped(outline).with(drawn).into()
         }
         AreaFill::Picture => {
-            let painted = picture.map(|picture| Picture::in_rect(Arc::clone(picture), pane).into());
+            let painted = on_page.picture.map(|picture| on_page.picture_of(picture).into());
             Group::new(GroupKind::Part, "painted").clipped(outline).with(painted).into()
         }
     };
