@@ -117,10 +117,12 @@ pub(super) fn items(block: &VectorBlock, on_page: &OnPage) -> Vec<Item> {
     items
 }
 
+/// What a layer has on one face after the other: the number of the face, and items.
+type OnFaces = Vec<(usize, Vec<Item>)>;
+
 /// A group for each layer: what is seen of two areas of different layers or faces does not overlap.
 fn layers(block: &VectorBlock, on_page: &OnPage) -> Vec<Item> {
-    // Of each layer what it has on one face after the other.
-    let mut layers: Vec<(u16, Vec<(usize, Vec<Item>)>)> = Vec::new();
+    let mut layers: Vec<(u16, OnFaces)> = Vec::new();
     // Plain colours first: where facets of a wall meet, their bleed would cover patterns.
     let (colours, others): (Vec<_>, Vec<_>) = block.areas.iter().partition(|area| is_plain(area));
     for area in colours.into_iter().chain(others) {
@@ -135,7 +137,7 @@ fn layers(block: &VectorBlock, on_page: &OnPage) -> Vec<Item> {
             None => faces.push((area.face, vec![item])),
         }
     }
-    let group = |(layer, faces): (u16, Vec<(usize, Vec<Item>)>)| {
+    let group = |(layer, faces): (u16, OnFaces)| {
         let seen = |(face, items): (usize, Vec<Item>)| {
             let hidden = block.hidden.get(face).map_or(&[][..], Vec::as_slice);
             hidden.iter().fold(items, |items, hidden| {
