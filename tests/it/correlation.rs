@@ -45,7 +45,7 @@ fn wells_stand_side_by_side_in_every_format_and_their_tops_are_joined() {
     }
     let said = texts(at, "a.svg");
     // Horizons have their own names, other surfaces those of the file; the scale is that of the curve.
-    for text in ["W1", "W2", "W3", "Alpha", "Tuff &amp; &lt;ash&gt;", "GR (GAPI)", "30", "36", "Wells", "depth (m)"] {
+    for text in ["W1", "W2", "W3", "Alpha", "Tuff &amp; &lt;ash&gt;", "GR (GAPI)", "30", "36", "Wells", "Depth (m)"] {
         assert!(said.iter().any(|other| other == text), "no {text} in {said:?}");
     }
     assert!(said.iter().any(|text| text.contains("dashed: from the model")), "{said:?}");
@@ -68,7 +68,7 @@ fn a_datum_is_level_and_the_axis_counts_from_it() {
     let level = "--datum alpha --well-range -100,300 --size-cm 16x11 --dpi 60";
     run_in(at, &format!("render p.petro a.svg --correlation {level}")).done();
     let said = texts(at, "a.svg");
-    assert!(said.iter().any(|text| text == "depth below Alpha (m)"), "{said:?}");
+    assert!(said.iter().any(|text| text == "Depth below Alpha (m)"), "{said:?}");
     assert!(said.iter().any(|text| text == "-100") && !said.iter().any(|text| text == "400"), "{said:?}");
     let svg = fs::read_to_string(at.join("a.svg")).unwrap();
     let alpha = svg.split("inkscape:label=\"Alpha\"").nth(1).unwrap().split("</g>").next().unwrap();

@@ -250,7 +250,7 @@ pub fn caption(columns: &[Column], geometry: &SurveyGeometry) -> String {
     said.join("; ")
 }
 
-/// What the axis of a panel counts; `name` is what it counts without a datum, such as "depth (m)".
+/// What the axis of a panel counts; `name` is what it counts without a datum, such as "Depth (m)".
 pub fn axis_name(name: &str, part: &CorrelationPart, columns: &[Column]) -> String {
     let Some(datum) = &part.datum else { return name.to_owned() };
     let mut met = columns.iter().flat_map(|column| &column.markers).map(|marker| &marker.name);

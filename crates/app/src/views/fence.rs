@@ -5,14 +5,14 @@
 use super::lasso;
 use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
-use super::sections::{axis_name, name_across};
+use super::sections::name_across;
 use super::texture;
 use crate::state::{Action, Panel, Session};
 use crate::work::fence::FenceRequest;
 use crate::work::{Rocks, Slices};
 use eframe::egui::{Button, Context, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo, vec2};
 use figure::cut::{CutLine, FenceCut, length_m, place, stations};
-use figure::draw::axes::{self, Axis};
+use figure::draw::axes::{self, Axis, axis_title};
 use figure::draw::section::{Marks, SectionContents};
 use glam::DVec2;
 use image::RgbaImage;
@@ -121,7 +121,7 @@ impl FenceView {
         let axis = |name: String, ends: [f64; 2], at: [f64; 2]| Axis { name, ends, at, least_step: 0.0 };
         let across = axis("m".to_owned(), [0.0, length_m(geometry, &corners)], [seen.min.x, seen.max.x]);
         let down = [0.0, depth].map(|index| geometry.vertical.value_at(index));
-        let down = axis(axis_name(geometry, 2), down, [seen.min.y, seen.max.y]);
+        let down = axis(axis_title(geometry, 2).to_owned(), down, [seen.min.y, seen.max.y]);
         let drawn = axes::drawn(canvas::page_rect(whole), seen, [&across, &down]);
         canvas::paint(&ui.painter_at(whole), &canvas::on_window(drawn, ui.visuals()), None);
         name_across(ui, whole, body, &across.name);

@@ -5,6 +5,7 @@ use crate::style::{FRAME_PT, NUMBER_PT, QUIET_INK, RULE_INK, TICK_PT};
 use glam::DVec2;
 use page::Rect;
 use page::list::{Across, Group, GroupKind, Path, PathItem, Stroke, Text, Upright, width_of};
+use survey::{SurveyGeometry, VerticalUnit};
 
 /// Least distance between numbers along the upper and the left edge, points.
 const EVERY_PT: [f64; 2] = [44.0, 26.0];
@@ -16,7 +17,7 @@ const GAP_PT: f64 = 1.8;
 /// An axis: what its ends stand for, and where they lie.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// What is counted: "crossline", "two-way time (ms)".
+    /// What is counted: "Crossline", "Two-way time (ms)".
     pub name: String,
     /// Values at the two ends of the whole section.
     pub ends: [f64; 2],
@@ -24,6 +25,16 @@ pub struct Axis {
     pub at: [f64; 2],
     /// Numbers stand no closer than this: 1 for line numbers.
     pub least_step: f64,
+}
+
+/// The title of an axis of a survey: 0 counts inlines, 1 crosslines, 2 depth or time.
+pub fn axis_title(geometry: &SurveyGeometry, axis: usize) -> &'static str {
+    match (axis, geometry.vertical.unit) {
+        (0, _) => "Inline",
+        (1, _) => "Crossline",
+        (_, VerticalUnit::Milliseconds) => "Two-way time (ms)",
+        (_, VerticalUnit::Metres) => "Depth (m)",
+    }
 }
 
 /// A number along an axis.

@@ -50,7 +50,7 @@ pub struct CorrelationPanel<'a> {
     pub library: Option<&'a TextureLibrary>,
     /// Colours of horizons, youngest first.
     pub horizons: &'a [NamedColour],
-    /// What the axis counts: "depth (m)".
+    /// What the axis counts: "Depth (m)".
     pub axis: String,
     /// First and last value of the axis.
     pub range: [f64; 2],

@@ -291,7 +291,7 @@ impl Maker<'_> {
 
 /// What dashes of horizons mean, where they are seen.
 fn qualities(seen: &Seen, stroke: &Stroke) -> Vec<LegendLine> {
-    let kinds = [(LineQuality::Approximate, "Contact, approximate"), (LineQuality::Inferred, "Contact, inferred (?)")];
+    let kinds = [(LineQuality::Approximate, "Contact, approximate"), (LineQuality::Inferred, "Contact, inferred")];
     let line = |(quality, name): &(LineQuality, &str)| {
         LegendLine::new(name, GroupKind::Horizon, quality_stroke(stroke.clone(), *quality))
     };

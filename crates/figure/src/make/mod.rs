@@ -8,7 +8,7 @@ use crate::annotation::Annotation;
 use crate::correlation::{self, Column};
 use crate::cut::{SectionKind, SectionSource, value_at};
 use crate::draw::annotation::BlockAnnotation;
-use crate::draw::axes::Axis;
+use crate::draw::axes::{Axis, axis_title};
 use crate::draw::block::{BlockPainter, BlockPanel, Comparison};
 use crate::draw::correlation::CorrelationPanel;
 use crate::draw::map::{MapPanel, title};
@@ -23,7 +23,7 @@ use page::Rect;
 use page::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH};
 use prepared::Prepared;
 use render::{Background, FaceData, Faces, Scene, Unpicked};
-use survey::{StratigraphicHorizon, SurveyGeometry, VerticalUnit, Well};
+use survey::{StratigraphicHorizon, SurveyGeometry, Well};
 use ttf::{Colour, LayerStyle, RawColour, TextureLibrary};
 
 /// Room around a page whose parts have text at their edges, points.
@@ -384,14 +384,9 @@ impl<'a> Maker<'a> {
 
     /// An axis of the survey from index 0 to `last`.
     fn axis(&self, axis: usize, last: f64) -> Axis {
-        let name = match (axis, self.geometry.vertical.unit) {
-            (0, _) => "inline",
-            (1, _) => "crossline",
-            (_, VerticalUnit::Milliseconds) => "two-way time (ms)",
-            (_, VerticalUnit::Metres) => "depth (m)",
-        };
+        let name = axis_title(self.geometry, axis).into();
         let ends = [0.0, last].map(|index| value_at(self.geometry, axis, index));
-        Axis { name: name.into(), ends, at: [0.0; 2], least_step: if axis < 2 { 1.0 } else { 0.0 } }
+        Axis { name, ends, at: [0.0; 2], least_step: if axis < 2 { 1.0 } else { 0.0 } }
     }
 
     /// Voxel position of a section, on the sample that is meant.

@@ -181,7 +181,7 @@ impl Maker<'_> {
         let depth = self.geometry.size()[2].saturating_sub(1).max(1) as f64;
         let extent = DVec2::new(along.last().copied().unwrap_or(1.0), depth);
         let length_m = length_m(self.geometry, &corners);
-        let ground = Axis { name: "distance (m)".into(), ends: [0.0, length_m], at: [0.0; 2], least_step: 0.0 };
+        let ground = Axis { name: "Distance (m)".into(), ends: [0.0, length_m], at: [0.0; 2], least_step: 0.0 };
         Ok(PreparedSection {
             title: "Fence".into(),
             extent,

@@ -32,7 +32,7 @@ fn only_what_is_seen_has_numbers_and_a_single_line_has_none_twice() {
 fn no_number_leaves_the_room() {
     let whole = Rect::new(DVec2::new(60.0, 10.0), DVec2::new(303.0, 210.0));
     let body = Rect::new(DVec2::new(100.0, 40.0), DVec2::new(300.0, 200.0));
-    let down = Axis { name: "two-way time (ms)".into(), ends: [0.0, 2000.0], at: [40.0, 200.0], least_step: 0.0 };
+    let down = Axis { name: "Two-way time (ms)".into(), ends: [0.0, 2000.0], at: [40.0, 200.0], least_step: 0.0 };
     let group = drawn(whole, body, [&axis([0.0, 2000.0]), &down]);
     for item in &group.items {
         if let page::list::Item::Text(text) = item {

@@ -23,7 +23,7 @@ fn drawn(columns: &[Column]) -> Group {
         layers: &[],
         library: None,
         horizons: &[],
-        axis: "depth (m)".into(),
+        axis: "Depth (m)".into(),
         range: [0.0, 1000.0],
         caption: None,
         dpi: 150.0,

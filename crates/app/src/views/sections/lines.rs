@@ -9,7 +9,7 @@ use glam::DVec2;
 use model::section::LineKind;
 use project::document::HorizonEntry;
 use std::borrow::Cow;
-use survey::{SurveyGeometry, VerticalUnit};
+use survey::SurveyGeometry;
 
 /// The colour of a horizon: its own, or else the default of its place in the list.
 pub fn horizon_colour(own: Option<ttf::Colour>, index: usize) -> Color32 {
@@ -46,16 +46,6 @@ pub(super) fn visible<'a>(session: &Session, lines: &'a [CutLine]) -> Cow<'a, [C
         _ => false,
     };
     Cow::Owned(lines.iter().filter(|line| !is_hidden(line)).cloned().collect())
-}
-
-/// What is counted along an axis, with its unit.
-pub fn axis_name(geometry: &SurveyGeometry, axis: usize) -> String {
-    match (axis, geometry.vertical.unit) {
-        (0, _) => "inline".to_owned(),
-        (1, _) => "crossline".to_owned(),
-        (_, VerticalUnit::Milliseconds) => "two-way time (ms)".to_owned(),
-        (_, VerticalUnit::Metres) => "depth (m)".to_owned(),
-    }
 }
 
 /// The name of the axis across, before its first number.

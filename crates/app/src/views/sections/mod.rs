@@ -8,7 +8,7 @@ mod freehand;
 mod lines;
 mod wells;
 
-pub use lines::{axis_name, entry_colour, horizon_colour, name_across};
+pub use lines::{entry_colour, horizon_colour, name_across};
 
 use super::lasso::{self, LassoLine};
 use super::overlay::{Overlay, stick_point};
@@ -25,7 +25,7 @@ use eframe::egui::{
 use figure::cut::SectionCut;
 use figure::cut::{CutLine, value_at};
 use figure::draw::NamedColour;
-use figure::draw::axes::{self, Axis};
+use figure::draw::axes::{self, Axis, axis_title};
 use figure::draw::section::{SectionContents, Zoom};
 use freehand::Freehand;
 use glam::DVec2;
@@ -247,7 +247,7 @@ impl Pane {
         }
         let [s, t] = kind.axes();
         let axis = |axis: usize, last: f64, at: [f64; 2]| Axis {
-            name: axis_name(geometry, axis),
+            name: axis_title(geometry, axis).to_owned(),
             ends: [0.0, last].map(|index| value_at(geometry, axis, index)),
             at,
             least_step: if axis < 2 { 1.0 } else { 0.0 },

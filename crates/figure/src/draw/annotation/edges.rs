@@ -6,13 +6,13 @@
 
 use super::room::LabelRoom;
 use crate::cut::value_at;
-use crate::draw::axes::round_step;
+use crate::draw::axes::{axis_title, round_step};
 use crate::style::{FRAME_PT, NUMBER_PT, QUIET_INK, TEXT_PT, TICK_PT};
 use glam::{DVec2, DVec3};
 use page::Rect;
 use page::list::{Across, Group, GroupKind, Path, PathItem, Stroke, Text, Upright, width_of};
 use render::{View, VoxelBox};
-use survey::{SurveyGeometry, VerticalUnit};
+use survey::SurveyGeometry;
 
 /// Edges that are seen shorter than this carry no axis, points.
 const SHORTEST_PT: f64 = 18.0;
@@ -205,15 +205,6 @@ impl OuterEdge {
         (first.ceil() as i64..=last.floor() as i64).map(tick).collect()
     }
 
-    fn name(&self, geometry: &SurveyGeometry) -> &'static str {
-        match (self.axis, geometry.vertical.unit) {
-            (0, _) => "Inline",
-            (1, _) => "Crossline",
-            (_, VerticalUnit::Milliseconds) => "Two-way time (ms)",
-            (_, VerticalUnit::Metres) => "Depth (m)",
-        }
-    }
-
     /// The title of a vertical axis, upright over the axis' upper end, where there is no room along it.
     fn title_above(
         &self,
@@ -226,7 +217,7 @@ impl OuterEdge {
         let top = if start.y < end.y { start } else { end };
         let at = top - DVec2::new(TICK_PT, 0.5 * HEIGHT * NUMBER_PT + 2.0 * GAP_PT);
         let text = |across: Across| {
-            let text = Text::new(at, self.name(geometry)).sized(TEXT_PT).inked(QUIET_INK);
+            let text = Text::new(at, axis_title(geometry, self.axis)).sized(TEXT_PT).inked(QUIET_INK);
             text.anchored(across, Upright::Baseline)
         };
         let mut texts = [Across::Middle, Across::End].map(text).into_iter();
@@ -235,7 +226,7 @@ impl OuterEdge {
 
     /// The title beyond numbers that reach so far, at a share of the edge.
     fn title(&self, share: f64, reach: f64, geometry: &SurveyGeometry, page: &dyn Fn(DVec3) -> DVec2) -> Text {
-        let name = self.name(geometry);
+        let name = axis_title(geometry, self.axis);
         let [start, end] = self.ends.map(page);
         let along = (end - start).normalize_or(DVec2::X);
         // Read from left to right, or upwards.
