@@ -115,6 +115,6 @@ pub(super) fn build(geometry: &SurveyGeometry, progress: &Progress) -> Result<St
 /// Default styles.
 pub(super) fn tables(geometry: &SurveyGeometry, rock: &Rock) -> Result<TtfTables, ProjectError> {
     let names = rock.model.stratigraphy().layer_names_bottom_up();
-    let block = load::block_extent(geometry, rock, names, 1.0);
+    let block = load::block_extent(geometry, rock, names);
     Ok(TtfTables::compile(&TransferFunctions::default(), &block, &TextureLibrary::builtin()?)?)
 }

@@ -330,8 +330,7 @@ pub(crate) fn load_scene(
         None => None,
         Some(rock) => {
             let library = styles::pattern_library(project.root(), document)?;
-            let block =
-                block_extent(&geometry, rock, document.stratigraphy().layer_names_bottom_up(), scene.exaggeration);
+            let block = block_extent(&geometry, rock, document.stratigraphy().layer_names_bottom_up());
             Some(TtfTables::compile(&functions, &block, &library)?)
         }
     };
@@ -472,12 +471,10 @@ pub(crate) fn load_read(
     })
 }
 
-/// What styles are compiled for: sizes in metres, and the names of the layers, bottom to top. Thicknesses are those of
-/// the exaggerated display, so that tiles are printed undistorted.
-pub fn block_extent(geometry: &SurveyGeometry, rock: &Rock, names: Vec<String>, exaggeration: f64) -> BlockExtent {
+/// What styles are compiled for: sizes in metres, and the names of the layers, bottom to top.
+pub fn block_extent(geometry: &SurveyGeometry, rock: &Rock, names: Vec<String>) -> BlockExtent {
     let extent = solid::extent_m(geometry);
-    let layer =
-        |(name, thickness_m): (String, &f32)| LayerExtent { name, thickness_m: thickness_m * exaggeration as f32 };
+    let layer = |(name, thickness_m): (String, &f32)| LayerExtent { name, thickness_m: *thickness_m };
     BlockExtent {
         extent_i_m: extent[0] as f32,
         extent_j_m: extent[1] as f32,

@@ -207,7 +207,7 @@ fn resolve_candidates<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Option<C
 
 /// The transfer functions with the settings of the scene.
 fn resolve_tables(scene: &Scene, inputs: &Inputs, view: &View, illustrated: bool) -> Result<TtfTables, RenderError> {
-    let mut tables = inputs.tables.cloned().unwrap_or_else(no_tables);
+    let mut tables = inputs.tables.cloned().unwrap_or_else(no_tables).exaggerated(scene.exaggeration as f32);
     tables.globals.blend = scene.blend;
     let frequencies = Frequencies::of(scene, inputs.geometry, view);
     tables.globals.global_frequency = frequencies.factor;

@@ -259,13 +259,13 @@ impl Maker<'_> {
         })
     }
 
-    /// Compiles the styles for the exaggeration and the preset of a scene.
+    /// Compiles the styles for the preset of a scene.
     fn style_for(&mut self, scene: &Scene) -> Result<(), ProjectError> {
         let document = self.project.document();
         let functions = styles::transfer_functions(document).printed(scene.preset);
         if let Some(rock) = &self.loaded.rock {
             let names = document.stratigraphy().layer_names_bottom_up();
-            let extent = load::block_extent(&self.loaded.geometry, rock, names, scene.exaggeration);
+            let extent = load::block_extent(&self.loaded.geometry, rock, names);
             self.loaded.tables = Some(TtfTables::compile(&functions, &extent, self.library)?);
             self.loaded.version = load::new_version();
         }

@@ -80,10 +80,12 @@ pub struct LayerEntry {
     pub first_interval: u32,
     /// Number of entries there.
     pub interval_count: u32,
-    /// Metres that k in [0, 1] stands for ([`LayerExtent::thickness_m`]).
+    /// Metres that k in [0, 1] stands for ([`LayerExtent::thickness_m`]), as they are displayed.
     pub thickness_m: f32,
+    /// 1: the frequency follows from the tile's printed size, 0: a style states it.
+    pub is_sized: u32,
     /// Zero.
-    pub padding: [u32; 3],
+    pub padding: [u32; 2],
 }
 
 /// A depth interval of a layer.
@@ -100,8 +102,10 @@ pub struct IntervalEntry {
     pub frequency: [f32; 2],
     /// Texture slot.
     pub texture: u32,
+    /// 1: the frequency follows from the tile's printed size, 0: a style states it.
+    pub is_sized: u32,
     /// Zero.
-    pub padding: [u32; 3],
+    pub padding: [u32; 2],
 }
 
 /// A value interval of a scalar function.
@@ -201,14 +205,15 @@ impl TtfTables {
             let first_interval = intervals.len() as u32;
             slots.add_intervals(&style, block, layer.thickness_m, &mut intervals)?;
             let [r, g, b] = style.colour.to_unit();
-            let frequency = style.frequency.unwrap_or_else(|| block.frequency(layer.thickness_m, PLAIN_TILE_MM));
+            let (frequency, is_sized) = block.frequency(style.frequency, layer.thickness_m, PLAIN_TILE_MM);
             layers.push(LayerEntry {
                 colour: [r, g, b, style.opacity],
-                frequency: [frequency.horizontal, frequency.vertical],
+                frequency,
                 first_interval,
                 interval_count: intervals.len() as u32 - first_interval,
                 thickness_m: layer.thickness_m,
-                padding: [0; 3],
+                is_sized,
+                padding: [0; 2],
             });
         }
         let mut scalars = Vec::new();
@@ -247,6 +252,20 @@ impl TtfTables {
         Ok(Self { globals, layers, intervals, scalars, stops, volumes, textures, patterns, faults })
     }
 
+    /// The tables for a block that is drawn this many times as high, in which tiles keep their proportions on level beds.
+    /// Frequencies that styles state are kept.
+    #[must_use]
+    pub fn exaggerated(mut self, factor: f32) -> Self {
+        for layer in &mut self.layers {
+            layer.thickness_m *= factor;
+            layer.frequency[1] *= if layer.is_sized == 1 { factor } else { 1.0 };
+        }
+        for interval in &mut self.intervals {
+            interval.frequency[1] *= if interval.is_sized == 1 { factor } else { 1.0 };
+        }
+        self
+    }
+
     /// The colour that a fault's lines were given; `None`: they are drawn as the scene's outlines say.
     pub fn fault_colour(&self, fault: Option<usize>) -> Option<Colour> {
         fault.and_then(|fault| self.faults.get(fault).copied().flatten())
@@ -283,9 +302,11 @@ impl TtfTables {
 const PLAIN_TILE_MM: [f32; 2] = [20.0, 20.0];
 
 impl BlockExtent {
-    fn frequency(&self, thickness_m: f32, tile_mm: [f32; 2]) -> Frequency {
+    /// The stated frequency, or that of a tile at its printed size; and 1 if it is the latter.
+    fn frequency(&self, stated: Option<Frequency>, thickness_m: f32, tile_mm: [f32; 2]) -> ([f32; 2], u32) {
         let tile_m = tile_mm.map(|side| side * self.metres_per_mm);
-        Frequency::for_tile(self.extent_i_m, thickness_m, tile_m)
+        let frequency = stated.unwrap_or_else(|| Frequency::for_tile(self.extent_i_m, thickness_m, tile_m));
+        ([frequency.horizontal, frequency.vertical], u32::from(stated.is_none()))
     }
 
     fn validate(&self) -> Result<(), TtfError> {
@@ -341,17 +362,18 @@ impl<'a> Slots<'a> {
         for interval in sorted {
             let index = self.library.index_of(&interval.texture, &style.layer)?;
             let tile_mm = self.library.pattern(index).tile_mm;
-            let frequency =
-                interval.frequency.or(style.frequency).unwrap_or_else(|| block.frequency(thickness_m, tile_mm));
+            let stated = interval.frequency.or(style.frequency);
+            let (frequency, is_sized) = block.frequency(stated, thickness_m, tile_mm);
             let [r, g, b] = interval.colour.unwrap_or(style.colour).to_unit();
             let [low, high] = interval.k;
             intervals.push(IntervalEntry {
                 colour: [r, g, b, interval.opacity],
                 ink: opaque_or_nothing(style.ink),
                 k: [if low <= 0.0 { f32::MIN } else { low }, if high >= 1.0 { f32::MAX } else { high }],
-                frequency: [frequency.horizontal, frequency.vertical],
+                frequency,
                 texture: self.texture(index)?,
-                padding: [0; 3],
+                is_sized,
+                padding: [0; 2],
             });
         }
         Ok(())
@@ -418,6 +440,22 @@ mod tests {
         assert_eq!(tables.intervals[0].k, [f32::MIN, 0.5]);
         assert_eq!(tables.intervals[1].k, [0.5, 0.8]);
         assert_eq!((tables.textures.len(), tables.volumes.len(), tables.scalars.len()), (1, 1, 2));
+    }
+
+    #[test]
+    fn tiles_keep_their_proportions_in_exaggerated_blocks_unless_a_style_states_them() {
+        let library = TextureLibrary::builtin().unwrap();
+        let mut functions = TransferFunctions::default();
+        let mut stated = LayerStyle::textured("B", Colour::WHITE, "sand");
+        stated.frequency = Some(Frequency { horizontal: 4.0, vertical: 3.0 });
+        functions.layers.set(stated);
+        let tables = TtfTables::compile(&functions, &block(&["A", "B"]), &library).unwrap();
+        let high = tables.clone().exaggerated(2.5);
+        let [i, k] = tables.intervals[0].frequency;
+        assert_eq!(high.intervals[0].frequency, [i, 2.5 * k]);
+        assert_eq!(high.layers[0].frequency[1], 2.5 * tables.layers[0].frequency[1]);
+        assert_eq!((high.intervals[1].frequency, high.layers[1].frequency), ([4.0, 3.0], [4.0, 3.0]));
+        assert_eq!(high.layers.iter().map(|layer| layer.thickness_m).collect::<Vec<_>>(), [750.0; 2]);
     }
 
     #[test]

@@ -18,7 +18,6 @@ pub(super) struct Needs {
     layer: Option<LayerStyle>,
     /// The draft of the raw colours.
     raw: Option<RawColour>,
-    exaggeration: f64,
     preset: Preset,
     /// The volumes and horizons of the volume rendering.
     seen: Seen,
@@ -131,15 +130,9 @@ impl Window {
             document.sticks.clear();
             document.layer_names.clear();
             let purpose = Purpose::Interpret { extraction };
-            Wanted { root, document, exaggeration: 1.0, preset: Preset::Colour, purpose }
+            Wanted { root, document, preset: Preset::Colour, purpose }
         } else {
-            Wanted {
-                root,
-                document,
-                exaggeration: needs.exaggeration,
-                preset: needs.preset,
-                purpose: Purpose::Illustrate(needs.seen.clone()),
-            }
+            Wanted { root, document, preset: needs.preset, purpose: Purpose::Illustrate(needs.seen.clone()) }
         };
         self.needs = Some(needs);
         if self.wanted.as_ref() != Some(&wanted) {
@@ -157,7 +150,6 @@ impl Window {
             revision: session.revision,
             layer: self.layers.draft().cloned(),
             raw: self.functions.draft().cloned(),
-            exaggeration: session.view.scene.exaggeration,
             preset: session.view.scene.preset,
             seen: Seen::of(&session.view.scene),
             interpreting: (session.view.panel == Panel::Interpret).then(extraction),

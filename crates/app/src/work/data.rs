@@ -31,8 +31,6 @@ pub struct Wanted {
     pub root: PathBuf,
     /// Its state.
     pub document: Document,
-    /// Vertical exaggeration: patterns are sized for it.
-    pub exaggeration: f64,
     /// How colours are printed.
     pub preset: Preset,
     /// The purpose of the pictures.
@@ -74,7 +72,7 @@ impl Seen {
     }
 
     /// A scene that renders this.
-    fn scene(&self, exaggeration: f64, preset: Preset) -> Scene {
+    fn scene(&self, preset: Preset) -> Scene {
         let medium = |volume: &String| Medium {
             volume: volume.clone(),
             function: white_ramp(1.0, 0.0),
@@ -84,7 +82,7 @@ impl Seen {
         let horizon =
             |name: &String| PickedHorizon { name: Some(name.clone()), ..PickedHorizon::of(Vec::new(), Colour::WHITE) };
         // A blend in between needs everything that any blend needs.
-        let mut scene = Scene { blend: 0.5, exaggeration, preset, ..Scene::default() };
+        let mut scene = Scene { blend: 0.5, preset, ..Scene::default() };
         scene.media.surroundings = self.volumes.iter().map(medium).collect();
         scene.media.horizons = self.horizons.iter().map(horizon).collect();
         scene
@@ -190,7 +188,7 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
     if let Some(kept) = kept.as_mut().filter(|kept| same(&&**kept)) {
         if kept.seen != *seen {
             let project = Project::open(&wanted.root)?;
-            let scene = seen.scene(wanted.exaggeration, wanted.preset);
+            let scene = seen.scene(wanted.preset);
             let more = {
                 let loaded = kept.rocks.read().unwrap_or_else(PoisonError::into_inner);
                 super::compute(|| load::read_more(&project, &loaded, &scene, progress))?
@@ -212,7 +210,7 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
     // Drop the old data first, so that memory holds one model and its volumes rather than two.
     *kept = None;
     let project = Project::open(&wanted.root)?;
-    let scene = seen.scene(wanted.exaggeration, wanted.preset);
+    let scene = seen.scene(wanted.preset);
     let loaded = super::compute(|| load::load(&project, &scene, progress))?;
     let rocks = Arc::new(RwLock::new(loaded));
     let (seen, wells) = (seen.clone(), document.wells.clone());
@@ -269,7 +267,7 @@ fn restyle(rocks: &Rocks, wanted: &Wanted) -> Result<(), ProjectError> {
             Some(rock) => {
                 let library = styles::pattern_library(&wanted.root, document)?;
                 let names = document.stratigraphy().layer_names_bottom_up();
-                let block = load::block_extent(&loaded.geometry, rock, names, wanted.exaggeration);
+                let block = load::block_extent(&loaded.geometry, rock, names);
                 Some(TtfTables::compile(&functions, &block, &library)?)
             }
         }
@@ -312,7 +310,6 @@ mod tests {
         let wanted = |project: &Project| Wanted {
             root: project.root().to_owned(),
             document: project.document().clone(),
-            exaggeration: 1.0,
             preset: Preset::Colour,
             purpose: Purpose::Illustrate(Seen::default()),
         };

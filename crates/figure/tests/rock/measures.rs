@@ -1,9 +1,10 @@
 //! What is measured in the written SVG: bricks along a fold, and patterns that end at their layers and faults.
 
 use crate::fold::Fold;
+use figure::{Figure, PageSize, Part, SectionKind, SectionPart};
 use glam::{DMat2, DVec2, DVec3};
 use page::svg;
-use render::{Background, Camera, Outlines, Scene, VoxelBox};
+use render::{Background, Camera, FaceData, Outlines, Scene, VoxelBox};
 use std::collections::{HashMap, HashSet};
 use survey::{SurveyGeometry, VerticalUnit};
 use synth::closed_form::ClosedForm;
@@ -248,4 +249,29 @@ fn joints_of_bricks_stand_across_the_bedding_of_a_fold() {
     assert!(worst < 3.0, "a joint is {worst} degrees askew");
     let (count, worst) = joints(8.0);
     assert!(count > 100 && worst > 3.0, "{count} joints, {worst} degrees");
+}
+
+/// Ooids are circles, also on sections that are drawn higher than they are: the pattern has the page's proportions.
+#[test]
+fn ooids_stay_round_on_exaggerated_sections() {
+    let geometry = SurveyGeometry::regular([61, 41, 51], 12.5, 12.5, VerticalUnit::Metres);
+    let closed = ClosedForm::flat(&geometry, &[1.0, 13.0, 25.0, 37.0, 49.0]);
+    let fold = Fold::of(geometry, &closed, &["limestone-oolitic"; 6]);
+    for proportions in [1.0, 2.0, 3.5] {
+        let (kind, show, zoom) = (SectionKind::Crossline, FaceData::Rock, Default::default());
+        let part = SectionPart { kind, at: 21.0, show, blend: Some(0.0), zoom, proportions: Some(proportions) };
+        let page = fold.made(&Figure { size: PageSize::Cm([12.0, 24.0]), ..Figure::of(Part::Section(part)) }, true);
+        let svg = svg(&page, "t").unwrap();
+        let shapes = patterns(&svg).into_iter().flat_map(|(_, paths)| paths).flat_map(|d| subpaths(&d));
+        let ratio = |(points, is_closed): (Vec<DVec2>, bool)| {
+            let low = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+            let size = points.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max) - low;
+            is_closed.then_some(size.y / size.x)
+        };
+        let mut ratios: Vec<f64> = shapes.filter_map(ratio).collect();
+        ratios.sort_by(f64::total_cmp);
+        assert!(ratios.len() > 50, "{} ooids", ratios.len());
+        let [low, high] = [0.1, 0.9].map(|share| ratios[(share * ratios.len() as f64) as usize]);
+        assert!(low > 0.9 && high < 1.1, "{low} to {high} at {proportions}");
+    }
 }

@@ -26,9 +26,9 @@ struct LayerEntry {
     interval_count: u32,
     // Metres that k in [0, 1] stands for.
     thickness_m: f32,
+    is_sized: u32,
     padding_0: u32,
     padding_1: u32,
-    padding_2: u32,
 }
 
 struct IntervalEntry {
@@ -38,9 +38,9 @@ struct IntervalEntry {
     frequency: vec2<f32>,
     texture: u32,
     // Three numbers, since a vec3 would be aligned to 16 bytes.
+    is_sized: u32,
     padding_0: u32,
     padding_1: u32,
-    padding_2: u32,
 }
 
 struct ScalarEntry {

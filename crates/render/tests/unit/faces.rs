@@ -82,8 +82,8 @@ fn structs_have_the_same_layout() {
     check!(m, VolumePlacement: scale, offset, size);
     check!(m, TtfGlobals: no_data, raw_domain, blend, global_frequency, aspect_j, raw_volume, scalar_count, stop_count,
         finer_share, extent_i_m);
-    check!(m, LayerEntry: colour, frequency, first_interval, interval_count, thickness_m);
-    check!(m, IntervalEntry: colour, ink, k, frequency, texture);
+    check!(m, LayerEntry: colour, frequency, first_interval, interval_count, thickness_m, is_sized);
+    check!(m, IntervalEntry: colour, ink, k, frequency, texture, is_sized);
     check!(m, ScalarEntry: colour, ink, range, factor, texture, volume, opacity);
     check!(m, StopEntry: colour, at);
     check!(m, Slice: index, side);
