@@ -124,3 +124,16 @@ fn rock_on_a_section_is_paths_with_names_and_throws() {
     let half = fold.made(&figure(section(SectionKind::Crossline, 21.0, 1.0)), true);
     assert!(svg(&half, "t").unwrap().contains("<image"));
 }
+
+/// A bed of 50° is cut off by a fault of 65° at places 169 m apart in depth, although all went down by 75 m: the throw is
+/// that of the level horizon, which crosses the fault clearly, not that of the bed nearer to the middle.
+#[test]
+fn throws_are_not_taken_from_beds_that_run_along_the_fault() {
+    let geometry = SurveyGeometry::regular([61, 41, 51], 12.5, 12.5, VerticalUnit::Metres);
+    let closed = ClosedForm::unconformity(&geometry, 10.0, &[22.0], 50.0, 0.0).with_fault(65.0, 6.0);
+    let fold = Fold::of(geometry, &closed, &["shale", "limestone", "shale"]);
+    let part = section(SectionKind::Crossline, 21.0, 0.0);
+    let page = fold.made(&Figure { annotate: vec![Annotation::Faults], ..figure(part) }, true);
+    let said: Vec<&str> = page.texts().into_iter().map(|text| text.text.as_str()).collect();
+    assert!(said.contains(&"F1, 75 m"), "{said:?}");
+}

@@ -1,8 +1,9 @@
 //! Names of faults beside their lines, the throw measured there, and half-arrows that say which side went down.
 //!
 //! On a face, a horizon meets a fault from each side at a place of its own, its cut-offs. They are found on the fault's
-//! line from the horizon in the two blocks beside it; the throw is the difference of their depths or times,
-//! taken at the horizon whose cut-offs lie nearest to the middle of what is seen of the fault.
+//! line from the horizon in the two blocks beside it; the throw is the difference of their depths or times. Where beds
+//! run nearly along the fault their cut-offs lie far apart, however little it moved. So it is taken from the horizons
+//! that meet the fault at large angles, at the one whose cut-offs lie nearest to the middle of what is seen of the fault.
 
 use super::room::{LabelRoom, outlines};
 use crate::convex::{holds, meet};
@@ -35,6 +36,8 @@ const BESIDE: f64 = 0.75;
 const FLAT: f64 = 0.12;
 /// The flattest line counts this share of its length against steep ones.
 const FLAT_SHARE: f64 = 0.3;
+/// A throw is taken from horizons that cross the fault at this share, or more, of the largest sine of an angle.
+const CROSSING: f64 = 0.7;
 /// How far from a horizon's end at a fault its line is looked up, voxels.
 const NEAR_END: f64 = 3.0;
 /// Throws below this are not stated, samples.
@@ -67,6 +70,8 @@ struct CutOff {
     z: f64,
     /// Whether the older rock lies below.
     is_upright: bool,
+    /// Sine of the angle between the horizon and the fault on the face.
+    crossing: f64,
 }
 
 /// What is known of a fault at a place.
@@ -80,6 +85,8 @@ pub(super) struct Throw {
     is_ahead_down: bool,
     /// Whether the horizon was only continued to the fault, on either side.
     is_inferred: bool,
+    /// Sine of the angle at which the horizon meets the fault, the less of both sides.
+    crossing: f64,
 }
 
 /// The longest seen run of each fault on upright faces, by fault; a flat one counts less.
@@ -136,7 +143,7 @@ fn steepness(places: &[(DVec3, DVec2)], geometry: &SurveyGeometry) -> f64 {
 
 impl FaultRun<'_> {
     /// The throw from the cut-offs of the horizon that is nearest to the middle, of those that are known on both sides if
-    /// there are any; `None` where no horizon has both.
+    /// there are any, and cross the fault clearly; `None` where no horizon has both.
     pub(super) fn throw(&self, model: &StructuralModel, geometry: &SurveyGeometry) -> Option<Throw> {
         let middle = self.places[self.places.len() / 2].0;
         let aside = self.face.section.plane.s_axis * BESIDE;
@@ -146,7 +153,7 @@ impl FaultRun<'_> {
         }
         let last = (self.places.len() - 1).max(1) as f64;
         let throws = |horizon: usize| {
-            let [behind, ahead] = blocks.map(|block| self.cut_offs(model, horizon, block));
+            let [behind, ahead] = blocks.map(|block| self.cut_offs(model, geometry, horizon, block));
             // A limb that is upside down is paired with one that is.
             let pair = |from: &CutOff| {
                 let same = ahead.iter().filter(|to| to.is_upright == from.is_upright);
@@ -155,17 +162,21 @@ impl FaultRun<'_> {
                 let is_seen = (to.z - from.z).abs() >= LEAST_THROW;
                 let share = 0.5 * (from.at + to.at) / last;
                 let is_inferred = [from, to].into_iter().any(|end| self.is_inferred(horizon, end.place));
-                let is_ahead_down = to.z > from.z;
-                is_seen.then_some(Throw { size: (below - above).abs(), share, is_ahead_down, is_inferred })
+                let (size, is_ahead_down) = ((below - above).abs(), to.z > from.z);
+                let crossing = from.crossing.min(to.crossing);
+                is_seen.then_some(Throw { size, share, is_ahead_down, is_inferred, crossing })
             };
             behind.iter().filter_map(pair).collect::<Vec<_>>()
         };
         let horizons = (0..model.stratigraphy().horizons.len()).filter(|&horizon| !model.is_body(horizon));
-        let order = |a: &Throw, b: &Throw| {
-            let aside = |throw: &Throw| (throw.share - 0.5).abs();
-            a.is_inferred.cmp(&b.is_inferred).then(aside(a).total_cmp(&aside(b)))
-        };
-        horizons.flat_map(throws).min_by(order)
+        let mut throws: Vec<Throw> = horizons.flat_map(throws).collect();
+        if throws.iter().any(|throw| !throw.is_inferred) {
+            throws.retain(|throw| !throw.is_inferred);
+        }
+        let clearest = throws.iter().map(|throw| throw.crossing).fold(0.0, f64::max);
+        throws.retain(|throw| throw.crossing >= CROSSING * clearest);
+        let aside = |throw: &Throw| (throw.share - 0.5).abs();
+        throws.into_iter().min_by(|a, b| aside(a).total_cmp(&aside(b)))
     }
 
     /// Whether the line of a horizon that ends at a place is only continued there.
@@ -180,8 +191,11 @@ impl FaultRun<'_> {
     }
 
     /// Where a horizon ends at the fault within a block, limb by limb.
-    fn cut_offs(&self, model: &StructuralModel, horizon: usize, block: u16) -> Vec<CutOff> {
+    fn cut_offs(&self, model: &StructuralModel, geometry: &SurveyGeometry, horizon: usize, block: u16) -> Vec<CutOff> {
         let off = |p: DVec3| f64::from(model.offset(horizon, block, p.as_vec3()));
+        // A voxel's length along the two axes of the face, m.
+        let axes = [self.face.section.plane.s_axis, self.face.section.plane.t_axis];
+        let metres = axes.map(|axis| geometry.metric_from_voxel() * axis);
         let crossing = |(n, pair): (usize, &[(DVec3, DVec2)])| {
             let [a, b] = [pair[0].0, pair[1].0];
             let (off_a, off_b) = (off(a), off(b));
@@ -195,7 +209,11 @@ impl FaultRun<'_> {
             let [without, with] = [false, true].map(|below_it| model.rules().layer(&below.with(horizon, below_it)));
             let is_there = with != without;
             let is_upright = (off_b > off_a) == (b.z > a.z);
-            is_there.then_some(CutOff { at: n as f64 + share, place: p, z: p.z, is_upright })
+            let slope = DVec2::from_array([0, 1].map(|n| (off(p + axes[n]) - off(p - axes[n])) / metres[n].length()));
+            let along = geometry.metric_from_voxel() * (b - a);
+            let along = DVec2::from_array(metres.map(|axis| along.dot(axis.normalize_or_zero())));
+            let crossing = slope.normalize_or_zero().dot(along.normalize_or_zero()).abs();
+            is_there.then_some(CutOff { at: n as f64 + share, place: p, z: p.z, is_upright, crossing })
         };
         self.places.windows(2).enumerate().filter_map(crossing).collect()
     }
