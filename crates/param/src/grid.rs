@@ -19,10 +19,11 @@ use crate::metric::Metric;
 use crate::touched::RegionColumns;
 use crate::tricubic;
 use crate::unfold::Unfolding;
+use crate::weight;
 use crate::{LayerModel, Region};
 use glam::Vec3;
 use std::sync::Arc;
-use survey::HeightField;
+use survey::{HeightField, LevelField};
 
 /// A layer thinner than this (voxels) counts as pinched out: its offsets are 0 and v is ½.
 pub const PINCHED: f32 = 1e-3;
@@ -175,9 +176,27 @@ impl RegionGrid {
         (if self.is_calm() { v } else { v.clamp(0.0, 1.0) }, slope)
     }
 
-    /// k between surfaces of any shape, continued beyond them, and its voxel derivative: the share of the distances from
-    /// both, or of the reference thickness where one is missing.
+    /// k between surfaces of any shape, continued beyond them, and its voxel derivative: [`RegionGrid::level_ratio`], or
+    /// what its weight makes of it.
     pub(crate) fn level_k<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3) -> (f32, Vec3) {
+        let weight = self.unfolded.as_ref().and_then(|unfolded| unfolded.log_weight.as_ref());
+        self.level_k_by(model, weight, p)
+    }
+
+    /// The same by this weight.
+    pub(crate) fn level_k_by<M: LayerModel + ?Sized>(
+        &self,
+        model: &M,
+        log_weight: Option<&LevelField>,
+        p: Vec3,
+    ) -> (f32, Vec3) {
+        let ratio = self.level_ratio(model, p);
+        log_weight.map_or(ratio, |field| weight::weighed(ratio, tricubic::sample(field, p)))
+    }
+
+    /// The share of the distances from both surfaces, or of the reference thickness where one is missing, continued beyond
+    /// them; and its voxel derivative.
+    pub(crate) fn level_ratio<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3) -> (f32, Vec3) {
         let block = self.region.block;
         let below = |sheet: &SheetRef| match sheet.of {
             SheetSource::Horizon(horizon) => Some(match model.level(horizon, block) {
@@ -215,6 +234,7 @@ impl RegionGrid {
         &self,
         model: &M,
         metric: &Metric,
+        log_weight: Option<&LevelField>,
         touched: &RegionColumns,
         region: Region,
     ) -> Vec<f64> {
@@ -225,7 +245,10 @@ impl RegionGrid {
             (0..=last).step_by(RISES_EVERY).map(move |z| Vec3::new(x as f32, y as f32, z as f32))
         });
         let inside = places.filter(|&p| model.region_at(p) == region);
-        inside.map(|p| (covector * self.level_k(model, p).1.as_dvec3()).length()).filter(|rate| *rate > 0.0).collect()
+        inside
+            .map(|p| (covector * self.level_k_by(model, log_weight, p).1.as_dvec3()).length())
+            .filter(|rate| *rate > 0.0)
+            .collect()
     }
 
     /// Whether the layer is drawn with boundaries of its own: v then goes on beyond the sheets, and the offsets stay as
@@ -309,7 +332,7 @@ impl RegionGrid {
         let k = if is_closed { k.clamp(0.0, 1.0) } else { k };
         let [(i, i_slope), (j, j_slope)] = [0, 1].map(|axis: usize| {
             let unit = 1.0 / volume[axis].saturating_sub(1).max(1) as f32;
-            let (value, slope) = tricubic::sample(&unfolded[axis], p);
+            let (value, slope) = tricubic::sample(&unfolded.places[axis], p);
             (value * unit, slope * unit)
         });
         let flat = FlatPoint { i, j, k, region: self.region };

@@ -13,6 +13,7 @@ use crate::grid::{PINCHED, RegionGrid};
 use crate::metric::Metric;
 use crate::plan::{Method, Planner};
 use crate::touched::RegionColumns;
+use crate::unfold::Unfolded;
 use crate::voxels::{NO_REGION, corner_aligned};
 use crate::{KDefinition, LayerModel, ParamError, ParamSettings, Parameterization, Region, VoxelParameterization};
 use glam::Vec3;
@@ -228,7 +229,7 @@ impl Samples {
             size,
             values: nodes.iter().map(|node| node.map_or(0.0, |node| node[which])).collect(),
         };
-        grid.unfolded = Some(Arc::new([field(0), field(1)]));
+        grid.unfolded = Some(Arc::new(Unfolded { places: [field(0), field(1)], log_weight: None }));
         [known, known]
     }
 }

@@ -108,6 +108,7 @@ mod trace;
 mod tricubic;
 mod unfold;
 mod voxels;
+mod weight;
 
 pub use compute::ComputeCost;
 pub use error::ParamError;
@@ -117,5 +118,5 @@ pub use model::{LayerModel, Region};
 pub use packed::PackedVolume;
 pub use parameterization::Parameterization;
 pub use settings::{KDefinition, ParamSettings};
-pub use unfold::Unfolding;
+pub use unfold::{Unfolded, Unfolding};
 pub use voxels::{NO_REGION, VoxelParameterization, corner_aligned};

@@ -7,7 +7,7 @@ use crate::joined::{self, Tips};
 use crate::metric::Metric;
 use crate::plan::{self, Method, Planner};
 use crate::touched::{ColumnScan, RegionColumns};
-use crate::unfold::{self, Unfolding};
+use crate::unfold::{self, Unfolded, Unfolding};
 use crate::{LayerModel, ParamError, ParamSettings, Region};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -59,31 +59,38 @@ impl Parameterization {
             planned.push((grid, method));
             touched.push(columns);
         }
-        let rise = |p: Vec3, of: Region| {
-            let (grid, _) = &planned[usize::from(of.block) * layers + usize::from(of.layer)];
-            grid.level_k(model, p)
-        };
         let is_unfolded = |layer: &u16| {
             let of_layer = planned.iter().skip(usize::from(*layer)).step_by(layers);
             of_layer.into_iter().any(|(_, method)| *method == Method::Unfolded)
         };
         let folded: Vec<u16> = (0..layers as u16).filter(is_unfolded).collect();
+        let grid_of = |of: Region| &planned[usize::from(of.block) * layers + usize::from(of.layer)].0;
+        let weights = planner.log_weights(&folded, grid_of, progress)?;
+        let weight_of = |of: Region| weights[usize::from(of.layer)].get(usize::from(of.block));
+        let rise = |p: Vec3, of: Region| grid_of(of).level_k_by(model, weight_of(of), p);
         // Between two surfaces of any shape a vertical line says nothing of the thickness: it is how fast k rises.
         let thickness_m: Vec<Option<f64>> = (0..layers)
             .map(|layer| {
                 let of_layer = || (0..blocks).map(move |block| block * layers + layer);
                 let closed =
                     of_layer().filter(|&n| planned[n].1 == Method::Unfolded && planned[n].0.thickness_m.is_none());
-                let rates = closed.flat_map(|n| planned[n].0.rises(model, &metric, &touched[n], region(n)));
+                let rates = closed.flat_map(|n| {
+                    let region = region(n);
+                    planned[n].0.rises(model, &metric, weight_of(region), &touched[n], region)
+                });
                 // The geometric mean: a fold thickens as many beds as it thins.
                 let (count, sum) = rates.fold((0.0, 0.0), |(count, sum), rate| (count + 1.0, sum - rate.ln()));
                 (count > 0.0).then(|| (sum / count).exp())
             })
             .collect();
         // [layer][block]
-        let mut unfolded = vec![Vec::new(); layers];
-        for (&layer, of_layer) in folded.iter().zip(unfold::unfold(model, &metric, &folded, rise, progress)?) {
-            unfolded[usize::from(layer)] = of_layer;
+        let mut unfolded: Vec<Vec<Unfolding>> = vec![Vec::new(); layers];
+        let places = unfold::unfold(model, &metric, &folded, rise, progress)?;
+        for (&layer, of_layer) in folded.iter().zip(places) {
+            let layer = usize::from(layer);
+            let mut own = weights[layer].iter().cloned();
+            let with_weight = |places| Arc::new(Unfolded { places, log_weight: own.next() });
+            unfolded[layer] = of_layer.into_iter().map(with_weight).collect();
         }
         let mut cost = ComputeCost::default();
         let mut grids = Vec::with_capacity(layers * blocks);
@@ -229,8 +236,7 @@ impl Parameterization {
     /// Memory of all grids, their sheets and unfoldings, bytes.
     pub fn bytes(&self) -> usize {
         let unfolded = self.unfoldings();
-        let unfolded =
-            unfolded.iter().flat_map(|of_block| of_block.iter()).map(|field| size_of_val(field.values.as_slice()));
+        let unfolded = unfolded.iter().flat_map(|own| own.fields()).map(|field| size_of_val(field.values.as_slice()));
         let sheets = self.calm_sheets().iter().map(|sheet| size_of_val(sheet.z.as_slice())).sum::<usize>();
         self.grids.iter().map(RegionGrid::bytes).sum::<usize>() + sheets + unfolded.sum::<usize>()
     }

@@ -9,11 +9,12 @@ use crate::layer::{Layer, LayerKind};
 use crate::metric::Metric;
 use crate::surface::BicubicSheet;
 use crate::touched::RegionColumns;
+use crate::weight;
 use crate::{KDefinition, LayerModel, ParamSettings, Region};
 use glam::{DMat3, DVec3, Vec3};
 use rayon::prelude::*;
 use std::sync::Arc;
-use survey::HeightField;
+use survey::{Cancelled, HeightField, LevelField, Progress};
 
 /// Fewest levels of a grid; the cubic along a column uses four.
 const FEWEST_LEVELS: usize = 5;
@@ -240,6 +241,25 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
         let ([nx, ny, _], steps) = (self.model.size(), self.model.metric());
         let samples = joined::length_m(self.model) / steps.z_axis.length();
         touched.grown(joined::GROWN, samples as f32, [nx, ny])
+    }
+
+    /// ln w of the layers between surfaces of any shape in which k is harmonic, `[layer][block]`; none of the others.
+    pub fn log_weights<'g>(
+        &self,
+        unfolded: &[u16],
+        grid_of: impl Fn(Region) -> &'g RegionGrid + Sync,
+        progress: &Progress,
+    ) -> Result<Vec<Vec<LevelField>>, Cancelled> {
+        let mut weights = vec![Vec::new(); self.model.layer_count()];
+        for &layer in unfolded {
+            let region = Region { layer, block: 0 };
+            let is_closed = matches!(self.measured_from(region), (Some(_), Some(_)));
+            if is_closed && self.definition(region) == Some(KDefinition::Harmonic) {
+                let ratio = |p: Vec3, region: Region| grid_of(region).level_ratio(self.model, p).0;
+                weights[usize::from(layer)] = weight::log_weights(self.model, layer, ratio, progress)?;
+            }
+        }
+        Ok(weights)
     }
 
     /// Whether a region takes the mean with others beyond the tips of faults: the published definition stays as it is.

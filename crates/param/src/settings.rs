@@ -15,13 +15,15 @@ pub enum KDefinition {
     DistanceRatio,
     /// ∇²k = 0 between the two sheets; i, j are where the curve along ∇k crosses the middle level, or in an
     /// open layer one a fifth of the way from its horizon to the far plane. There k is the distance to the horizon, in which
-    /// its roughness dies out: the directions are harmonic, the spacing of beds is even.
+    /// its roughness dies out: the directions are harmonic, the spacing of beds is even. Between horizons of which one is
+    /// not a height field k is the ratio of the distances.
     #[default]
     Flow,
-    /// The same, with ∇²k = 0 in open layers, too: beds crowd over crests of the horizon and spread in its troughs,
+    /// The same, with ∇²k = 0 between horizons of any shape, and in open layers, too: there beds crowd over crests of the horizon and spread in its troughs,
     /// and its roughness dies out as in the upward continuation of a potential field.
     Harmonic,
-    /// k is the vertical fraction between the sheets; i, j as above. In an open layer beds are copies of its
+    /// k is the vertical fraction between the sheets (of horizons that are not height fields, the ratio of the
+    /// distances); i, j as above. In an open layer beds are copies of its
     /// horizon, one above the other.
     Proportional,
     /// k = d_bottom / T with the layer's reference thickness T: beds are parallel to the bottom and are cut

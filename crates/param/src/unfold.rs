@@ -29,8 +29,25 @@ use std::sync::Arc;
 use survey::LevelField;
 use survey::progress::{Cancelled, Progress};
 
-/// The unfolded place of every voxel of a region: i·(Nx − 1) and j·(Ny − 1). Memory: 8 bytes a node of the lattice.
-pub type Unfolding = Arc<[LevelField; 2]>;
+/// What a region between surfaces of any shape has besides their distances. Memory: 8 bytes a node of the lattice, and 4 a
+/// node of the weight's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unfolded {
+    /// The unfolded place of every voxel: i·(Nx − 1) and j·(Ny − 1).
+    pub places: [LevelField; 2],
+    /// ln w where k is harmonic, and not the ratio of the distances ([`crate::weight`]).
+    pub log_weight: Option<LevelField>,
+}
+
+impl Unfolded {
+    /// All its fields, in this order.
+    pub fn fields(&self) -> impl Iterator<Item = &LevelField> {
+        self.places.iter().chain(&self.log_weight)
+    }
+}
+
+/// The same, shared.
+pub type Unfolding = Arc<Unfolded>;
 
 /// Nodes of the lattice around the volume; a layer is solved on those that it holds.
 const NODES: f64 = 100_000.0;
@@ -70,7 +87,7 @@ pub fn unfold<M: LayerModel + ?Sized>(
     layers: &[u16],
     rise: impl Fn(Vec3, Region) -> (f32, Vec3) + Sync,
     progress: &Progress,
-) -> Result<Vec<Vec<Unfolding>>, Cancelled> {
+) -> Result<Vec<Vec<[LevelField; 2]>>, Cancelled> {
     if layers.is_empty() {
         return Ok(Vec::new());
     }
@@ -95,7 +112,7 @@ pub fn unfold<M: LayerModel + ?Sized>(
             };
             let is_known = |p: Vec3| solved.lattice.is_known(block, p);
             let in_middle = |p: Vec3| on_lattice(carried::middle(metric, longest, p, |p| rise(p, region), is_known));
-            Arc::new(held.fields(region, in_middle, on_lattice))
+            held.fields(region, in_middle, on_lattice)
         };
         let unfoldings = (0..model.block_count()).into_par_iter().map(of_block).collect();
         progress.step(1)?;

@@ -204,3 +204,57 @@ fn rock_inside_a_body_is_not_layered() {
     assert_eq!(below.region.layer, 1);
     assert!(below.k > 0.0 && below.k < 1.0, "{}", below.k);
 }
+
+/// Two cylinders, of radii 150 and 450 m, whose flanks are overturned: harmonic k rises with the logarithm of the radius,
+/// the ratio of distances with the radius itself.
+#[test]
+fn harmonic_k_between_cylinders_is_the_logarithm_of_the_radius() {
+    let axis = DVec2::new(750.0, 520.0);
+    let (inner, outer) = (150.0, 450.0);
+    let arch = |radius: f64| {
+        let (turns, rows) = (120, 30);
+        let place = |n: usize| {
+            let (turn, row) = (n / (rows + 1), n % (rows + 1));
+            let angle = (f64::from(turn as u32) / f64::from(turns) - 0.5) * 2.6 * std::f64::consts::PI / 1.5;
+            let y = -150.0 + 1300.0 * row as f64 / rows as f64;
+            let p = axis + radius * DVec2::new(angle.sin(), -angle.cos());
+            geometry().world_from_voxel(metres().inverse() * DVec3::new(p.x, y, p.y))
+        };
+        let at = |turn: usize, row: usize| (turn * (rows + 1) + row) as u32;
+        let cell = |n: usize| {
+            let (t, r) = (n / rows, n % rows);
+            [[at(t, r), at(t + 1, r), at(t + 1, r + 1)], [at(t, r), at(t + 1, r + 1), at(t, r + 1)]]
+        };
+        survey::TriangleMesh {
+            vertices: (0..(turns as usize + 1) * (rows + 1)).map(place).collect(),
+            triangles: (0..turns as usize * rows).flat_map(cell).collect(),
+        }
+    };
+    let bed = |name: &str, radius: f64| (Horizon::of_surface(name, arch(radius)), Contact::Conformable);
+    let (model, _) = build(vec![bed("young", outer), bed("old", inner)]);
+    let region = Region { layer: 1, block: 0 };
+    assert!(model.level(0, 0).is_some() && model.level(1, 0).is_some(), "no height fields");
+    let with = |definition: KDefinition| {
+        let definitions = vec![KDefinition::Flow, definition];
+        let settings = ParamSettings { definitions, ..ParamSettings::default() };
+        let param = Parameterization::compute(&model, &settings, &Progress::silent()).unwrap();
+        let (mut harmonic, mut ratio, mut slopes) = (Vec::new(), Vec::new(), Vec::new());
+        for n in 0..6000 {
+            let part = |k: f64| (f64::from(n) * k).fract();
+            let (radius, angle) = (inner + (outer - inner) * part(0.618_034), 3.4 * (part(0.754_878) - 0.5));
+            let p = axis + radius * DVec2::new(angle.sin(), -angle.cos());
+            let p = (metres().inverse() * DVec3::new(p.x, 100.0 + 800.0 * part(0.569_84), p.y)).as_vec3();
+            let (flat, jacobian) = param.lookup_in(&model, p, region);
+            let k = f64::from(flat.k);
+            harmonic.push((k - (radius / inner).ln() / (outer / inner).ln()).abs());
+            ratio.push((k - (radius - inner) / (outer - inner)).abs());
+            let rate = (metres().inverse().transpose() * Vec3::from_array(jacobian[2]).as_dvec3()).length();
+            slopes.push((rate * radius * (outer / inner).ln() - 1.0).abs());
+        }
+        [harmonic, ratio, slopes].map(|mut errors| quantile(&mut errors, 0.95))
+    };
+    let [harmonic, ratio, slope] = with(KDefinition::Harmonic);
+    assert!(harmonic < 0.01 && ratio > 0.1 && slope < 0.05, "{harmonic} {ratio} {slope}");
+    let [harmonic, ratio, _] = with(KDefinition::DistanceRatio);
+    assert!(harmonic > 0.1 && ratio < 0.03, "{harmonic} {ratio}");
+}

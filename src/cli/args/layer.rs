@@ -60,9 +60,9 @@ pub(in crate::cli) struct LayerSetArgs {
     pub(in crate::cli) opacity: Option<f32>,
     /// How the pattern runs through the layer: flow (the smoothest way between its horizons, the default but below an
     /// erosion surface, where it is parallel-to-bottom, and above an onlap surface, where it is parallel-to-top),
-    /// harmonic (the same by the letter of ∇²k = 0 in the top and bottom layer, too), distance (the ratio of
-    /// distances to both, as published; follows every wiggle), proportional (the vertical fraction),
-    /// parallel-to-bottom or parallel-to-top
+    /// harmonic (the same by the letter of ∇²k = 0 in the top and bottom layer and between horizons of any shape,
+    /// too), distance (the ratio of distances to both, as published; follows every wiggle), proportional (the
+    /// vertical fraction), parallel-to-bottom or parallel-to-top
     #[arg(long, value_name = "DEFINITION")]
     pub(in crate::cli) k: Option<String>,
     /// Pattern of a part of the layer's depth, 0 at the base to 1 at the top; repeat it for each part

@@ -115,7 +115,7 @@ impl CutLattice {
     }
 
     /// The unknown of a block at a node, [`u32::MAX`] where none is wanted.
-    fn unknown(&self, block: usize, node: usize) -> u32 {
+    pub fn unknown(&self, block: usize, node: usize) -> u32 {
         self.unknown[block * self.nodes.count() + node]
     }
 

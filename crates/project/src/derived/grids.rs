@@ -6,7 +6,7 @@ use crate::document::Document;
 use crate::error::ProjectError;
 use model::ModelSettings;
 use param::{
-    ComputeCost, ParamSettings, Parameterization, Region, RegionGrid, SheetRef, SheetSource, Unfolding,
+    ComputeCost, ParamSettings, Parameterization, Region, RegionGrid, SheetRef, SheetSource, Unfolded, Unfolding,
     VoxelParameterization,
 };
 use serde::{Deserialize, Serialize};
@@ -66,7 +66,8 @@ struct Header {
     layers: usize,
     blocks: usize,
     sheets: Vec<SheetHeader>,
-    unfoldings: Vec<[FieldHeader; 2]>,
+    /// i and j, and ln w where there is one.
+    unfoldings: Vec<Vec<FieldHeader>>,
     grids: Vec<GridHeader>,
 }
 
@@ -197,14 +198,14 @@ fn write_grids(out: &mut dyn Write, parameterization: &Parameterization) -> io::
         layers: parameterization.layers,
         blocks: parameterization.blocks,
         sheets: calm.iter().map(|sheet| SheetHeader { origin: sheet.origin, size: sheet.size }).collect(),
-        unfoldings: unfoldings.iter().map(|own| [FieldHeader::of(&own[0]), FieldHeader::of(&own[1])]).collect(),
+        unfoldings: unfoldings.iter().map(|own| own.fields().map(FieldHeader::of).collect()).collect(),
         grids: parameterization.grids.iter().map(grid).collect(),
     };
     write_header(out, &header)?;
     for sheet in &calm {
         out.write_all(bytemuck::cast_slice(&sheet.z))?;
     }
-    for field in unfoldings.iter().flat_map(|own| own.iter()) {
+    for field in unfoldings.iter().flat_map(|own| own.fields()) {
         out.write_all(bytemuck::cast_slice(&field.values))?;
     }
     for grid in &parameterization.grids {
@@ -229,8 +230,14 @@ fn read_grids(input: &mut dyn Read, length: u64) -> io::Result<Parameterization>
         calm.push(Arc::new(HeightField { origin: sheet.origin, size: sheet.size, z }));
     }
     let mut unfoldings: Vec<Unfolding> = Vec::new();
-    for [i, j] in header.unfoldings {
-        unfoldings.push(Arc::new([i.read(input, length)?, j.read(input, length)?]));
+    for heads in header.unfoldings {
+        if !(2..=3).contains(&heads.len()) {
+            return Err(damaged());
+        }
+        let mut fields = heads.into_iter().map(|head| head.read(input, length)).collect::<io::Result<Vec<_>>>()?;
+        let log_weight = (fields.len() == 3).then(|| fields.pop()).flatten();
+        let places = fields.try_into().map_err(|_| damaged())?;
+        unfoldings.push(Arc::new(Unfolded { places, log_weight }));
     }
     let sheet = |(source, shift): (Source, f32)| {
         let of = source.source(header.layers, &calm).ok_or_else(damaged)?;

@@ -25,7 +25,7 @@ fn parameterization() -> Parameterization {
         size: [0; 2],
         offsets: Vec::new(),
         creases: Vec::new(),
-        unfolded: Some(Arc::new([field(1.0), field(-2.5)])),
+        unfolded: Some(Arc::new(Unfolded { places: [field(1.0), field(-2.5)], log_weight: Some(field(0.5)) })),
         ..grid(1, SheetSource::Plane)
     };
     Parameterization {
@@ -49,7 +49,7 @@ fn grids_that_do_not_fit_their_counts_are_not_used() {
         |p| {
             let mut field = LevelField::from_fn(Vec3::ZERO, Vec3::ONE, [2; 3], |p| p.x);
             field.values[3] = f32::NAN;
-            p.grids[2].unfolded = Some(Arc::new([field.clone(), field]));
+            p.grids[2].unfolded = Some(Arc::new(Unfolded { places: [field.clone(), field], log_weight: None }));
         },
         |p| p.grids[1].size = [3, 2],
         |p| p.grids[0].levels = usize::MAX,

@@ -18,6 +18,8 @@ struct GridInfo {
     // follows from the distances from the horizons, or from `thickness_m` where one is missing.
     unfolded_i: u32,
     unfolded_j: u32,
+    // Where it holds ln w, by which k differs from the ratio of the distances, else NONE.
+    log_weight: u32,
     thickness_m: f32,
 }
 
@@ -118,7 +120,17 @@ fn level_k(grid: GridInfo, p: vec3<f32>) -> vec4<f32> {
     if abs(sum) < PINCHED {
         return vec4(0.0, 0.0, 0.0, 0.5);
     }
-    return vec4((top.xyz * bottom.w - bottom.xyz * top.w) / (sum * sum), clamp(-bottom.w / sum, 0.0, 1.0));
+    let slope = (top.xyz * bottom.w - bottom.xyz * top.w) / (sum * sum);
+    let ratio = clamp(-bottom.w / sum, 0.0, 1.0);
+    if grid.log_weight == NONE {
+        return vec4(slope, ratio);
+    }
+    // The twin of `weight::weighed`.
+    let log_weight = level_cubic(grid.log_weight, p);
+    let weight = exp(log_weight.w);
+    let weighed = ratio * weight + 1.0 - ratio;
+    let to_k = (slope + log_weight.xyz * (ratio * (1.0 - ratio))) * (weight / (weighed * weighed));
+    return vec4(to_k, ratio * weight / weighed);
 }
 
 // The twin of `RegionGrid::lookup_unfolded`.

@@ -64,7 +64,7 @@ impl GridBuffers {
         gpu: &Gpu,
         model: &StructuralModel,
         param: &Parameterization,
-        unfolded: &[[u32; 2]],
+        unfolded: &[[u32; 3]],
         seen: VisibleParts,
     ) -> Result<Self, RenderError> {
         let windows: Vec<Vec<LevelRange>> = param.grids.par_iter().map(|grid| windows(model, grid, &seen)).collect();
@@ -84,7 +84,8 @@ impl GridBuffers {
         };
         for (grid, windows) in param.grids.iter().zip(&windows) {
             let place = |of_layer| unfoldings.iter().position(|known| Arc::ptr_eq(known, of_layer));
-            let [unfolded_i, unfolded_j] = grid.unfolded.as_ref().and_then(place).map_or([NONE; 2], |n| unfolded[n]);
+            let fields = grid.unfolded.as_ref().and_then(place).map_or([NONE; 3], |n| unfolded[n]);
+            let [unfolded_i, unfolded_j, log_weight] = fields;
             infos.push(GridInfo {
                 origin: grid.origin,
                 size: grid.size.map(|n| n as u32),
@@ -97,7 +98,9 @@ impl GridBuffers {
                 is_calm: u32::from(grid.is_calm()),
                 unfolded_i,
                 unfolded_j,
+                log_weight,
                 thickness_m: grid.thickness_m.map_or(1.0, |thickness| thickness as f32),
+                padding: 0,
             });
             for (column, window) in windows.iter().enumerate() {
                 let count = window.end.saturating_sub(window.first);

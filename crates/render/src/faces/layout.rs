@@ -112,7 +112,9 @@ pub struct GridInfo {
     pub is_calm: u32,
     pub unfolded_i: u32,
     pub unfolded_j: u32,
+    pub log_weight: u32,
     pub thickness_m: f32,
+    pub padding: u32,
 }
 
 /// Size, scale and value ranges of the packed volume.

@@ -8,7 +8,7 @@ use crate::error::RenderError;
 use crate::gpu::Gpu;
 use glam::{DVec3, Vec3};
 use model::{FaultSurface, StructuralModel};
-use param::{PackedVolume, Parameterization};
+use param::{PackedVolume, Parameterization, Unfolding};
 use std::sync::Arc;
 use survey::stratigraphy::Contact;
 use survey::{HeightField, LevelField};
@@ -30,9 +30,9 @@ pub struct ModelBuffers {
     pub pool: Vec<wgpu::Buffer>,
     /// Number of floats in each buffer of the pool.
     pub pool_chunk: u32,
-    /// Where the pool holds the (i, j) of the parameterization's unfolded layers, in the order of
+    /// Where the pool holds the (i, j) and ln w of the parameterization's unfolded layers, in the order of
     /// [`Parameterization::unfoldings`].
-    pub unfolded: Vec<[u32; 2]>,
+    pub unfolded: Vec<[u32; 3]>,
     /// Whether what a parameterization adds is among it.
     pub with_flat: bool,
 }
@@ -104,7 +104,7 @@ pub fn floats_of_any_shape(model: &StructuralModel, param: Option<&Parameterizat
         }
     }
     let unfolded = param.map_or_else(Vec::new, Parameterization::unfoldings);
-    floats + unfolded.iter().flat_map(|of_layer| of_layer.iter()).map(|field| field.values.len()).sum::<usize>()
+    floats + unfolded.iter().flat_map(|own| own.fields()).map(|field| field.values.len()).sum::<usize>()
 }
 
 impl ModelBuffers {
@@ -130,8 +130,11 @@ impl ModelBuffers {
         let calm = param.map_or_else(Vec::new, Parameterization::calm_sheets);
         sheets.extend(calm.iter().map(|sheet| pool.sheet(sheet, [0.0; 2], [last[0], last[1]])));
         let unfoldings = param.map_or_else(Vec::new, Parameterization::unfoldings);
-        let unfolded =
-            unfoldings.iter().map(|of_layer| [0, 1].map(|axis: usize| pool.field(&of_layer[axis]))).collect();
+        let fields = |own: &Unfolding| {
+            let mut own = own.fields();
+            [(); 3].map(|()| own.next().map_or(NONE, |field| pool.field(field)))
+        };
+        let unfolded = unfoldings.iter().map(fields).collect();
         let centre = Vec3::from_array(size.map(|n| 0.5 * n as f32)).as_dvec3();
         let surfaces = model.faults().surfaces();
         let faults: Vec<FaultInfo> = surfaces

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use model::{ModelSettings, StructuralModel};
-use param::{PackedVolume, ParamSettings, Parameterization};
+use param::{KDefinition, PackedVolume, ParamSettings, Parameterization};
 use render::{Inputs, NamedVolume, VoxelBox};
 use survey::{Fault, Horizon, Progress, Stratigraphy, SurveyGeometry};
 use synth::closed_form::ClosedForm;
@@ -29,11 +29,7 @@ impl Block {
         let quiet = Progress::silent();
         let settings = ModelSettings::default();
         let model = StructuralModel::build(geometry, stratigraphy, horizons, faults, &settings, &quiet).unwrap();
-        // Calm sheets, which the device has to hold beside those of the horizons.
-        let calm = ParamSettings { flow_wave_m: 8.0 * geometry.inline_vector.length(), ..ParamSettings::default() };
-        let param = Parameterization::compute(&model, &calm, &quiet).unwrap();
-        let voxels = param.voxel_volumes(&model, model.size(), &quiet).unwrap();
-        let packed = PackedVolume::from_voxels(&voxels, model.size(), model.layer_count(), model.block_count());
+        let (param, packed) = parameterized(geometry, &model, KDefinition::default());
         let extent = geometry.metric_from_voxel() * DVec3::from_array(VoxelBox::of_size(geometry.size()).max);
         let names = stratigraphy.layer_names_bottom_up();
         let thickness_m = extent.z as f32 / names.len() as f32;
@@ -45,6 +41,12 @@ impl Block {
         };
         let tables = TtfTables::compile(functions, &block, library).unwrap();
         Self { geometry: geometry.clone(), model, param, packed, tables }
+    }
+
+    /// The same with another definition of k in all layers.
+    pub fn with_k(self, definition: KDefinition) -> Self {
+        let (param, packed) = parameterized(&self.geometry, &self.model, definition);
+        Self { param, packed, ..self }
     }
 
     pub fn of(closed: &ClosedForm, functions: &TransferFunctions, library: &TextureLibrary) -> Self {
@@ -65,4 +67,20 @@ impl Block {
             data_version: 1,
         }
     }
+}
+
+fn parameterized(
+    geometry: &SurveyGeometry,
+    model: &StructuralModel,
+    definition: KDefinition,
+) -> (Parameterization, PackedVolume) {
+    let quiet = Progress::silent();
+    // Calm sheets, which the device has to hold beside those of the horizons.
+    let flow_wave_m = 8.0 * geometry.inline_vector.length();
+    let definitions = vec![definition; model.layer_count()];
+    let settings = ParamSettings { flow_wave_m, definitions, ..ParamSettings::default() };
+    let param = Parameterization::compute(model, &settings, &quiet).unwrap();
+    let voxels = param.voxel_volumes(model, model.size(), &quiet).unwrap();
+    let packed = PackedVolume::from_voxels(&voxels, model.size(), model.layer_count(), model.block_count());
+    (param, packed)
 }

@@ -4,6 +4,7 @@ use crate::block::Block;
 use crate::compare::compare;
 use crate::gpu::skipped;
 use glam::{DVec2, DVec3};
+use param::KDefinition;
 use render::vector::{VectorLineKind, vectors};
 use render::{Camera, Ground, Inputs, Renderer, Scene, VoxelBox};
 use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
@@ -79,7 +80,9 @@ fn gpu_and_cpu_agree_on_horizons_of_any_shape() {
         ("salt", salt(Contact::Conformable, Contact::Intrusive)),
         ("eroded salt", salt(Contact::Erosional, Contact::Truncated)),
     ];
-    for (version, (name, block)) in (1..).zip(salts.into_iter().chain([("fold", fold())])) {
+    let folds = [("fold", fold()), ("fold with harmonic k", fold().with_k(KDefinition::Harmonic))];
+    let mut grounds = Vec::new();
+    for (version, (name, block)) in (1..).zip(salts.into_iter().chain(folds)) {
         let inputs = Inputs { version, data_version: version, ..block.inputs(&[]) };
         let mut earlier = None;
         for scene in [Scene { cut_outs: cut_outs.clone(), ..base.clone() }, Scene { ground, ..base.clone() }] {
@@ -91,7 +94,9 @@ fn gpu_and_cpu_agree_on_horizons_of_any_shape() {
                 assert!(!compare(&reference, &earlier).unwrap().agrees(), "{name}: the ground shows");
             }
         }
+        grounds.extend(earlier);
     }
+    assert!(!compare(&grounds[2], &grounds[3]).unwrap().agrees(), "which k shows");
 }
 
 /// The line at which salt that was worn down comes to the surface is where its outline has the depth of the ground; salt

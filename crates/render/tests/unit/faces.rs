@@ -76,7 +76,7 @@ fn structs_have_the_same_layout() {
     check!(m, FaultInfo: u, v, w, surface);
     check!(m, ModelInfo: centre, horizons, blocks, faults, layers, unit_from_voxel);
     check!(m, GridInfo: origin, size, levels, first_column, bottom_sheet, top_sheet, bottom_shift, top_shift, is_calm,
-        unfolded_i, unfolded_j, thickness_m);
+        unfolded_i, unfolded_j, log_weight, thickness_m);
     check!(m, PackedInfo: scale, size, i_range, j_range, layers, blocks);
     check!(m, TextureInfo: mean, offset, side, levels);
     check!(m, VolumePlacement: scale, offset, size);
