@@ -3,6 +3,7 @@
 use figure::cut::SectionSource;
 use figure::draw::NamedColour;
 use figure::draw::block::Comparison;
+use figure::draw::moved::{Movable, movable};
 use figure::{
     Annotation, BlockPart, CorrelationPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part,
     SectionKind, SectionPart, make,
@@ -204,6 +205,13 @@ fn checked(pages: usize, has_all: bool) -> (usize, usize) {
             let is_inside = letters.iter().flatten().all(|corner| page.bounds().contains(*corner));
             assert!(is_inside, "page {n}: {} at {letters:?} leaves {:?}", text.text, page.size);
             assert!((7.0..=12.0).contains(&text.size), "page {n}: {} is set in {} points", text.text, text.size);
+        }
+        // A fault's label is called by its name, beside its line or with a leader, whatever throw is written.
+        for name in
+            texts.iter().filter_map(|text| text.text.strip_suffix(" ms")?.rsplit_once(", ")).map(|(name, _)| name)
+        {
+            let is_called = |label: &Movable| label.label == name;
+            assert!(has_all || movable(&page).iter().any(is_called), "page {n}: {name}");
         }
         let over = overlapping(&texts);
         assert!(over.is_none(), "page {n}: {over:?}");

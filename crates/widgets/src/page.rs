@@ -1,24 +1,27 @@
-//! A figure's page as it will be printed, on which labels are dragged.
+//! A figure's page as it will be printed, on which labels are dragged, restyled and left out.
 //!
 //! The page is kept as it was laid out; what a scene changes about its labels is done to a copy of it, by what does it
 //! when the figure is made. So the place at which a label is dropped is the place at which it is printed.
 
+use crate::colour_well;
 use eframe::egui::{
-    Color32, ColorImage, CursorIcon, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind,
-    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo,
+    Button, Color32, ColorImage, CursorIcon, DragValue, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke,
+    StrokeKind, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo,
 };
 use figure::draw::moved::{LabelChange, Movable, changed, movable};
 use glam::DVec2;
 use page::DisplayList;
 use page::list::POINTS_PER_MM;
 use std::sync::Arc;
-use ttf::Preset;
+use ttf::{Colour, Preset};
 
 /// Pixels an inch of the page at which it is drawn here.
 pub const PREVIEW_DPI: f64 = 110.0;
 /// How far beside a label it may be taken, points of the page.
 const REACH_PT: f64 = 2.0;
-/// The frame of a label that is pointed at or dragged.
+/// Sizes that letters may be given, points.
+const SIZES_PT: std::ops::RangeInclusive<f64> = 5.0..=36.0;
+/// The frame of a label that is chosen, pointed at or dragged.
 const FRAME: Color32 = Color32::from_rgb(0xa4, 0x4a, 0x1c);
 
 /// A page on the screen.
@@ -29,6 +32,8 @@ pub struct PagePreview {
     drawn: Option<(Vec<LabelChange>, TextureHandle, Vec<Movable>)>,
     /// The label that is dragged, and where it was taken.
     dragged: Option<(Movable, Pos2)>,
+    /// The label whose letters are changed.
+    chosen: Option<String>,
 }
 
 impl PagePreview {
@@ -70,12 +75,21 @@ impl PagePreview {
             let label = begin.and_then(|at| Some((label_at(labels, on_page(at))?.clone(), at)));
             self.dragged = label;
         }
+        if response.clicked() {
+            self.chosen = pointed.map(|label| label.label.clone());
+        }
         let by = |from: Pos2| taken.map_or(Vec2::ZERO, |at| at - from);
         if let Some((label, by)) = match &self.dragged {
             Some((label, from)) => Some((label, by(*from))),
             None => pointed.map(|label| (label, Vec2::ZERO)),
         } {
             frame(ui, &response, label, scale, by);
+            ui.ctx().set_cursor_icon(CursorIcon::Grab);
+        }
+        if let Some(label) =
+            labels.iter().find(|label| self.dragged.is_none() && Some(&label.label) == self.chosen.as_ref())
+        {
+            frame(ui, &response, label, scale, Vec2::ZERO);
         }
         if response.drag_stopped() {
             let (label, from) = self.dragged.take()?;
@@ -88,6 +102,56 @@ impl PagePreview {
         }
         let hidden = pointed.filter(|_| response.secondary_clicked())?;
         Some(with(changes, &hidden.label, |change| change.is_hidden = true))
+    }
+
+    /// The letters of the label that was clicked, and the labels that are left out; the changes after one of them was made.
+    pub fn show_chosen(&mut self, ui: &mut Ui, changes: &[LabelChange]) -> Option<Vec<LabelChange>> {
+        let mut made = None;
+        let (_, _, labels) = self.drawn.as_ref()?;
+        let chosen = labels.iter().find(|label| Some(&label.label) == self.chosen.as_ref());
+        ui.horizontal(|ui| match chosen {
+            None => {
+                ui.weak("Click a label to change its letters, drag it elsewhere; a right click leaves it out.");
+            }
+            Some(Movable { label, letters, .. }) => {
+                ui.label(label);
+                if let Some((size, colour)) = letters {
+                    let mut size_pt = *size;
+                    let drag = DragValue::new(&mut size_pt).speed(0.1).range(SIZES_PT).max_decimals(1);
+                    let is_sized = ui.name_inputs("Size of the letters", |ui| ui.add(drag)).changed();
+                    ui.weak("pt");
+                    let mut rgb = colour.rgb;
+                    colour_well(ui, "Colour of the letters", &mut rgb);
+                    if is_sized {
+                        made = Some(with(changes, label, |change| change.size_pt = Some(size_pt)));
+                    }
+                    if rgb != colour.rgb {
+                        made = Some(with(changes, label, |change| change.colour = Some(Colour { rgb })));
+                    }
+                }
+                if ui.button("Leave out").clicked() {
+                    made = Some(with(changes, label, |change| change.is_hidden = true));
+                }
+                let is_changed = changes.iter().any(|change| change.label == *label);
+                let back = ui.add_enabled(is_changed, Button::new("As it was"));
+                if back.on_hover_text("Where it was placed, with the letters it had").clicked() {
+                    made = Some(changes.iter().filter(|change| change.label != *label).cloned().collect());
+                }
+            }
+        });
+        let hidden: Vec<&str> =
+            changes.iter().filter(|change| change.is_hidden).map(|change| change.label.as_str()).collect();
+        if !hidden.is_empty() {
+            ui.horizontal_wrapped(|ui| {
+                ui.weak("Left out:");
+                for label in hidden {
+                    if ui.button(label).on_hover_text("Put it back").clicked() {
+                        made = Some(with(changes, label, |change| change.is_hidden = false));
+                    }
+                }
+            });
+        }
+        made
     }
 }
 
@@ -102,7 +166,6 @@ fn frame(ui: &Ui, response: &Response, label: &Movable, scale: f32, by: Vec2) {
     let corner = |at: DVec2| response.rect.min + Vec2::new(at.x as f32, at.y as f32) * scale + by;
     let rect = Rect::from_min_max(corner(label.bounds.min), corner(label.bounds.max)).expand(2.0);
     ui.painter().rect_stroke(rect, 2.0, Stroke::new(1.0, FRAME), StrokeKind::Outside);
-    ui.ctx().set_cursor_icon(CursorIcon::Grab);
 }
 
 /// The changes with one of them made.

@@ -38,6 +38,8 @@ const FILLS: [(SectionFill, &str); 3] =
 
 /// The room of the page beside the form, points of the screen.
 const PREVIEW: Vec2 = Vec2::new(470.0, 430.0);
+/// Width of its column, the same whatever stands below the page.
+const PAGE_WIDTH: f32 = 500.0;
 
 /// Width of a column of what may be written, points.
 const CHOICE: f32 = 214.0;
@@ -73,7 +75,10 @@ pub fn show(
                 asks = fields(ui, state, session, shows, actions);
             });
             if preview.has_page() {
-                ui.vertical(|ui| page(ui, session, preview, actions));
+                ui.vertical(|ui| {
+                    ui.set_width(PAGE_WIDTH);
+                    page(ui, session, preview, actions);
+                });
             }
         });
     });
@@ -90,12 +95,15 @@ fn page(ui: &mut Ui, session: &Session, preview: &mut PagePreview, actions: &mut
     if let Some(labels) = preview.show(ui, PREVIEW, labels) {
         actions.push(show(labels));
     }
+    if let Some(labels) = preview.show_chosen(ui, labels) {
+        actions.push(show(labels));
+    }
     ui.horizontal(|ui| {
         let back = ui.add_enabled(!labels.is_empty(), Button::new("Reset labels"));
         if back.on_hover_text("All labels where they were placed, as they were").clicked() {
             actions.push(show(Vec::new()));
         }
-        ui.weak("Drag labels; a right click leaves one out. Save scene keeps them.");
+        ui.weak("Save scene keeps what is changed here.");
     });
 }
 

@@ -1,10 +1,10 @@
 //! The page in the export dialogue: labels are dragged where they are printed.
 
 use super::driven::{click, open, wait};
-use eframe::egui::{Event, Modifiers, PointerButton, Pos2, Rect, Ui, vec2};
+use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Ui, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use figure::draw::moved::movable;
+use figure::draw::moved::{changed, movable};
 use glam::DVec2;
 use page::DisplayList;
 use page::list::{Group, GroupKind, Text};
@@ -79,6 +79,50 @@ fn a_label_is_dropped_where_it_is_printed_and_a_right_click_leaves_it_out() {
     press(&mut harness, caption, PointerButton::Secondary, true);
     press(&mut harness, caption, PointerButton::Secondary, false);
     assert_eq!(harness.state().1[1].label, "caption");
+}
+
+#[test]
+fn the_letters_of_a_label_are_changed_where_it_is_clicked() {
+    let mut preview = PagePreview::default();
+    preview.set(Arc::new(page()), Preset::Colour);
+    let show = |ui: &mut Ui, (preview, labels): &mut (PagePreview, Vec<LabelChange>)| {
+        let dropped = preview.show(ui, vec2(600.0, 400.0), labels);
+        *labels = dropped.or_else(|| preview.show_chosen(ui, labels)).unwrap_or_else(|| labels.clone());
+    };
+    let mut harness: Shown = Harness::builder().with_size([700.0, 600.0]).build_ui_state(show, (preview, Vec::new()));
+    harness.run_steps(2);
+    assert_eq!(harness.query_all_by_label("Leave out").count(), 0, "no label is chosen");
+    let rect: Rect = harness.get_by_label(PAGE).rect();
+    let labels = movable(&page());
+    let shale = labels.iter().find(|known| known.label == "Shale").unwrap();
+    let at = shale.bounds.centre() * f64::from(rect.width()) / 400.0;
+    let at = rect.min + vec2(at.x as f32, at.y as f32);
+    press(&mut harness, at, PointerButton::Primary, true);
+    press(&mut harness, at, PointerButton::Primary, false);
+    assert!(harness.state().1.is_empty(), "a click moves nothing");
+    let size = shale.letters.unwrap().0;
+    harness.get_by_label("Size of the letters").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowUp);
+    harness.run_steps(3);
+    let larger = harness.state().1.clone();
+    assert_eq!((larger.len(), larger[0].label.as_str(), larger[0].moved_mm), (1, "Shale", [0.0; 2]));
+    assert!(larger[0].size_pt.unwrap() > size, "{larger:?} from {size}");
+    let shown = movable(&changed(&page(), &larger, Preset::Colour));
+    assert_eq!(
+        shown.iter().find(|known| known.label == "Shale").unwrap().letters.unwrap().0,
+        larger[0].size_pt.unwrap()
+    );
+    // What is left out is named, and comes back as it was.
+    harness.get_by_label("Leave out").click();
+    harness.run_steps(3);
+    assert!(harness.state().1[0].is_hidden);
+    harness.get_by_label("Shale").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().1, larger);
+    harness.get_by_label("As it was").click();
+    harness.run_steps(3);
+    assert!(harness.state().1.is_empty());
 }
 
 #[test]

@@ -7,7 +7,7 @@ use glam::DVec2;
 use page::Rect;
 use page::list::{DisplayList, Group, GroupKind, Item, POINTS_PER_MM, Path, Segment, Text};
 pub use render::LabelChange;
-use ttf::Preset;
+use ttf::{Colour, Preset};
 
 /// What the groups of leaders are called before the name.
 const LEADER: &str = "leader to ";
@@ -24,6 +24,8 @@ pub struct Movable {
     pub label: String,
     /// The room that it takes.
     pub bounds: Rect,
+    /// Size in points and colour of its letters, those of the first words; `None` where it has none.
+    pub letters: Option<(f64, Colour)>,
 }
 
 /// The labels of a page, in the order of drawing.
@@ -39,7 +41,7 @@ fn found(list: &DisplayList) -> Vec<Movable> {
                 for part in group.items.iter().filter_map(as_group).filter(|part| is_explanation(part)) {
                     let label = format!("{}{OF_PANEL}{}", group.name, part.name);
                     let bounds = bounds_of(&part.items).into_iter().reduce(|a, b| a.around(b.min).around(b.max));
-                    found.extend(bounds.map(|bounds| Movable { label, bounds }));
+                    found.extend(bounds.map(|bounds| Movable { label, bounds, letters: letters_of(&part.items) }));
                 }
             }
             GroupKind::Panel => {
@@ -79,7 +81,7 @@ fn gather(group: &Group, found: &mut Vec<Movable>) {
         false => bounds_of(&group.items),
     };
     if let Some(bounds) = places.into_iter().reduce(|a, b| a.around(b.min).around(b.max)) {
-        found.push(Movable { label: label.to_owned(), bounds });
+        found.push(Movable { label: label.to_owned(), bounds, letters: letters_of(&group.items) });
     }
     if group.kind == GroupKind::Well {
         group.items.iter().filter_map(as_group).for_each(|top| gather(top, found));
@@ -97,6 +99,14 @@ fn bounds_of(items: &[Item]) -> Vec<Rect> {
         },
     };
     items.iter().flat_map(of).collect()
+}
+
+fn letters_of(items: &[Item]) -> Option<(f64, Colour)> {
+    items.iter().find_map(|item| match item {
+        Item::Text(text) => Some((text.size, text.ink.colour)),
+        Item::Group(group) => letters_of(&group.items),
+        _ => None,
+    })
 }
 
 /// Makes changes to the labels of a panel: those of a block by their names, those of other panels by the panel's name

@@ -70,8 +70,15 @@ pub(crate) struct FaceWriter<'a> {
     pub covered: Vec<Vec<DVec2>>,
 }
 
-/// A name that found no place on the faces: where its leader may end, the best place first, and what it says.
-type Beside = (Vec<DVec2>, String);
+/// A name that found no place on the faces.
+struct Beside {
+    /// Where its leader may end, the best place first.
+    anchors: Vec<DVec2>,
+    /// What is named.
+    name: String,
+    /// What is written.
+    said: String,
+}
 
 impl FaceWriter<'_> {
     /// Everything that is written on faces.
@@ -88,8 +95,9 @@ impl FaceWriter<'_> {
         for pair in faults.iter().flat_map(|line| line.windows(2)) {
             room.take_line(pair[0], pair[1]);
         }
-        for (anchors, name) in beside {
-            written.extend(leader(&anchors, &name, &self.covered, room).map(Item::from));
+        for Beside { anchors, name, said } in beside {
+            let led = leader(&anchors, &said, &self.covered, room);
+            written.extend(led.map(|group| Group { name: called_leader(&name), ..group }.into()));
         }
         if wanted.queries {
             let horizons = &self.model.stratigraphy().horizons;
@@ -124,7 +132,7 @@ impl FaceWriter<'_> {
                     room.take(&text);
                     group.push(text);
                 }
-                None => beside.push((run.anchors(&lines), said)),
+                None => beside.push(Beside { anchors: run.anchors(&lines), name: group.name.clone(), said }),
             }
             if !group.items.is_empty() {
                 written.push(group.into());
@@ -156,14 +164,15 @@ impl FaceWriter<'_> {
             let mut anchors: Vec<(DVec2, f64)> = own().filter_map(names::LayerPiece::thickest).collect();
             anchors.sort_by(|a, b| b.1.total_cmp(&a.1));
             if let Some((_, thick)) = anchors.first().copied() {
-                thin.push((thick, (anchors.into_iter().map(|(anchor, _)| anchor).collect(), name)));
+                let anchors = anchors.into_iter().map(|(anchor, _)| anchor).collect();
+                thin.push((thick, Beside { anchors, said: name.clone(), name }));
             }
         }
         if thin.len() >= COLUMN_FROM && ends.len() >= COLUMN_FROM {
             let names: HashSet<String> = ends.iter().map(|end| end.name.clone()).collect();
             let column = column::placed(ends, edge, room);
             if !column.is_empty() {
-                thin.retain(|(_, (_, name))| !names.contains(name));
+                thin.retain(|(_, beside)| !names.contains(&beside.name));
             }
             written.extend(column.into_iter().map(Item::from));
         }
@@ -224,12 +233,17 @@ fn dot(at: DVec2) -> [DVec2; 4] {
     [[-half, -half], [half, -half], [half, half], [-half, half]].map(|off| at + DVec2::from_array(off))
 }
 
+/// What the group of a leader is called: by what it names, whatever is written.
+fn called_leader(name: &str) -> String {
+    format!("leader to {name}")
+}
+
 /// A name with a line from a dot on what it names.
 pub(super) fn led([anchor, end]: [DVec2; 2], dot: f64, name: &str, text: Text) -> Group {
     let line = Path::line(&[anchor, end]);
     // In proportion to the dot, so that leaders side by side do not cover the edge behind them.
     let rim = Stroke::new(FRAME_PT + 1.4 * (dot / DOT_PT).powi(4), Ink::glass(Colour::WHITE, RIM_OPACITY));
-    Group::new(GroupKind::Annotation, format!("leader to {name}")).with([
+    Group::new(GroupKind::Annotation, called_leader(name)).with([
         PathItem::stroked(line.clone(), rim).into(),
         PathItem::stroked(line, Stroke::new(FRAME_PT, QUIET_INK)).into(),
         PathItem::filled(Path::circle(anchor, dot), INK)
