@@ -35,7 +35,7 @@ use survey::progress::{Cancelled, Progress};
 pub struct Unfolded {
     /// The unfolded place of every voxel: i·(Nx − 1) and j·(Ny − 1).
     pub places: [LevelField; 2],
-    /// ln w where k is harmonic, and not the ratio of the distances ([`crate::weight`]).
+    /// ln w of k = r w / (r w + 1 − r), r the ratio of the distances from both surfaces; none where k is r itself.
     pub log_weight: Option<LevelField>,
 }
 
