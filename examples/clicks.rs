@@ -6,6 +6,7 @@
 //! found within one sample. At the end the first two clicks are applied to the project as commands, as the window does, and
 //! undone.
 
+use interp::Extremum;
 use interp::reassembly::from_horizon;
 use model::FaultNetwork;
 use project::Project;
@@ -16,6 +17,7 @@ use std::collections::HashMap;
 use std::error::Error;
 use std::time::Instant;
 use survey::Progress;
+use survey::source::BoxSource;
 use time::{Cut, Event, Seed, Support};
 
 /// Distance within which a node is found, samples.
@@ -170,6 +172,19 @@ fn main() -> Result<(), Box<dyn Error>> {
         "{} nodes, {:.1} % of them within a sample of a candidate",
         nodes.len(),
         100.0 * nodes.iter().filter(near).count() as f64 / nodes.len() as f64
+    );
+    let entry = project.document().volumes.first().ok_or("no volume")?;
+    let volume = content::open_volume(project.root(), entry, &geometry)?;
+    let volume = BoxSource::read_box(&volume, [0; 3], [nx, ny, nz]).map_err(|error| error.to_string())?;
+    let on_peak = |node: &&Known| {
+        let mut is_on_one = false;
+        let trace = volume.trace(node.trace / ny, node.trace % ny);
+        interp::extrema::extrema_of_trace(trace, Extremum::Peak, &mut |z, _| is_on_one |= (z - node.z).abs() <= FOUND);
+        is_on_one
+    };
+    println!(
+        "{:.1} % of them within a sample of any peak of their trace",
+        100.0 * nodes.iter().filter(on_peak).count() as f64 / nodes.len() as f64
     );
     let seed = |node: &Known| Seed { trace: [node.trace / ny, node.trace % ny], z: node.z };
     let mut shares = vec![Vec::new(); clicks];

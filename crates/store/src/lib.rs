@@ -51,6 +51,7 @@ mod ingest;
 mod layout;
 mod linked;
 mod linking;
+mod packed;
 mod parameterization;
 mod parts;
 mod placed;

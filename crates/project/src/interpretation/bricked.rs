@@ -16,6 +16,10 @@ use survey::candidates::CandidateInfo;
 /// Bytes that the program takes beside the work on bricks.
 const PROGRAM_BYTES: u64 = 24 << 20;
 
+/// Bytes of the disk that what is spilled and the result take at most for each sample (measured), and where spilled arrays
+/// are packed.
+const BYTES_ON_DISK: [u64; 2] = [26, 13];
+
 /// An extraction that is done in bricks.
 pub(super) struct BrickedExtraction<'a> {
     pub(super) root: &'a Path,
@@ -44,6 +48,23 @@ impl BrickedExtraction<'_> {
         done
     }
 
+    /// The arrays of the work, packed where the disk has no room for them otherwise.
+    fn arrays(&self, scratch: &Scratch, progress: &Progress) -> Result<FolderArrays, ProjectError> {
+        let folder = scratch.path("arrays");
+        let samples = self.source.info().geometry.size().iter().map(|&n| n as u64).product::<u64>();
+        let [plain, packed] = BYTES_ON_DISK.map(|bytes| bytes.saturating_mul(samples));
+        let is_short_of = |bytes: u64| survey::file::room(&folder).is_some_and(|room| room < bytes);
+        let is_new = !folder.exists();
+        if is_new && is_short_of(packed) {
+            progress.warn(format!(
+                "what is written on the way may take {} GB, and the disk has room for less; if it becomes full, make room and \
+                 extract again",
+                packed.div_ceil(1 << 30)
+            ));
+        }
+        Ok(FolderArrays::open(&folder, is_new && is_short_of(plain))?)
+    }
+
     /// The folder of the work.
     fn scratch(&self, cut: &BrickSettings) -> Result<Scratch, ProjectError> {
         // Arrays of other bricks are no use, so the bricks are part of the name.
@@ -61,8 +82,8 @@ impl BrickedExtraction<'_> {
     ) -> Result<SharedExtraction, ProjectError> {
         let cut = BrickSettings::within(memory_bytes, self.source.info().geometry.size(), 1)?.with_edge(edge);
         let scratch = self.scratch(&cut)?;
+        self.arrays(&scratch, &Progress::silent())?;
         let arrays = scratch.path("arrays");
-        FolderArrays::open(&arrays)?;
         let plan = ExtractionPlan {
             volume: volume.to_owned(),
             arrays,
@@ -81,7 +102,7 @@ impl BrickedExtraction<'_> {
         cut: &BrickSettings,
         progress: &Progress,
     ) -> Result<ExtractReport, ProjectError> {
-        let arrays = FolderArrays::open(&scratch.path("arrays"))?;
+        let arrays = self.arrays(scratch, progress)?;
         let bricks = Bricks::new(self.source, &arrays, self.settings, cut)?;
         let done = bricks.done_stages();
         if done > 0 {
