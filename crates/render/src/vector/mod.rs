@@ -20,6 +20,7 @@ mod join;
 mod over;
 mod pattern;
 mod sections;
+mod typical;
 mod visible;
 
 pub use sections::{SeenSection, sections_of, seen_sections};

@@ -6,6 +6,7 @@
 //! shapes it may hold. Beyond the area the region's own coordinates go on, so that what lies across its border
 //! is whole and the area's outline cuts it.
 
+use super::typical::typical;
 use super::{PatternPaint, Polyline};
 use crate::face_map::FaceMap;
 use crate::resolved::{ResolvedInterpretation, ResolvedScene};
@@ -180,6 +181,9 @@ impl FacePattern<'_> {
         let scales = [[horizontal, vertical], [horizontal, vertical], [horizontal, horizontal]];
         let leading: Vec<Option<usize>> =
             (0..lattice.is_inside.len()).map(|cell| self.leading(&lattice, cell)).collect();
+        // A mapping that leads in a few odd places, as beside a spike of a horizon, does not tell how thin the area is.
+        let count = |n: usize| leading.iter().filter(|leading| **leading == Some(n)).count();
+        let most = (0..3).max_by_key(|n| count(*n));
         let mut parts = Vec::new();
         for (n, (mapping, scale)) in mappings.into_iter().zip(scales).enumerate() {
             let is_mine: Vec<bool> = leading.iter().map(|leading| *leading == Some(n)).collect();
@@ -188,7 +192,8 @@ impl FacePattern<'_> {
                 let px_from_tile = cells.px_from_tile();
                 // A narrow part of a wall is as thick as its bed.
                 let of_bed = if n == MAP { 0.0 } else { cells.bed_px(self.depths(rings), px_from_tile) };
-                let is_thin = thickness_px.max(of_bed) < SCRAP * px_from_tile.x_axis.length() / tile.aspect;
+                let is_thin =
+                    most == Some(n) && thickness_px.max(of_bed) < SCRAP * px_from_tile.x_axis.length() / tile.aspect;
                 if is_thin && self.is_across(rings) {
                     return None;
                 }
@@ -400,7 +405,7 @@ impl MappedCells<'_> {
         low.cmple(at).all() && high.cmpge(at).all()
     }
 
-    /// How tiles lie in the middle of the area: pixels from tile units, (u, v).
+    /// How tiles lie in most of the area: pixels from tile units, (u, v).
     fn px_from_tile(&self) -> DMat2 {
         let mine: Vec<usize> = (0..self.is_mine.len()).filter(|cell| self.is_mine[*cell]).collect();
         let every = mine.len().div_ceil(200).max(1);
@@ -409,9 +414,8 @@ impl MappedCells<'_> {
             let [s, t] = [DVec2::X, DVec2::Y].map(|axis| (self.face.px(st + 1e-3 * axis) - self.face.px(st)) * 1e3);
             DMat2::from_cols(s, t) * self.uv(st).1.inverse()
         };
-        let mut maps: Vec<DMat2> = mine.iter().step_by(every).map(map).filter(DMat2::is_finite).collect();
-        maps.sort_by(|a, b| a.determinant().abs().total_cmp(&b.determinant().abs()));
-        maps.get(maps.len() / 2).copied().unwrap_or(DMat2::ZERO)
+        let maps: Vec<DMat2> = mine.iter().step_by(every).map(map).filter(DMat2::is_finite).collect();
+        typical(&maps)
     }
 }
 
