@@ -6,7 +6,7 @@
 //! shapes it may hold. Beyond the area the region's own coordinates go on, so that what lies across its border
 //! is whole and the area's outline cuts it.
 
-use super::typical::typical;
+use super::typical::{most_frequent, typical};
 use super::{PatternPaint, Polyline};
 use crate::face_map::FaceMap;
 use crate::resolved::{ResolvedInterpretation, ResolvedScene};
@@ -181,9 +181,7 @@ impl FacePattern<'_> {
         let scales = [[horizontal, vertical], [horizontal, vertical], [horizontal, horizontal]];
         let leading: Vec<Option<usize>> =
             (0..lattice.is_inside.len()).map(|cell| self.leading(&lattice, cell)).collect();
-        // A mapping that leads in a few odd places, as beside a spike of a horizon, does not tell how thin the area is.
-        let count = |n: usize| leading.iter().filter(|leading| **leading == Some(n)).count();
-        let most = (0..3).max_by_key(|n| count(*n));
+        let most = most_frequent(&leading);
         let mut parts = Vec::new();
         for (n, (mapping, scale)) in mappings.into_iter().zip(scales).enumerate() {
             let is_mine: Vec<bool> = leading.iter().map(|leading| *leading == Some(n)).collect();

@@ -1,6 +1,15 @@
-//! How tiles of a pattern lie in most of an area.
+//! What holds in most of an area, and not in a few odd places of it: beside a spike of a horizon beds turn, so that another
+//! mapping may lead there, and stretches tiles without bound.
 
 use glam::DMat2;
+use std::collections::BTreeMap;
+
+/// The mapping that leads in the most cells; none where none leads in any.
+pub(super) fn most_frequent(leading: &[Option<usize>]) -> Option<usize> {
+    let mut counts = BTreeMap::new();
+    leading.iter().flatten().for_each(|n| *counts.entry(*n).or_insert(0usize) += 1);
+    counts.into_iter().max_by_key(|(_, count)| *count).map(|(n, _)| n)
+}
 
 /// Of the maps of many places the one whose sizes are most like the medians of all: its determinant, and the lengths of
 /// its columns. A map that shears, as beside a spike of a horizon, may have the median of one of them alone. No map gives
@@ -21,6 +30,15 @@ pub(super) fn typical(maps: &[DMat2]) -> DMat2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_mapping_that_leads_in_one_place_does_not_count() {
+        let mut leading = vec![None, Some(0), Some(0), None, Some(0)];
+        assert_eq!(most_frequent(&leading), Some(0));
+        leading.insert(1, Some(2));
+        assert_eq!(most_frequent(&leading), Some(0));
+        assert_eq!(most_frequent(&[None; 3]), None);
+    }
 
     #[test]
     fn a_map_that_shears_is_not_taken_for_typical() {
