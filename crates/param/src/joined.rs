@@ -13,6 +13,7 @@
 //! along it once more ([`crate::retraced`]): averaged beside it they were up to three degrees off. Along the fault it begins to break within
 //! L of the tip line. On a horizon that the fault breaks nothing changes.
 
+use crate::flow::calm::mean_around;
 use crate::metric::Metric;
 use crate::plan::{Method, horizons};
 use crate::touched::RegionColumns;
@@ -34,6 +35,9 @@ const WEIGHED_EVERY: usize = 4;
 /// A throw that does not count, voxels.
 const UNBROKEN: f32 = 0.1;
 
+/// Sheets this near are the same surface, voxels.
+const SAME: f32 = 0.25;
+
 /// How much of another block's sheet counts where both are so many voxels apart.
 fn share(throw: f32) -> f32 {
     (1.0 - throw * throw).max(0.0).powi(2)
@@ -45,26 +49,40 @@ fn falling(x: f32) -> f32 {
     1.0 - x * x * (3.0 - 2.0 * x)
 }
 
-/// The mean of the calm sheets of one horizon, `[block]`, over the blocks whose `drawn` sheets are one surface: another
-/// counts by (1 − t²)² where they are t < 1 voxels apart.
-pub fn mean_of_sheets(drawn: &[&HeightField], calm: Vec<HeightField>) -> Vec<HeightField> {
+/// The mean of the calm sheets of one horizon, `[block]`, over the blocks whose `drawn` sheets are one surface. Another counts
+/// by (1 − t²)² where they are t < 1 voxels apart, averaged over waves of `wave` voxels along x and y: rough sheets are nearer
+/// and farther apart from column to column, and the mean is to be as calm as they. Where they are the same it counts in full.
+pub fn mean_of_sheets(drawn: &[&HeightField], calm: Vec<HeightField>, wave: [f64; 2]) -> Vec<HeightField> {
     if calm.len() < 2 {
         return calm;
     }
-    let mean = |a: usize, n: usize| {
-        let (mut sum, mut weights) = (0.0, 0.0);
-        for (drawn_b, calm_b) in drawn.iter().zip(&calm) {
-            let weight = share(drawn_b.z[n] - drawn[a].z[n]);
-            sum += weight * (calm_b.z[n] - calm[a].z[n]);
-            weights += weight;
+    let mean = |(a, own): (usize, &HeightField)| {
+        let mut sums = vec![0.0; own.z.len()];
+        let mut weights = vec![1.0; own.z.len()];
+        for (b, other) in calm.iter().enumerate().filter(|(b, _)| *b != a) {
+            let throws: Vec<f32> = drawn[b].z.iter().zip(&drawn[a].z).map(|(there, here)| there - here).collect();
+            if throws.iter().all(|throw| throw.abs() >= 1.0) {
+                continue;
+            }
+            let shares = HeightField { z: throws.iter().map(|throw| share(*throw)).collect(), ..own.clone() };
+            let around = mean_around(&shares, wave);
+            for (n, around) in around.z.iter().enumerate() {
+                let around = around.clamp(0.0, 1.0);
+                let weight = around + (1.0 - around) * share(largest_around(&throws, own.size, n) / SAME);
+                sums[n] += weight * (other.z[n] - own.z[n]);
+                weights[n] += weight;
+            }
         }
-        calm[a].z[n] + sum / weights
+        let z = own.z.iter().zip(sums.iter().zip(&weights)).map(|(own, (sum, weight))| own + sum / weight).collect();
+        HeightField { z, ..own.clone() }
     };
-    let of_block = |(a, calm): (usize, &HeightField)| HeightField {
-        z: (0..calm.z.len()).map(|n| mean(a, n)).collect(),
-        ..calm.clone()
-    };
-    calm.par_iter().enumerate().map(of_block).collect()
+    calm.par_iter().enumerate().map(mean).collect()
+}
+
+/// The largest throw in a column and those beside it.
+fn largest_around(throws: &[f32], [nx, ny]: [usize; 2], n: usize) -> f32 {
+    let near = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
+    near(n / ny, nx).flat_map(|x| near(n % ny, ny).map(move |y| throws[x * ny + y].abs())).fold(0.0, f32::max)
 }
 
 /// L, the length of [`LENGTH`] columns, m.
@@ -288,4 +306,33 @@ impl<M: LayerModel + ?Sized> Joined<'_, M> {
 /// 0 on a horizon that is broken by a throw, 1 from twice the throw away on.
 fn clear_of(distance: f32, throw: f32) -> f32 {
     1.0 - falling((distance + UNBROKEN) / (2.0 * throw + UNBROKEN))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: [usize; 2] = [60, 12];
+
+    fn field(z: impl Fn(usize) -> f32) -> HeightField {
+        HeightField { origin: [0; 2], size: SIZE, z: (0..SIZE[0] * SIZE[1]).map(|n| z(n / SIZE[1])).collect() }
+    }
+
+    /// Sheets that are the same up to column 20, and from there on a little nearer and farther than a voxel by turns.
+    #[test]
+    fn the_mean_of_rough_sheets_is_calm_and_one_where_they_are_the_same() {
+        let drawn = [field(|_| 0.0), field(|x| if x < 20 { 0.0 } else { [0.3, 1.2, 0.1, 1.6][x % 4] })];
+        let calm = vec![field(|_| 0.0), field(|_| 4.0)];
+        let means = mean_of_sheets(&drawn.each_ref(), calm, [12.0; 2]);
+        let at = |block: usize, x: usize| means[block].z[x * SIZE[1] + 6];
+        for x in 0..12 {
+            assert!((at(0, x) - 2.0).abs() < 1e-3 && (at(1, x) - 2.0).abs() < 1e-3, "column {x}: {}", at(0, x));
+        }
+        for x in 0..19 {
+            assert!((at(0, x) - at(1, x)).abs() < 1e-3, "column {x}: {} and {}", at(0, x), at(1, x));
+        }
+        // By the distance in each column alone it went from 0 to 2 and back.
+        let steps = (26..59).map(|x| (at(0, x + 1) - at(0, x)).abs());
+        assert!(steps.fold(0.0, f32::max) < 0.8, "{:?}", (24..60).map(|x| at(0, x)).collect::<Vec<_>>());
+    }
 }

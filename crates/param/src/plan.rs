@@ -20,6 +20,8 @@ use survey::{Cancelled, HeightField, LevelField, Progress};
 const FEWEST_LEVELS: usize = 5;
 /// How far beyond an open layer the plane lies through which its flow is even, in reference thicknesses.
 const BEYOND: f32 = 0.25;
+/// Share of the waves that calm sheets are without over which it is averaged how near those of two blocks are.
+const SHARED: f64 = 0.5;
 
 /// How a region is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,7 +73,7 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
             let of_horizon = |horizon: usize| {
                 let drawn: Vec<&HeightField> = (0..blocks as u16).map(|block| model.sheet(horizon, block)).collect();
                 let calm = drawn.par_iter().map(|sheet| calm(sheet, wave)).collect();
-                joined::mean_of_sheets(&drawn, calm)
+                joined::mean_of_sheets(&drawn, calm, wave.map(|wave| wave * SHARED))
             };
             (0..layers - 1).into_par_iter().flat_map(of_horizon).map(Arc::new).collect()
         } else {

@@ -40,6 +40,12 @@ pub fn calm(field: &HeightField, wave: [f64; 2]) -> HeightField {
     HeightField { z, ..field.clone() }
 }
 
+/// The mean around each node: a Gaussian by which waves of `wave` voxels keep a sixth of their height.
+pub fn mean_around(field: &HeightField, wave: [f64; 2]) -> HeightField {
+    let kernels = wave.map(|wave| gaussian(wave / HALVED));
+    HeightField { z: blur(&field.z, field.size, &kernels), ..field.clone() }
+}
+
 /// Weights of a Gaussian at 0, 1, 2 … voxels; they add up to 1 over both sides.
 fn gaussian(sigma: f64) -> Vec<f32> {
     if sigma * HALVED < 2.0 {

@@ -8,7 +8,7 @@
 pub const MODEL: u32 = 3;
 
 /// The parameterization.
-pub const PARAMETERIZATION: u32 = 8;
+pub const PARAMETERIZATION: u32 = 9;
 
 /// Horizon candidates: extrema, growing, surface trees, distances.
 pub const EXTRACTION: u32 = 2;

@@ -118,7 +118,7 @@ fn of_found_faults() -> String {
 fn a_changed_result_has_a_changed_revision() {
     let known = [
         ("MODEL", MODEL, of_model(), (3, "f3513521b9d7")),
-        ("PARAMETERIZATION", PARAMETERIZATION, of_parameterization(), (8, "29c9a61fc71d")),
+        ("PARAMETERIZATION", PARAMETERIZATION, of_parameterization(), (9, "29c9a61fc71d")),
         ("EXTRACTION", EXTRACTION, of_extraction(), (2, "7a7715634834")),
         ("PROPOSALS", PROPOSALS, of_proposals(), (1, "1fc6c26217e7")),
         ("FOUND_FAULTS", FOUND_FAULTS, of_found_faults(), (1, "e89afb8fab47")),
