@@ -18,7 +18,7 @@ const PROGRAM_BYTES: u64 = 24 << 20;
 
 /// Bytes of the disk that what is spilled and the result take at most for each sample (measured), and where spilled arrays
 /// are packed.
-const BYTES_ON_DISK: [u64; 2] = [26, 13];
+const BYTES_ON_DISK: [u64; 2] = [28, 16];
 
 /// An extraction that is done in bricks.
 pub(super) struct BrickedExtraction<'a> {
