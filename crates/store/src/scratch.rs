@@ -6,8 +6,8 @@
 //! FOLDER/.packed        where it is there, the bytes are packed ([`crate::packed`])
 //! ```
 //!
-//! Packed parts take less than half of the disk, and the processor a tenth longer: they are for disks that have no room
-//! for others. Which they are is chosen when the folder is made, and holds for all processes.
+//! Packed parts take little more than half of the disk, and an extraction with them half as much processor time again: they
+//! are for disks that have no room for others. Which they are is chosen when the folder is made, and holds for all processes.
 //!
 //! A part is written beside its place and renamed, so that a killed program leaves whole parts only. Parts are not
 //! flushed: after a power cut nothing of them is believed, which the number that the system gives itself at its start
