@@ -56,10 +56,11 @@ impl BrickedExtraction<'_> {
         let is_short_of = |bytes: u64| survey::file::room(&folder).is_some_and(|room| room < bytes);
         let is_new = !folder.exists();
         if is_new && is_short_of(packed) {
+            let amount =
+                if packed < 10 << 30 { format!("{} MB", packed >> 20) } else { format!("{} GB", packed >> 30) };
             progress.warn(format!(
-                "what is written on the way may take {} GB, and the disk has room for less; if it becomes full, make room and \
-                 extract again",
-                packed.div_ceil(1 << 30)
+                "what is written on the way may take {amount}, and the disk has room for less; if it becomes full, make \
+                 room and extract again"
             ));
         }
         Ok(FolderArrays::open(&folder, is_new && is_short_of(plain))?)
