@@ -54,8 +54,7 @@ impl BrickedExtraction<'_> {
         let samples = self.source.info().geometry.size().iter().map(|&n| n as u64).product::<u64>();
         let [plain, packed] = BYTES_ON_DISK.map(|bytes| bytes.saturating_mul(samples));
         let is_short_of = |bytes: u64| survey::file::room(&folder).is_some_and(|room| room < bytes);
-        let is_new = !folder.exists();
-        if is_new && is_short_of(packed) {
+        if !folder.exists() && is_short_of(packed) {
             let amount =
                 if packed < 10 << 30 { format!("{} MB", packed >> 20) } else { format!("{} GB", packed >> 30) };
             progress.warn(format!(
@@ -63,7 +62,8 @@ impl BrickedExtraction<'_> {
                  room and extract again"
             ));
         }
-        Ok(FolderArrays::open(&folder, is_new && is_short_of(plain))?)
+        // What is gone on with stays as it is.
+        Ok(FolderArrays::open(&folder, is_short_of(plain))?)
     }
 
     /// The folder of the work.
