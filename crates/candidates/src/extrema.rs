@@ -36,12 +36,12 @@ pub struct Extrema {
 impl Extrema {
     /// Count of extrema.
     pub fn len(&self) -> usize {
-        self.z.len()
+        self.offsets.last().map_or(0, |&count| count as usize)
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.z.is_empty()
+        self.len() == 0
     }
 
     /// Indices of the extrema on the trace at (x, y).

@@ -1,7 +1,7 @@
 //! Stages from links to cuts: `breaks`, `variances`, `evidence`, `surroundings`, `parted`, `cuts`.
 
 use super::Bricks;
-use super::patch::Patch;
+use super::patch::{Patch, Values};
 use super::samples::Samples;
 use super::tiles::Halo;
 use crate::error::InterpError;
@@ -33,7 +33,7 @@ impl Bricks<'_> {
                 // Smoothed across the links, that is along the other axis; the links lead to the next trace.
                 let mut halo = Halo::around(2);
                 (halo.before[1 - axis], halo.behind[1 - axis]) = (ROUNDS + 2, ROUNDS + 2);
-                let patch = self.patch(kind, brick, halo)?;
+                let patch = self.patch(kind, brick, halo, Values::All)?;
                 let (links, dips) = (self.links(&patch)?, self.values("dips", &patch)?);
                 evidence::smoothed_breaks(&patch.extrema, &links, &dips, &noise, axis, &mut scratch, &quiet)?;
                 let ratios: Vec<[f32; 2]> = scratch.values.iter().map(|s| [s[0] / s[2], s[1] / s[2]]).collect();
@@ -69,8 +69,8 @@ impl Bricks<'_> {
         for kind in 0..self.kinds.len() {
             let noise = self.noise(kind)?;
             let variances: [f32; 4] = self.read_array(&self.name("variances", kind))?;
-            let patch = self.patch(kind, brick, Halo::behind(1))?;
-            let links = self.links(&patch)?;
+            let patch = self.patch(kind, brick, Halo::behind(1), Values::All)?;
+            let links = self.links_on(&patch)?;
             let mut found = vec![[0u8; 2]; patch.extrema.len()];
             // Number of the coarse brick and of the axis, sum, count.
             let mut sums: std::collections::BTreeMap<u32, [u32; 2]> = std::collections::BTreeMap::new();
@@ -119,7 +119,7 @@ impl Bricks<'_> {
         let lobes: Vec<f32> = self.read("lobes", 0)?;
         let halo = Halo::around(3);
         let patches: Vec<Patch> =
-            (0..self.kinds.len()).map(|kind| self.patch(kind, brick, halo)).collect::<Result<_, _>>()?;
+            (0..self.kinds.len()).map(|kind| self.patch(kind, brick, halo, Values::All)).collect::<Result<_, _>>()?;
         let mut own = vec![Vec::new(); self.kinds.len()];
         // One list of extrema, as their resolution takes them, and back.
         let (extrema, patches): (Vec<Extrema>, Vec<Patch>) = patches.into_iter().map(Patch::split).unzip();
@@ -146,7 +146,7 @@ impl Bricks<'_> {
     }
 
     fn linked(&self, kind: usize, brick: usize, halo: Halo) -> Result<Linked, InterpError> {
-        let patch = self.patch(kind, brick, halo)?;
+        let patch = self.patch(kind, brick, halo, Values::All)?;
         let (links, noise) = (self.links(&patch)?, self.noise(kind)?);
         let evidence = self.values("evidence", &patch)?;
         Ok(Linked { patch, links, evidence, noise })

@@ -6,7 +6,7 @@
 //! whole survey. The count of their windows, and then their least one, rank them.
 
 use super::Bricks;
-use super::patch::Patch;
+use super::patch::{Patch, Values};
 use super::tiles::Halo;
 use crate::error::InterpError;
 use crate::grow::UnionFind;
@@ -39,8 +39,8 @@ impl Bricks<'_> {
     pub(crate) fn windows(&self, brick: usize) -> Result<(), InterpError> {
         for kind in 0..self.kinds.len() {
             for (name, width) in self.widths() {
-                let patch = self.patch(kind, brick, Halo::behind(width + 2))?;
-                let (links, broken) = (self.links(&patch)?, self.broken(&patch)?);
+                let patch = self.patch(kind, brick, Halo::behind(width + 2), Values::None)?;
+                let (links, broken) = (self.links_on(&patch)?, self.broken(&patch)?);
                 let open = cells::open_cells(&links, &broken);
                 let windows = cells::windows(&patch.extrema, &links, &open, width - 1);
                 drop((open, broken));
@@ -107,7 +107,8 @@ impl Bricks<'_> {
         for kind in 0..self.kinds.len() {
             for (name, width) in self.widths() {
                 let ranks: Vec<Ranked> = self.read(&self.name(&format!("{name}-ranks"), kind), 0)?;
-                let patch = self.patch(kind, brick, Halo { before: [width; 2], behind: [0; 2] })?;
+                let halo = Halo { before: [width; 2], behind: [0; 2] };
+                let patch = self.patch(kind, brick, halo, Values::None)?;
                 let links = self.links(&patch)?;
                 let parts: Vec<u32> = self.values(&format!("{name}-part"), &patch)?;
                 let rank_of = |part: u32| {

@@ -1,6 +1,7 @@
 //! Stages from samples to links and dips: `extrema`, `offsets`, `jumps`, `field`, `beside`, `lobes`, `dips`, `noise`.
 
 use super::Bricks;
+use super::patch::Values;
 use super::samples::Samples;
 use super::tiles::{Halo, Tiling};
 use crate::error::InterpError;
@@ -77,7 +78,7 @@ impl Bricks<'_> {
         let (mut strong, quiet) = (Samples::default(), Progress::silent());
         let pair = lobes::pair_of(&self.kinds).unwrap_or([usize::MAX; 2]);
         for kind in 0..self.kinds.len() {
-            let patch = self.patch(kind, brick, Halo::behind(edge_x.max(edge_y) + 1))?;
+            let patch = self.patch(kind, brick, Halo::behind(edge_x.max(edge_y) + 1), Values::All)?;
             let links = mutual_links(&patch.extrema, &[], UNGUIDED_REACH, &quiet)?;
             for ([x, y], places, _) in patch.traces() {
                 let unit = [x / edge_x, y / edge_y];
@@ -153,8 +154,8 @@ impl Bricks<'_> {
         let strong = self.read::<f32>("strong-height", 0)?[0];
         let (mut samples, mut trace) = (Samples::default(), Vec::new());
         if let Some(pair) = lobes::pair_of(&self.kinds).filter(|_| self.settings.grow.lobe_share > 0.0) {
-            let patches = [self.patch(pair[0], brick, Halo::default())?, self.patch(pair[1], brick, Halo::default())?];
-            let [a, b] = &patches;
+            let patch = |kind| self.patch(kind, brick, Halo::default(), Values::All);
+            let [a, b] = &[patch(pair[0])?, patch(pair[1])?];
             for ([x, y], ..) in a.own_traces().filter(|([x, y], ..)| lobes::is_measured(*x, *y)) {
                 lobes::merged([&a.extrema, &b.extrema], x - a.area.x.start, y - a.area.y.start, &mut trace);
                 lobes::each_beside(&trace, strong, |pair| (0..2).for_each(|which| samples.push(which, pair[which])));
@@ -180,7 +181,7 @@ impl Bricks<'_> {
         let field = DipField::of_dips(self.size, self.read("field", 0)?);
         let (mut scratch, quiet) = (SmoothingScratch::default(), Progress::silent());
         for kind in 0..self.kinds.len() {
-            let patch = self.patch(kind, brick, Halo::around(DIP_HALO))?;
+            let patch = self.patch(kind, brick, Halo::around(DIP_HALO), Values::All)?;
             let extrema = &patch.extrema;
             let mut dips = field.at_extrema(extrema, [patch.area.x.start, patch.area.y.start]);
             let links = mutual_links(extrema, &dips, GUIDED_REACH, &quiet)?;

@@ -3,10 +3,9 @@
 use super::Bricks;
 use super::run::BYTES_A_TRIANGLE;
 use super::tiles::{Area, Halo, Tiling};
-use super::trees::{Cell, Leaf};
-use crate::distance::{CandidateColumns, CellRow, CellTriangle, ROW_CELLS, columns_among};
+use super::trees::{Leaf, LeafRoom};
+use crate::distance::{CandidateColumns, CellRow, ROW_CELLS, columns_among};
 use crate::error::InterpError;
-use bytemuck::Zeroable;
 use std::ops::Range;
 use survey::Progress;
 
@@ -58,25 +57,20 @@ impl Bricks<'_> {
         let reached = leaf.iter().filter(|&&leaf| leaf != 0).count() as u32;
         self.write("reached", column, &[reached])?;
         self.write("distance", column, &distance)?;
-        self.write("leaf", column, &leaf)
+        self.write_rows("leaf", column, leaf.into_iter().map(|leaf| [leaf]))
     }
 
     /// The triangles of leaves whose cells lie in an area, by cell of the area, in rows of [`ROW_CELLS`].
     fn cells_within(&self, leaves: &[(usize, u32, Leaf)], Area { x, y }: &Area) -> Result<Vec<CellRow>, InterpError> {
         let mut rows: Vec<CellRow> = vec![Vec::new(); x.len().div_ceil(ROW_CELLS)];
-        let mut room = Vec::new();
-        for &(batch, id, leaf) in leaves.iter().filter(|(.., leaf)| leaf.meets(x, y)) {
-            let [start, end] = leaf.triangles.map(|at| at as usize);
-            room.resize(end - start, Cell::zeroed());
-            self.read_at("tree-cells", batch, start, &mut room)?;
-            for cell in &room {
-                let (cell_x, cell_y) = (usize::from(cell.x), usize::from(cell.y));
+        let mut room = LeafRoom::default();
+        for (batch, id, leaf) in leaves.iter().filter(|(.., leaf)| leaf.meets(x, y)) {
+            self.cells_of(*batch, leaf, *id, &mut room, |[cell_x, cell_y], triangle| {
                 if x.contains(&cell_x) && y.contains(&cell_y) {
-                    let triangle = CellTriangle { z: cell.z, code: id << 2 | cell.corner };
                     let at = [cell_x - x.start, cell_y - y.start];
                     rows[at[0] / ROW_CELLS].push((at.map(|cell| cell as u16), triangle));
                 }
-            }
+            })?;
         }
         Ok(rows)
     }
@@ -92,6 +86,8 @@ impl Bricks<'_> {
     /// An array cannot be read.
     pub fn column(&self, column: usize) -> Result<CandidateColumns, InterpError> {
         let Area { x, y } = self.columns().area(column);
-        Ok(CandidateColumns { x, y, distance: self.read("distance", column)?, leaf: self.read("leaf", column)? })
+        let distance: Vec<u8> = self.read("distance", column)?;
+        let leaf = bytemuck::cast_vec(self.read_rows::<1>("leaf", column, distance.len())?);
+        Ok(CandidateColumns { x, y, distance, leaf })
     }
 }

@@ -9,7 +9,7 @@
 //! forest as the whole survey. It tells which of a brick's links are no part of it, and the label of each gate.
 
 use super::Bricks;
-use super::patch::Patch;
+use super::patch::{Patch, Values};
 use super::tiles::Halo;
 use crate::error::InterpError;
 use crate::grow::UnionFind;
@@ -84,8 +84,8 @@ impl Bricks<'_> {
 
     /// The forest of a brick.
     fn basin(&self, flood: Flood, kind: usize, brick: usize, halo: Halo) -> Result<Basin, InterpError> {
-        let patch = self.patch(kind, brick, halo)?;
-        let links = self.links(&patch)?;
+        let patch = self.patch(kind, brick, halo, Values::None)?;
+        let links = self.links_on(&patch)?;
         let evidence: Vec<[u8; 2]> = self.values("evidence", &patch)?;
         let labels = self.rooted(flood, &patch)?;
         let (indices, own) = (patch.indices(), patch.is_own());
@@ -93,7 +93,8 @@ impl Bricks<'_> {
             NONE => u64::from(indices[v as usize]),
             label => LABEL | u64::from(label),
         };
-        let (mut inside, mut across) = (Vec::new(), Vec::new());
+        // By evidence; those of the same evidence are met in their order.
+        let (mut inside, mut across) = (vec![Vec::new(); usize::from(PASSABLE) + 1], Vec::new());
         let mut is_gate = vec![false; labels.len()];
         for v in 0..labels.len() as u32 {
             for (axis, direction) in [NEXT_X, NEXT_Y].into_iter().enumerate() {
@@ -108,7 +109,7 @@ impl Bricks<'_> {
                 }
                 let key = key_of(evidence, indices[v as usize], axis);
                 if owned == [true; 2] {
-                    inside.push((key, [v, next]));
+                    inside[usize::from(evidence)].push((key, [v, next]));
                     continue;
                 }
                 for (end, _) in
@@ -121,8 +122,7 @@ impl Bricks<'_> {
                 }
             }
         }
-        inside.sort_unstable();
-        let forest = spanning(&labels, inside);
+        let forest = spanning(&labels, inside.into_iter().flatten());
         let gates = (0..labels.len() as u32).filter(|&v| is_gate[v as usize]).collect();
         Ok(Basin { patch, labels, indices, forest, across, gates })
     }
@@ -238,7 +238,7 @@ impl Bricks<'_> {
         for kind in 0..self.kinds.len() {
             let over: Vec<u32> = self.read(&self.name_of(flood, "layered", kind), 0)?;
             let halo = if over.is_empty() { Halo::default() } else { Halo::around(OUTSKIRTS + 1) };
-            let patch = self.patch(kind, brick, halo)?;
+            let patch = self.patch(kind, brick, halo, Values::None)?;
             let mut labels: Vec<u32> = self.values(&format!("{}-flooded", flood.prefix()), &patch)?;
             if !over.is_empty() {
                 let (links, evidence) = (self.links(&patch)?, self.values::<[u8; 2]>("evidence", &patch)?);
@@ -264,7 +264,7 @@ impl Bricks<'_> {
 }
 
 /// The spanning forest of links in their order, where each labelled extremum is a root.
-fn spanning(labels: &[u32], links: Vec<(Key, [u32; 2])>) -> Vec<(Key, [u32; 2])> {
+fn spanning(labels: &[u32], links: impl Iterator<Item = (Key, [u32; 2])>) -> Vec<(Key, [u32; 2])> {
     let mut sets = UnionFind::new(labels.len());
     let mut rooted: Vec<bool> = labels.iter().map(|&label| label != NONE).collect();
     let joins = |&(_, [a, b]): &(Key, [u32; 2])| {
@@ -276,7 +276,7 @@ fn spanning(labels: &[u32], links: Vec<(Key, [u32; 2])>) -> Vec<(Key, [u32; 2])>
         rooted[sets.union(a, b) as usize] = either;
         true
     };
-    links.into_iter().filter(joins).collect()
+    links.filter(joins).collect()
 }
 
 impl Basin {

@@ -33,6 +33,7 @@
 //! The paper's method depends on the order of its seeds and is not available in bricks.
 
 mod breaks;
+mod coded;
 mod components;
 mod dips;
 mod distances;

@@ -23,11 +23,22 @@ pub(crate) struct Patch {
     pub(crate) own: Area,
     /// All traces of the patch.
     pub(crate) area: Area,
-    /// The extrema; their x and y count from the first of the area.
+    /// The extrema, with the values that were asked for; their x and y count from the first of the area.
     pub(crate) extrema: Extrema,
     /// Index of the first extremum of each trace, `[x][y]`.
     firsts: Vec<u32>,
     offsets: Offsets,
+}
+
+/// What a stage needs of the extrema of a patch, beside how many there are on each trace.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Values {
+    /// Nothing: labels and links are arrays of their own.
+    None,
+    /// z.
+    Depths,
+    /// z and the amplitude.
+    All,
 }
 
 /// Index of the first extremum of each trace of the survey, of the inlines that a patch needs.
@@ -53,7 +64,7 @@ const NO_PARTNER: Code = Code::MAX;
 
 impl Bricks<'_> {
     /// The extrema of a brick and its halo.
-    pub(crate) fn patch(&self, kind: usize, brick: usize, halo: Halo) -> Result<Patch, InterpError> {
+    pub(crate) fn patch(&self, kind: usize, brick: usize, halo: Halo, values: Values) -> Result<Patch, InterpError> {
         let own = self.tiles.area(brick);
         let area = self.tiles.with_halo(&own, halo);
         let offsets = self.offsets(kind, &area)?;
@@ -70,8 +81,12 @@ impl Bricks<'_> {
         let size = [area.x.len(), area.y.len(), self.size[2]];
         let empty = Extrema { size, kind: self.kinds[kind], offsets: counts, z: Vec::new(), amplitude: Vec::new() };
         let mut patch = Patch { kind, brick, own, area, extrema: empty, firsts, offsets };
-        patch.extrema.z = self.values("z", &patch)?;
-        patch.extrema.amplitude = self.values("amplitude", &patch)?;
+        if values != Values::None {
+            patch.extrema.z = self.values("z", &patch)?;
+        }
+        if values == Values::All {
+            patch.extrema.amplitude = self.values("amplitude", &patch)?;
+        }
         Ok(patch)
     }
 
@@ -87,8 +102,7 @@ impl Bricks<'_> {
     /// The values of an array for all extrema of a patch.
     pub(crate) fn values<T: Pod>(&self, array: &str, patch: &Patch) -> Result<Vec<T>, InterpError> {
         let (name, offsets, ny) = (self.name(array, patch.kind), &patch.offsets, self.size[1]);
-        let count = patch.extrema.offsets.last().map_or(0, |&count| count as usize);
-        let mut values = vec![T::zeroed(); count];
+        let mut values = vec![T::zeroed(); patch.extrema.len()];
         // Values before the row of each brick that is met, by brick.
         let mut before: Vec<(usize, Vec<u32>)> = Vec::new();
         let mut at = 0;
@@ -148,25 +162,37 @@ impl Bricks<'_> {
 
     /// The links of a patch.
     pub(crate) fn links(&self, patch: &Patch) -> Result<Links, InterpError> {
+        let mut links = self.links_on(patch)?;
+        for [next, back] in [[NEXT_X, BACK_X], [NEXT_Y, BACK_Y]] {
+            let mut found = vec![NONE; links.to[next].len()];
+            for (v, &to) in links.to[next].iter().enumerate().filter(|(_, to)| **to != NONE) {
+                found[to as usize] = v as u32;
+            }
+            links.to[back] = found;
+        }
+        Ok(links)
+    }
+
+    /// The links of a patch to the next traces alone; nothing leads back.
+    pub(crate) fn links_on(&self, patch: &Patch) -> Result<Links, InterpError> {
         let codes: Vec<[Code; 2]> = self.values("links", patch)?;
-        let mut links = Links { to: [(); 4].map(|()| vec![NONE; codes.len()]) };
         let [nx, ny, _] = patch.extrema.size;
-        for (x, y) in (0..nx).flat_map(|x| (0..ny).map(move |y| (x, y))) {
-            for (axis, there) in [(x + 1, y), (x, y + 1)].into_iter().enumerate() {
-                if there.0 == nx || there.1 == ny {
-                    continue;
-                }
-                let first = patch.extrema.on_trace(there.0, there.1).start;
-                for v in patch.extrema.on_trace(x, y) {
-                    if codes[v][axis] != NO_PARTNER {
-                        let to = first + usize::from(codes[v][axis]);
-                        links.to[[NEXT_X, NEXT_Y][axis]][v] = to as u32;
-                        links.to[[BACK_X, BACK_Y][axis]][to] = v as u32;
+        let [mut next_x, mut next_y] = [(); 2].map(|()| vec![NONE; codes.len()]);
+        for (axis, next) in [&mut next_x, &mut next_y].into_iter().enumerate() {
+            let there = |x: usize, y: usize| [(x + 1, y), (x, y + 1)][axis];
+            let begin = |x: usize, y: usize| (x < nx && y < ny).then(|| patch.extrema.on_trace(x, y).start as u32);
+            for (x, y) in (0..nx).flat_map(|x| (0..ny).map(move |y| (x, y))) {
+                let (x_there, y_there) = there(x, y);
+                let Some(first) = begin(x_there, y_there) else { continue };
+                let own = patch.extrema.on_trace(x, y);
+                for (next, code) in next[own.clone()].iter_mut().zip(&codes[own]) {
+                    if code[axis] != NO_PARTNER {
+                        *next = first + u32::from(code[axis]);
                     }
                 }
             }
         }
-        Ok(links)
+        Ok(Links { to: [next_x, Vec::new(), next_y, Vec::new()] })
     }
 }
 

@@ -4,7 +4,7 @@
 //! and its strength, which is a sum of integers. The sums of all bricks are those of the whole survey.
 
 use super::Bricks;
-use super::patch::Patch;
+use super::patch::{Patch, Values};
 use super::tiles::Halo;
 use crate::error::InterpError;
 use crate::grow::links::NONE;
@@ -40,7 +40,7 @@ impl Bricks<'_> {
         }
         let ny = self.size[1];
         for kind in 0..self.kinds.len() {
-            let patch = self.patch(kind, brick, Halo::behind(1))?;
+            let patch = self.patch(kind, brick, Halo::behind(1), Values::All)?;
             let labels = self.labelled(&patch)?;
             let mut pieces: BTreeMap<u32, (u32, Piece)> = BTreeMap::new();
             for ([x, y], v, index) in patch.own_extrema().filter(|&(_, v, _)| labels[v] != NONE) {

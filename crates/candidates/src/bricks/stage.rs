@@ -143,8 +143,8 @@ impl Stage {
             Kind::Trimmed(Flood::All) => &["all-flooded", "narrow-label", "rooted"],
             Kind::Joined => &["pieces", "piece-traces", "boundaries", "broken", "evidence"],
             Kind::Triangles => &["label", "links", "z", "amplitude"],
-            Kind::Trees => &["corners", "faces", "members"],
-            Kind::Distances => &["tree-cells"],
+            Kind::Trees => &["corners", "cells", "members"],
+            Kind::Distances => &["tree-corners"],
             _ => &[],
         }
     }

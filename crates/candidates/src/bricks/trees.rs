@@ -5,9 +5,12 @@
 //! tasks know nothing of one another and their size does not matter.
 
 use super::Bricks;
-use super::triangles::{Corner, Member, Outline};
+use super::coded::{self, Stretch};
+use super::triangles::{Corner, CornersOfCell, Member, Outline, ring_of};
+use crate::distance::CellTriangle;
 use crate::error::InterpError;
 use crate::forest;
+use crate::grow::assemble::SHAPES;
 use crate::surfaces::{Extremum, Vertex};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
@@ -18,24 +21,18 @@ use survey::source::SourceError;
 /// Stands for "none" in a table.
 const NONE: u32 = u32::MAX;
 
-/// A triangle as the search for distances takes it, with its cell.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct Cell {
-    pub(crate) x: u16,
-    pub(crate) y: u16,
-    /// See [`crate::distance::CellTriangle`].
-    pub(crate) z: [f32; 3],
-    pub(crate) corner: u32,
-}
-
 /// A leaf: the cells that its triangles span, and where they are.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Leaf {
     /// Least cell along x and y, and the greatest.
-    pub(crate) cells: [[u16; 2]; 2],
-    pub(crate) triangles: [u32; 2],
+    cells: [[u16; 2]; 2],
+    /// First of its task's triangles, and the end.
+    triangles: [u32; 2],
+    /// Its triangles in `tree-triangles`: numbers of the task's vertices.
+    code: Stretch,
+    /// Its vertices in `tree-corners`, ascending: the number among the task's, then as in [`Corner`].
+    corners: Stretch,
 }
 
 impl Leaf {
@@ -52,11 +49,15 @@ impl Leaf {
 struct Made {
     trace: Vec<[u16; 2]>,
     z: Vec<f32>,
-    triangles: Vec<[u32; 3]>,
     surfaces: Vec<[u32; 5]>,
     nodes: Vec<[u32; 6]>,
-    cells: Vec<Cell>,
     leaves: Vec<Leaf>,
+    /// Code of the triangles of leaves.
+    triangles: Vec<u8>,
+    /// Code of the vertices of leaves.
+    corners: Vec<u8>,
+    /// Count of triangles.
+    reached: u32,
 }
 
 impl Bricks<'_> {
@@ -72,6 +73,9 @@ impl Bricks<'_> {
         let mut outlines = vec![Outline::zeroed(); (range[1] - range[0]) as usize];
         self.read_at("surfaces", 0, range[0] as usize, &mut outlines)?;
         let mut made = Made::default();
+        let count = outlines.iter().map(|outline| outline.counts[0] as usize).sum();
+        made.trace.reserve_exact(count);
+        made.z.reserve_exact(count);
         for (outline, surface) in outlines.into_iter().zip(range[0]..) {
             progress.check()?;
             let (vertices, triangles) = self.surface(&outline)?;
@@ -82,7 +86,7 @@ impl Bricks<'_> {
         self.write("tree-triangles", batch, &made.triangles)?;
         self.write("tree-surfaces", batch, &made.surfaces)?;
         self.write("tree-nodes", batch, &made.nodes)?;
-        self.write("tree-cells", batch, &made.cells)?;
+        self.write("tree-corners", batch, &made.corners)?;
         self.write("tree-leaves", batch, &made.leaves)
     }
 
@@ -90,38 +94,33 @@ impl Bricks<'_> {
     fn surface(&self, outline: &Outline) -> Result<(Vec<Vertex>, Vec<[u32; 3]>), InterpError> {
         let mut members = vec![Member::zeroed(); (outline.members[1] - outline.members[0]) as usize];
         self.read_at("members", 0, outline.members[0] as usize, &mut members)?;
-        let kind = outline.kind as usize;
-        let mut corners = vec![Corner::zeroed(); outline.counts[0] as usize];
-        let mut triangles = vec![[0u32; 3]; outline.counts[1] as usize];
-        let mut reached = [0; 2];
-        for Member { brick, vertices, triangles: own } in &members {
-            let [v, t] = [vertices, own].map(|range| (range[1] - range[0]) as usize);
-            let out = &mut corners[reached[0]..reached[0] + v];
-            self.read_at(&self.name("corners", kind), *brick as usize, vertices[0] as usize, out)?;
-            let out = &mut triangles[reached[1]..reached[1] + t];
-            self.read_at(&self.name("faces", kind), *brick as usize, own[0] as usize, out)?;
-            reached = [reached[0] + v, reached[1] + t];
+        let [corners_name, cells_name] = ["corners", "cells"].map(|array| self.name(array, outline.kind as usize));
+        let mut corners: Vec<Corner> = Vec::with_capacity(outline.counts[0] as usize);
+        let mut cells: Vec<CornersOfCell> =
+            Vec::with_capacity(members.iter().map(|member| member.cells.rows as usize).sum());
+        let mut room = Vec::new();
+        for Member { brick, vertices, cells: own } in &members {
+            self.rows_of(&corners_name, *brick as usize, vertices, &mut room, &mut corners)?;
+            self.rows_of(&cells_name, *brick as usize, own, &mut room, &mut cells)?;
         }
-        let whole = members.len() == 1;
-        if !whole {
+        if members.len() > 1 {
             // Those of each brick ascend, which a stable sort makes use of.
-            corners.sort_by_key(|corner| corner.index);
+            corners.sort_by_key(|[index, ..]| *index);
+            cells.sort_by_key(|[index, ..]| *index);
         }
         let mut finder = Finder { corners: &corners, near: [0; 2] };
-        for corner in triangles.as_flattened_mut() {
-            *corner = finder.place(*corner).ok_or_else(|| InterpError::DamagedArray { array: "faces".to_owned() })?;
+        let mut triangles = Vec::with_capacity(outline.counts[1] as usize);
+        let damaged = || InterpError::DamagedArray { array: cells_name.clone() };
+        for cell in cells {
+            let shape = SHAPES.get(cell[4] as usize).ok_or_else(damaged)?;
+            // Only corners that a triangle uses are vertices.
+            let ring = ring_of(cell).map(|index| finder.place(index));
+            for places in *shape {
+                let [a, b, c] = places.map(|place| ring[place]);
+                triangles.push([a.ok_or_else(damaged)?, b.ok_or_else(damaged)?, c.ok_or_else(damaged)?]);
+            }
         }
-        if !whole {
-            // All triangles of one cell are of one brick, in their order.
-            let trace = |triangle: [u32; 3]| {
-                let [a, b, c] = triangle.map(|v| corners[v as usize]);
-                u32::from(a.x.min(b.x).min(c.x)) << 16 | u32::from(a.y.min(b.y).min(c.y))
-            };
-            let mut placed: Vec<(u32, [u32; 3])> = triangles.into_iter().map(|own| (trace(own), own)).collect();
-            placed.sort_by_key(|(trace, _)| *trace);
-            triangles = placed.into_iter().map(|(_, own)| own).collect();
-        }
-        let vertices = corners.iter().map(|corner| Vertex { x: corner.x, y: corner.y, z: corner.z }).collect();
+        let vertices = corners.iter().map(|&[_, x, y, z]| vertex_of([x, y, z])).collect();
         Ok((vertices, triangles))
     }
 
@@ -136,34 +135,80 @@ impl Bricks<'_> {
         progress: &Progress,
     ) -> Result<(), InterpError> {
         let tree = forest::tree(vertices, &mut triangles, &self.settings.forest, progress)?;
-        let [node, vertex, triangle] = [made.nodes.len(), made.z.len(), made.triangles.len()].map(|n| n as u32);
+        let [node, vertex, triangle] = [made.nodes.len() as u32, made.z.len() as u32, made.reached];
+        let mut numbers = Vec::new();
         for own in &tree.nodes {
             let [a, b] = own.children.map_or([NONE; 2], |children| children.map(|child| node + child));
             let [first, end] = [own.triangles.start + triangle, own.triangles.end + triangle];
             made.nodes.push([own.parent.map_or(NONE, |parent| node + parent), a, b, surface, first, end]);
             if own.children.is_none() {
+                let triangles = &triangles[own.triangles.start as usize..own.triangles.end as usize];
                 let mut cells = [[u16::MAX; 2], [0; 2]];
-                for corners in &triangles[own.triangles.start as usize..own.triangles.end as usize] {
-                    let cell = cell_of(vertices, *corners);
-                    for (axis, at) in [cell.x, cell.y].into_iter().enumerate() {
+                for corners in triangles {
+                    let [a, b, c] = corners.map(|v| vertices[v as usize]);
+                    for (axis, at) in [a.x.min(b.x).min(c.x), a.y.min(b.y).min(c.y)].into_iter().enumerate() {
                         cells[0][axis] = cells[0][axis].min(at);
                         cells[1][axis] = cells[1][axis].max(at);
                     }
-                    made.cells.push(cell);
                 }
-                made.leaves.push(Leaf { cells, triangles: [first, end] });
+                numbers.clear();
+                numbers.extend_from_slice(triangles.as_flattened());
+                numbers.sort_unstable();
+                numbers.dedup();
+                let corner = |&v: &u32| {
+                    let Vertex { x, y, z } = vertices[v as usize];
+                    [v + vertex, x.into(), y.into(), z.to_bits()]
+                };
+                let corners = coded::add(numbers.iter().map(corner), &mut made.corners);
+                let numbered = triangles.iter().map(|corners| corners.map(|v| v + vertex));
+                let code = coded::add(numbered, &mut made.triangles);
+                made.leaves.push(Leaf { cells, triangles: [first, end], code, corners });
             }
         }
         made.trace.extend(vertices.iter().map(|v| [v.x, v.y]));
         made.z.extend(vertices.iter().map(|v| v.z));
-        made.triangles.extend(triangles.iter().map(|corners| corners.map(|v| v + vertex)));
+        made.reached += triangles.len() as u32;
         let number = match self.kinds[kind as usize] {
             Extremum::Peak => 0,
             Extremum::Trough => 1,
             Extremum::Zero => 2,
         };
-        let (end_vertex, end) = (made.z.len() as u32, made.triangles.len() as u32);
-        made.surfaces.push([number, vertex, end_vertex, triangle, end]);
+        made.surfaces.push([number, vertex, made.z.len() as u32, triangle, made.reached]);
+        Ok(())
+    }
+
+    /// The triangles of a leaf near columns, as the search for distances takes them: `put` gets the cell of each.
+    pub(super) fn cells_of(
+        &self,
+        batch: usize,
+        leaf: &Leaf,
+        id: u32,
+        room: &mut LeafRoom,
+        mut put: impl FnMut([usize; 2], CellTriangle),
+    ) -> Result<(), InterpError> {
+        let LeafRoom { code, triangles, corners, places } = room;
+        triangles.clear();
+        corners.clear();
+        self.rows_of("tree-triangles", batch, &leaf.code, code, triangles)?;
+        self.rows_of("tree-corners", batch, &leaf.corners, code, corners)?;
+        let damaged = || InterpError::DamagedArray { array: "tree-corners".to_owned() };
+        let [Some([first, ..]), Some([last, ..])] = [corners.first(), corners.last()] else { return Err(damaged()) };
+        let first = *first;
+        // What other leaves left in it is not asked for: triangles have no vertices but those of their own leaf.
+        places.resize(places.len().max(last.checked_sub(first).ok_or_else(damaged)? as usize + 1), 0);
+        for ([number, ..], place) in corners.iter().zip(0..) {
+            *places.get_mut(number.wrapping_sub(first) as usize).ok_or_else(damaged)? = place;
+        }
+        for numbers in triangles {
+            let mut vertices = [Vertex { x: 0, y: 0, z: 0.0 }; 3];
+            for (vertex, number) in vertices.iter_mut().zip(numbers) {
+                let place = *places.get(number.wrapping_sub(first) as usize).ok_or_else(damaged)?;
+                let [_, x, y, z] = *corners.get(place as usize).ok_or_else(damaged)?;
+                *vertex = vertex_of([x, y, z]);
+            }
+            let (cell, triangle) = crate::distance::cell_triangle(vertices, id);
+            put(cell, triangle);
+        }
         Ok(())
     }
 
@@ -177,10 +222,13 @@ impl Bricks<'_> {
         let mut leaves = vec![0];
         for batch in 0..batches {
             let before = starts[batch];
+            let surfaces = self.count::<[u32; 5]>("tree-surfaces", batch)?;
+            let mut last = [[0; 5]];
+            self.read_at("tree-surfaces", batch, surfaces.saturating_sub(1), &mut last)?;
             starts.push(ForestCounts {
                 vertices: before.vertices + self.count::<f32>("tree-z", batch)?,
-                triangles: before.triangles + self.count::<[u32; 3]>("tree-triangles", batch)?,
-                surfaces: before.surfaces + self.count::<[u32; 5]>("tree-surfaces", batch)?,
+                triangles: before.triangles + last[0][4] as usize,
+                surfaces: before.surfaces + surfaces,
                 nodes: before.nodes + self.count::<[u32; 6]>("tree-nodes", batch)?,
             });
             leaves.push(leaves[batch] + self.count::<Leaf>("tree-leaves", batch)?);
@@ -193,11 +241,19 @@ impl Bricks<'_> {
     }
 }
 
-/// The cell of a triangle.
-fn cell_of(vertices: &[Vertex], corners: [u32; 3]) -> Cell {
-    let corners = corners.map(|v| vertices[v as usize]);
-    let (cell, triangle) = crate::distance::cell_triangle(corners, 0);
-    Cell { x: cell[0] as u16, y: cell[1] as u16, z: triangle.z, corner: triangle.code }
+/// A vertex of its trace and the bits of its z.
+fn vertex_of([x, y, z]: [u32; 3]) -> Vertex {
+    Vertex { x: x as u16, y: y as u16, z: f32::from_bits(z) }
+}
+
+/// Room for one leaf after the other.
+#[derive(Default)]
+pub(super) struct LeafRoom {
+    code: Vec<u8>,
+    triangles: Vec<[u32; 3]>,
+    corners: Vec<Corner>,
+    /// The place of each vertex among the leaf's, from the first on.
+    places: Vec<u32>,
 }
 
 /// Finds vertices by their index; those asked for follow one another on two lines.
@@ -211,17 +267,24 @@ const NEAR: usize = 8;
 
 impl Finder<'_> {
     fn place(&mut self, index: u32) -> Option<u32> {
+        let is_at = |at: &usize| self.corners.get(*at).is_some_and(|[own, ..]| *own == index);
+        if let Some((near, at)) =
+            self.near.iter_mut().find_map(|near| [*near, *near + 1].into_iter().find(is_at).map(|at| (near, at)))
+        {
+            *near = at;
+            return Some(at as u32);
+        }
         for near in &mut self.near {
             let from = near.saturating_sub(NEAR);
             let around = &self.corners[from..(*near + NEAR).min(self.corners.len())];
-            if let (Some(first), Some(last)) = (around.first(), around.last())
-                && (first.index..=last.index).contains(&index)
+            if let (Some([first, ..]), Some([last, ..])) = (around.first(), around.last())
+                && (first..=last).contains(&&index)
             {
-                *near = from + around.iter().position(|corner| corner.index == index)?;
+                *near = from + around.iter().position(|[own, ..]| *own == index)?;
                 return Some(*near as u32);
             }
         }
-        let found = self.corners.binary_search_by_key(&index, |corner| corner.index).ok()?;
+        let found = self.corners.binary_search_by_key(&index, |[own, ..]| *own).ok()?;
         // The cursor on the nearer line goes there.
         let farther = usize::from(self.near[0].abs_diff(found) > self.near[1].abs_diff(found));
         self.near[farther] = found;
@@ -298,14 +361,31 @@ impl ForestRows for BrickForest<'_> {
     }
 
     fn triangles(&self, rows: Range<usize>) -> Result<Vec<[u32; 3]>, SourceError> {
-        self.rows(
-            "tree-triangles",
-            rows,
-            |counts| counts.triangles,
-            |before, row: &mut [u32; 3]| {
-                row.iter_mut().for_each(|corner| *corner += before.vertices as u32);
-            },
-        )
+        let mut found = Vec::with_capacity(rows.len());
+        let (mut code, mut own) = (Vec::new(), Vec::new());
+        while found.len() < rows.len() {
+            let at = rows.start + found.len();
+            let batch = self.starts.partition_point(|start| start.triangles <= at) - 1;
+            let ForestCounts { triangles: start, vertices, .. } = self.starts[batch];
+            let leaves: Vec<Leaf> = self.bricks.read("tree-leaves", batch)?;
+            let first = leaves.partition_point(|leaf| start + leaf.triangles[1] as usize <= at);
+            let before = found.len();
+            for leaf in &leaves[first..] {
+                let [from, end] = leaf.triangles.map(|triangle| start + triangle as usize);
+                if from >= rows.end {
+                    break;
+                }
+                own.clear();
+                self.bricks.rows_of("tree-triangles", batch, &leaf.code, &mut code, &mut own)?;
+                let asked = rows.start.max(from) - from..rows.end.min(end) - from;
+                let asked = own.get(asked).ok_or("triangles of a leaf are missing")?;
+                found.extend(asked.iter().map(|corners: &[u32; 3]| corners.map(|corner| corner + vertices as u32)));
+            }
+            if found.len() == before {
+                return Err("triangles of a surface are missing".into());
+            }
+        }
+        Ok(found)
     }
 
     fn surfaces(&self, rows: Range<usize>) -> Result<Vec<[u32; 5]>, SourceError> {

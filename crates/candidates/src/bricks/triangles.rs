@@ -4,10 +4,11 @@
 //! surface by surface. Vertices are named by their index in the survey until a whole surface is put together.
 
 use super::Bricks;
-use super::patch::Patch;
+use super::coded::{self, Stretch};
+use super::patch::{Patch, Values};
 use super::tiles::Halo;
 use crate::error::InterpError;
-use crate::grow::assemble::CellTriangles;
+use crate::grow::assemble::{CellTriangles, SHAPES};
 use crate::grow::links::NONE;
 use crate::surfaces::Vertex;
 use bytemuck::{Pod, Zeroable};
@@ -17,26 +18,38 @@ use std::collections::BTreeMap;
 /// workers have enough tasks.
 const TRIANGLES_OF_A_TASK: u64 = 1 << 20;
 
-/// A vertex as bricks hand it on.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct Corner {
-    /// Its index among the extrema of the survey.
-    pub(crate) index: u32,
-    pub(crate) x: u16,
-    pub(crate) y: u16,
-    pub(crate) z: f32,
+/// A vertex as bricks hand it on: its index among the extrema of the survey, its trace, and the bits of its z.
+pub(crate) type Corner = [u32; 4];
+
+/// A cell as bricks hand it on: the index of its first corner a, how much further the next along x and the next along y
+/// are, how much further than the next along x the one along both is, and its number in [`SHAPES`].
+pub(crate) type CornersOfCell = [u32; 5];
+
+/// The corners of a cell, one after the other around it ([`CellTriangles::ring`]).
+pub(crate) fn ring_of([a, b, c, d, _]: CornersOfCell) -> [u32; 4] {
+    let next = a.wrapping_add(b);
+    [a, next, next.wrapping_add(d), a.wrapping_add(c)]
 }
 
-/// What a brick has of a surface: ranges of its arrays of vertices and of triangles.
+/// The cell with such corners.
+fn cell_of(ring: [u32; 4], shape: usize) -> CornersOfCell {
+    let [a, b, d, c] = ring;
+    [a, b.wrapping_sub(a), c.wrapping_sub(a), d.wrapping_sub(b), shape as u32]
+}
+
+/// What a brick has of a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Group {
-    pub(crate) label: u32,
-    pub(crate) vertices: [u32; 2],
-    pub(crate) triangles: [u32; 2],
-    /// The first vertex, if there is one.
+    label: u32,
+    /// The trace of the first vertex and the bits of its z, if there is one.
     first: [u32; 3],
+    /// Its [`Corner`]s.
+    vertices: Stretch,
+    /// Its [`CornersOfCell`]s.
+    cells: Stretch,
+    /// Count of their triangles.
+    triangles: u64,
 }
 
 /// A surface of the whole survey, in its place.
@@ -55,9 +68,9 @@ pub(crate) struct Outline {
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Member {
-    pub(crate) brick: u32,
-    pub(crate) vertices: [u32; 2],
-    pub(crate) triangles: [u32; 2],
+    pub(crate) brick: u64,
+    pub(crate) vertices: Stretch,
+    pub(crate) cells: Stretch,
 }
 
 /// A surface while its parts are gathered: its first vertex, counts of vertices and triangles, and its members.
@@ -67,27 +80,27 @@ impl Bricks<'_> {
     /// The vertices and triangles of a brick.
     pub(crate) fn triangles(&self, brick: usize) -> Result<(), InterpError> {
         for kind in 0..self.kinds.len() {
-            let patch = self.patch(kind, brick, Halo::around(1))?;
-            let (links, labels) = (self.links(&patch)?, self.joined_labels(&patch)?);
+            let patch = self.patch(kind, brick, Halo::around(1), Values::Depths)?;
+            let (links, labels) = (self.links_on(&patch)?, self.joined_labels(&patch)?);
             let (indices, own) = (patch.indices(), patch.is_own());
             let mut used = vec![false; labels.len()];
-            let mut triangles: Vec<(u32, [u32; 3])> = Vec::new();
+            let mut cells: Vec<(u32, CornersOfCell)> = Vec::new();
             for (v, is_own) in own.into_iter().enumerate() {
-                for triangle in CellTriangles::new(&patch.extrema, &links, &labels, v as u32).triangles() {
-                    triangle.iter().for_each(|&corner| used[corner as usize] = true);
-                    if is_own {
-                        triangles.push((labels[triangle[0] as usize], triangle.map(|corner| indices[corner as usize])));
-                    }
+                let cell = CellTriangles::new(&patch.extrema, &links, &labels, v as u32);
+                cell.triangles().as_flattened().iter().for_each(|&corner| used[corner as usize] = true);
+                if let (true, Some([corner, ..])) = (is_own, cell.triangles().first()) {
+                    let ring = cell.ring.map(|corner| indices[corner as usize]);
+                    cells.push((labels[*corner as usize], cell_of(ring, cell.shape)));
                 }
             }
             // Stable, so that the order of cells stays.
-            triangles.sort_by_key(|(label, _)| *label);
+            cells.sort_by_key(|(label, _)| *label);
             let mut corners: Vec<(u32, Corner)> = Vec::new();
             for ([x, y], v, index) in patch.own_extrema().filter(|&(_, v, _)| used[v] && labels[v] != NONE) {
-                corners.push((labels[v], Corner { index, x: x as u16, y: y as u16, z: patch.extrema.z[v] }));
+                corners.push((labels[v], [index, x as u32, y as u32, patch.extrema.z[v].to_bits()]));
             }
             corners.sort_by_key(|(label, _)| *label);
-            self.write_groups(&patch, &corners, &triangles)?;
+            self.write_groups(&patch, &corners, &cells)?;
         }
         Ok(())
     }
@@ -96,27 +109,25 @@ impl Bricks<'_> {
         &self,
         patch: &Patch,
         corners: &[(u32, Corner)],
-        triangles: &[(u32, [u32; 3])],
+        cells: &[(u32, CornersOfCell)],
     ) -> Result<(), InterpError> {
         let mut groups: BTreeMap<u32, Group> = BTreeMap::new();
-        let empty = |label: u32| Group { label, vertices: [0; 2], triangles: [0; 2], first: [u32::MAX, 0, 0] };
-        let mut reached = 0;
+        let empty = |label| Group { label, first: [u32::MAX, 0, 0], ..Group::zeroed() };
+        let mut code = Vec::new();
         for same in corners.chunk_by(|a, b| a.0 == b.0) {
-            let group = groups.entry(same[0].0).or_insert_with(|| empty(same[0].0));
-            let Corner { x, y, z, .. } = same[0].1;
-            group.first = [x.into(), y.into(), z.to_bits()];
-            group.vertices = [reached, reached + same.len() as u32];
-            reached += same.len() as u32;
-        }
-        reached = 0;
-        for same in triangles.chunk_by(|a, b| a.0 == b.0) {
-            let group = groups.entry(same[0].0).or_insert_with(|| empty(same[0].0));
-            group.triangles = [reached, reached + same.len() as u32];
-            reached += same.len() as u32;
+            let (label, [_, first @ ..]) = same[0];
+            let vertices = coded::add(same.iter().map(|(_, corner)| *corner), &mut code);
+            groups.insert(label, Group { first, vertices, ..empty(label) });
         }
         let name = |array: &str| self.name(array, patch.kind);
-        self.write(&name("corners"), patch.brick, &corners.iter().map(|(_, corner)| *corner).collect::<Vec<_>>())?;
-        self.write(&name("faces"), patch.brick, &triangles.iter().map(|(_, triangle)| *triangle).collect::<Vec<_>>())?;
+        self.write(&name("corners"), patch.brick, &code)?;
+        code.clear();
+        for same in cells.chunk_by(|a, b| a.0 == b.0) {
+            let group = groups.entry(same[0].0).or_insert_with_key(|&label| empty(label));
+            group.cells = coded::add(same.iter().map(|(_, cell)| *cell), &mut code);
+            group.triangles = same.iter().map(|(_, [.., shape])| SHAPES[*shape as usize].len() as u64).sum();
+        }
+        self.write(&name("cells"), patch.brick, &code)?;
         self.write(&name("groups"), patch.brick, &groups.into_values().collect::<Vec<_>>())
     }
 
@@ -127,13 +138,12 @@ impl Bricks<'_> {
         let mut all: BTreeMap<(usize, u32), Whole> = BTreeMap::new();
         for kind in 0..self.kinds.len() {
             for brick in 0..self.tiles.count() {
-                for Group { label, vertices, triangles, first: [x, y, z] } in
+                for Group { label, first: [x, y, z], vertices, cells, triangles } in
                     self.read::<Group>(&self.name("groups", kind), brick)?
                 {
                     let (first, counts, members) = all.entry((kind, label)).or_default();
-                    counts[0] += u64::from(vertices[1] - vertices[0]);
-                    counts[1] += u64::from(triangles[1] - triangles[0]);
-                    members.push(Member { brick: brick as u32, vertices, triangles });
+                    *counts = [counts[0] + vertices.rows, counts[1] + triangles];
+                    members.push(Member { brick: brick as u64, vertices, cells });
                     if x != u32::MAX {
                         let vertex = Vertex { x: x as u16, y: y as u16, z: f32::from_bits(z) };
                         let before = |other: &Vertex| {

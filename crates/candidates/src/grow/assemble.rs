@@ -241,31 +241,38 @@ impl<'e> Numbered<'e> {
 pub(crate) struct CellTriangles {
     triangles: [[u32; 3]; 2],
     count: usize,
+    /// Its corners one after the other around it: `a`, the next along x, the next along both, the next along y.
+    pub(crate) ring: [u32; 4],
+    /// Which triangles of [`SHAPES`] they make.
+    pub(crate) shape: usize,
 }
+
+/// The triangles that a cell may be made of, by places in its ring: one where a corner is of another surface, otherwise two,
+/// split along either diagonal.
+pub(crate) const SHAPES: [&[[usize; 3]]; 6] =
+    [&[[1, 2, 3]], &[[2, 3, 0]], &[[3, 0, 1]], &[[0, 1, 2]], &[[0, 1, 2], [0, 2, 3]], &[[0, 1, 3], [1, 2, 3]]];
 
 impl CellTriangles {
     /// The triangles of the cell that begins at `a`.
     pub(crate) fn new(extrema: &Extrema, links: &Links, labels: &[u32], a: u32) -> Self {
-        let none = Self { triangles: [[0; 3]; 2], count: 0 };
+        let none = Self { triangles: [[0; 3]; 2], count: 0, ring: [0; 4], shape: 0 };
         let Some([a, b, c, d]) = links.closed(a) else { return none };
         let label = |v: u32| labels[v as usize];
-        let corners = [a, b, d, c];
+        let ring = [a, b, d, c];
         // The label that most corners have.
-        let Some(most) = corners
-            .iter()
-            .map(|&v| label(v))
-            .find(|&l| l != NONE && corners.iter().filter(|&&v| label(v) == l).count() >= 3)
+        let Some(most) =
+            ring.iter().map(|&v| label(v)).find(|&l| l != NONE && ring.iter().filter(|&&v| label(v) == l).count() >= 3)
         else {
             return none;
         };
         let steep = |v: u32, w: u32| (extrema.z[v as usize] - extrema.z[w as usize]).abs();
-        if let Some(odd) = corners.iter().position(|&v| label(v) != most) {
-            Self { triangles: [[1, 2, 3].map(|step| corners[(odd + step) % 4]), [0; 3]], count: 1 }
-        } else if steep(a, d) <= steep(b, c) {
-            Self { triangles: [[a, b, d], [a, d, c]], count: 2 }
-        } else {
-            Self { triangles: [[a, b, c], [b, d, c]], count: 2 }
+        let split = || if steep(a, d) <= steep(b, c) { 4 } else { 5 };
+        let shape = ring.iter().position(|&v| label(v) != most).unwrap_or_else(split);
+        let mut triangles = [[0; 3]; 2];
+        for (triangle, places) in triangles.iter_mut().zip(SHAPES[shape]) {
+            *triangle = places.map(|place| ring[place]);
         }
+        Self { triangles, count: SHAPES[shape].len(), ring, shape }
     }
 
     /// They, none for a cell that is not closed.
