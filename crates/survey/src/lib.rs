@@ -36,6 +36,7 @@ pub mod geometry;
 pub mod height_field;
 pub mod horizon;
 pub mod huge_pages;
+pub mod kept_memory;
 pub mod level_field;
 pub mod memory;
 pub mod mesh;

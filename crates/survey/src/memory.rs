@@ -38,8 +38,6 @@ pub(crate) fn size(bytes: Option<u64>) -> String {
 /// stages have threads of their own, held up to twice what it used.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 pub fn share_freed_memory(threads: usize) {
-    /// Blocks from this size go back to the system when they are freed.
-    const LARGE: libc::c_int = 4 << 20;
     /// Bytes that are kept for what comes next: without them a tenth of the time went into giving memory back and taking it
     /// again.
     const KEPT: libc::c_int = 16 << 20;
@@ -48,7 +46,7 @@ pub fn share_freed_memory(threads: usize) {
     // SAFETY: the call changes where later blocks come from, not those that exist; it may be made from any thread.
     unsafe {
         libc::mallopt(libc::M_ARENA_MAX, arenas);
-        libc::mallopt(libc::M_MMAP_THRESHOLD, LARGE);
+        libc::mallopt(libc::M_MMAP_THRESHOLD, crate::kept_memory::LARGE as libc::c_int);
         libc::mallopt(libc::M_TRIM_THRESHOLD, KEPT);
     }
 }

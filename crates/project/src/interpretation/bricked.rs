@@ -18,7 +18,7 @@ const PROGRAM_BYTES: u64 = 24 << 20;
 
 /// Bytes of the disk that what is spilled and the result take at most for each sample (measured), and where spilled arrays
 /// are packed.
-const BYTES_ON_DISK: [u64; 2] = [28, 16];
+const BYTES_ON_DISK: [u64; 2] = [11, 9];
 
 /// An extraction that is done in bricks.
 pub(super) struct BrickedExtraction<'a> {
@@ -37,6 +37,7 @@ impl BrickedExtraction<'_> {
         let stated = memory_bytes.saturating_sub(PROGRAM_BYTES);
         let cut = BrickSettings::within(stated, size, rayon::current_num_threads())?;
         survey::memory::share_freed_memory(cut.workers);
+        let _keeping = survey::kept_memory::keep_freed(stated / 2);
         let scratch = self.scratch(&cut)?;
         let done = self.extract(&scratch, &cut, progress);
         match &done {
