@@ -15,25 +15,29 @@ pub fn zeroed<T: Sample>(count: usize) -> Vec<T> {
 }
 
 /// Asks the system for huge pages. Where it refuses, the program works as before.
-#[cfg(target_os = "linux")]
 fn advise<T>(samples: &[T]) {
+    advise_at(samples.as_ptr() as usize, size_of_val(samples));
+}
+
+/// Asks the system for huge pages for memory that the caller owns.
+#[cfg(target_os = "linux")]
+pub(crate) fn advise_at(start: usize, bytes: usize) {
     /// The advice must begin at a page boundary; no system has smaller pages than this.
     const PAGE: usize = 4096;
-    let start = samples.as_ptr() as usize;
     let first = start.next_multiple_of(PAGE);
-    let end = (start + size_of_val(samples)) / PAGE * PAGE;
+    let end = (start + bytes) / PAGE * PAGE;
     if end <= first {
         return;
     }
     #[expect(unsafe_code, reason = "the standard library has no such advice; measured above")]
-    // SAFETY: the range lies within the vector's own memory, and the advice changes no content.
+    // SAFETY: the range lies within the caller's own memory, and the advice changes no content.
     unsafe {
         libc::madvise(first as *mut libc::c_void, end - first, libc::MADV_HUGEPAGE);
     }
 }
 
 #[cfg(not(target_os = "linux"))]
-fn advise<T>(_samples: &[T]) {}
+pub(crate) fn advise_at(_start: usize, _bytes: usize) {}
 
 #[cfg(test)]
 mod tests {

@@ -6,6 +6,7 @@
 //! [`keep_freed`] says so: what is in use and what is kept are together no more than was stated, and when more is needed
 //! what is kept goes first.
 
+use crate::huge_pages::advise_at;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -16,8 +17,8 @@ pub(crate) const LARGE: usize = 4 << 20;
 /// Blocks that are kept at most.
 const MOST: usize = 64;
 
-/// A kept block serves what is at least this share of it: one half.
-const SHARE: usize = 2;
+/// A kept block serves what is at least this share of it: a quarter.
+const SHARE: usize = 4;
 
 /// Alignment that the system's allocator gives to every block.
 const ALIGNED: usize = 16;
@@ -136,21 +137,29 @@ fn count(more: usize, less: usize) {
     }
 }
 
-/// A kept block for a request. If there is none, so many are given back that the request stays within the amount.
-fn kept_for(layout: Layout) -> Option<*mut u8> {
+/// Memory for a request, and whether it was kept; `take` asks the system for it. While blocks are kept, large ones from the
+/// system are made of huge pages, which cost fewer page faults.
+fn block_for(layout: Layout, take: impl FnOnce() -> *mut u8) -> (*mut u8, bool) {
     let within = WITHIN.load(Ordering::Relaxed);
     if within == 0 || layout.size() < LARGE || layout.align() > ALIGNED {
-        return None;
+        return (take(), false);
     }
     let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((address, _)) = kept.take(layout.size()) {
-        return Some(address as *mut u8);
+        return (address as *mut u8, true);
     }
     // What is in use has been counted with the request.
-    while IN_USE.load(Ordering::Relaxed).saturating_add(kept.bytes) > within {
-        give_back(kept.take_largest()?);
+    while IN_USE.load(Ordering::Relaxed).saturating_add(kept.bytes) > within
+        && let Some(block) = kept.take_largest()
+    {
+        give_back(block);
     }
-    None
+    drop(kept);
+    let memory = take();
+    if !memory.is_null() {
+        advise_at(memory as usize, layout.size());
+    }
+    (memory, false)
 }
 
 /// Whether a freed block is kept.
@@ -171,20 +180,18 @@ unsafe impl GlobalAlloc for ProgramMemory {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count(layout.size(), 0);
         // SAFETY: the caller's promise is passed on.
-        kept_for(layout).unwrap_or_else(|| unsafe { System.alloc(layout) })
+        block_for(layout, || unsafe { System.alloc(layout) }).0
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
         count(layout.size(), 0);
-        match kept_for(layout) {
-            Some(memory) => {
-                // SAFETY: the block has at least this size, and is the request's alone.
-                unsafe { memory.write_bytes(0, layout.size()) };
-                memory
-            }
-            // SAFETY: the caller's promise is passed on.
-            None => unsafe { System.alloc_zeroed(layout) },
+        // SAFETY: the caller's promise is passed on.
+        let (memory, was_kept) = block_for(layout, || unsafe { System.alloc_zeroed(layout) });
+        if was_kept {
+            // SAFETY: the block has at least this size, and is the request's alone.
+            unsafe { memory.write_bytes(0, layout.size()) };
         }
+        memory
     }
 
     unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
@@ -213,8 +220,8 @@ mod tests {
         assert!(kept.put((1, 300), 1000) && kept.put((2, 200), 1000) && kept.put((3, 500), 1000));
         assert!(!kept.put((4, 1), 1000));
         assert_eq!(kept.take(180), Some((2, 200)));
-        // 300 is more than twice 140, and nothing has 600.
-        assert_eq!((kept.take(140), kept.take(600)), (None, None));
+        // 300 is more than four times 70, and nothing has 600.
+        assert_eq!((kept.take(70), kept.take(600)), (None, None));
         assert_eq!((kept.take(250), kept.bytes), (Some((1, 300)), 500));
         assert_eq!((kept.take_largest(), kept.take_largest(), kept.bytes), (Some((3, 500)), None, 0));
         assert!((0..MOST).all(|n| kept.put((n, 1), 1000)) && !kept.put((0, 1), 1000));
@@ -225,7 +232,7 @@ mod tests {
     fn freed_blocks_are_served_again_zeroed_where_that_is_asked_for() {
         let layout = |size| Layout::from_size_align(size, 8).unwrap();
         let count = || KEPT.lock().unwrap().count;
-        let (large, larger) = (layout(3 << 20), layout(4 << 20));
+        let (large, larger) = (layout(6 << 20), layout(8 << 20));
         #[expect(unsafe_code, reason = "the interface of an allocator is not safe")]
         // SAFETY: every block is freed once, with its own layout, and written within it.
         unsafe {
@@ -233,7 +240,7 @@ mod tests {
             memory.write_bytes(7, larger.size());
             ProgramMemory.dealloc(memory, larger);
             assert_eq!(count(), 0);
-            let keeping = keep_freed(9 << 20);
+            let keeping = keep_freed(18 << 20);
             let memory = ProgramMemory.alloc(larger);
             memory.write_bytes(7, larger.size());
             ProgramMemory.dealloc(memory, larger);
@@ -241,13 +248,13 @@ mod tests {
             let again = ProgramMemory.alloc_zeroed(large);
             assert_eq!((again, count()), (memory, 0));
             assert!((0..large.size()).all(|at| again.add(at).read() == 0));
-            let grown = ProgramMemory.realloc(again, large, 5 << 20);
-            ProgramMemory.dealloc(grown, layout(5 << 20));
+            let grown = ProgramMemory.realloc(again, large, 10 << 20);
+            ProgramMemory.dealloc(grown, layout(10 << 20));
             assert_eq!(count(), 1);
-            // 5 MB are kept; 8 more would be too much.
-            let other = ProgramMemory.alloc(layout(8 << 20));
+            // 10 MB are kept; 16 more would be too much.
+            let other = ProgramMemory.alloc(layout(16 << 20));
             assert_eq!(count(), 0);
-            ProgramMemory.dealloc(other, layout(8 << 20));
+            ProgramMemory.dealloc(other, layout(16 << 20));
             drop(keeping);
             assert_eq!((count(), IN_USE.load(Ordering::Relaxed)), (0, 0));
         }

@@ -11,8 +11,9 @@
 //! - progress and cancellation of long computations: [`progress`];
 //! - what a user can state about a file: [`remedy`];
 //! - volumes that do not fit into memory: [`source`], [`sparse_volume`];
-//! - bytes of a file at a place: [`positional`].
-//! - what may be read and what fits into memory: [`mod@file`], [`memory`].
+//! - bytes of a file at a place: [`positional`];
+//! - what may be read and what fits into memory, and memory that is kept for what comes next: [`mod@file`], [`memory`],
+//!   [`kept_memory`].
 //!
 //! Deliberately absent: formats of files, the store, and any algorithm that combines several of these types.
 //!

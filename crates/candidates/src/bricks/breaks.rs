@@ -72,8 +72,13 @@ impl Bricks<'_> {
             let patch = self.patch(kind, brick, Halo::behind(1), Values::All)?;
             let links = self.links_on(&patch)?;
             let mut found = vec![[0u8; 2]; patch.extrema.len()];
-            // Number of the coarse brick and of the axis, sum, count.
-            let mut sums: std::collections::BTreeMap<u32, [u32; 2]> = std::collections::BTreeMap::new();
+            // Sums and counts in the coarse bricks that the brick meets, by axis.
+            let units = [&patch.own.x, &patch.own.y].map(|lines| (lines.start, lines.end.max(lines.start + 1) - 1));
+            let units = [0, 1].map(|axis| {
+                let [first, last] = <[usize; 2]>::from(units[axis]).map(|line| line / surroundings::BRICK[axis]);
+                first..last + 1
+            });
+            let mut sums = vec![[[0u32; 2]; 2]; units[0].len() * units[1].len() * counts[2]];
             for axis in 0..2 {
                 let variance = [variances[2 * axis], variances[2 * axis + 1]];
                 let ratios: Vec<[f32; 2]> = self.values(["breaks-x", "breaks-y"][axis], &patch)?;
@@ -83,16 +88,26 @@ impl Bricks<'_> {
                     let value = evidence::quarters(is_linked, amplitude, &noise, ratios[v], variance);
                     found[v][axis] = value;
                     if is_linked {
-                        let column = x / surroundings::BRICK[0] * counts[1] + y / surroundings::BRICK[1];
-                        let at = column * counts[2] + surroundings::down(patch.extrema.z[v], counts[2]);
-                        let sum = sums.entry((2 * at + axis) as u32).or_default();
-                        *sum = [sum[0] + u32::from(value.min(LOUD)), sum[1] + 1];
+                        let [x, y] = [x / surroundings::BRICK[0], y / surroundings::BRICK[1]];
+                        let column = (x - units[0].start) * units[1].len() + y - units[1].start;
+                        let down = surroundings::down(patch.extrema.z[v], counts[2]);
+                        let [sum, count] = &mut sums[column * counts[2] + down][axis];
+                        (*sum, *count) = (*sum + u32::from(value.min(LOUD)), *count + 1);
                     }
                 }
             }
             self.keep("raw-evidence", &patch, &found)?;
-            let sums: Vec<[u32; 3]> = sums.into_iter().map(|(at, [sum, count])| [at, sum, count]).collect();
-            self.write(&self.name("sums", kind), brick, &sums)?;
+            // Number of the coarse brick and of the axis, sum, count.
+            let mut found: Vec<[u32; 3]> = Vec::new();
+            for (n, sums) in sums.into_iter().enumerate() {
+                let (column, down) = (n / counts[2], n % counts[2]);
+                let [x, y] = [units[0].start + column / units[1].len(), units[1].start + column % units[1].len()];
+                let at = (x * counts[1] + y) * counts[2] + down;
+                for (axis, [sum, count]) in sums.into_iter().enumerate().filter(|(_, [_, count])| *count > 0) {
+                    found.push([(2 * at + axis) as u32, sum, count]);
+                }
+            }
+            self.write(&self.name("sums", kind), brick, &found)?;
         }
         Ok(())
     }

@@ -26,31 +26,63 @@ const BITS: u32 = 7;
 /// Tells that more bytes follow.
 const MORE: u8 = 1 << BITS;
 
+/// Rows that come one by one, coded as a run.
+pub(crate) struct Coder<const N: usize> {
+    before: [u32; N],
+    rows: u64,
+    code: Vec<u8>,
+}
+
+impl<const N: usize> Default for Coder<N> {
+    fn default() -> Self {
+        Self { before: [0; N], rows: 0, code: Vec::new() }
+    }
+}
+
+impl<const N: usize> Coder<N> {
+    pub(crate) fn push(&mut self, row: [u32; N]) {
+        add_row(self.before, row, &mut self.code);
+        self.before = row;
+        self.rows += 1;
+    }
+
+    /// Adds the run to the end of `code`.
+    pub(crate) fn append_to(self, code: &mut Vec<u8>) -> Stretch {
+        let start = code.len() as u64;
+        code.extend_from_slice(&self.code);
+        Stretch { bytes: [start, code.len() as u64], rows: self.rows }
+    }
+}
+
 /// Adds the code of rows to the end of `code`.
 pub(crate) fn add<const N: usize>(rows: impl IntoIterator<Item = [u32; N]>, code: &mut Vec<u8>) -> Stretch {
     let start = code.len() as u64;
     let (mut before, mut count) = ([0u32; N], 0);
     let rows = rows.into_iter();
     code.reserve(rows.size_hint().0 * N * 3 / 2);
-    let mut room = [[0u8; MOST]; N];
     for row in rows {
-        let room = room.as_flattened_mut();
-        let mut length = 0;
-        for (number, before) in row.into_iter().zip(before) {
-            let difference = number.wrapping_sub(before) as i32;
-            let mut rest = (difference << 1 ^ difference >> 31) as u32;
-            while rest >= u32::from(MORE) {
-                room[length] = rest as u8 | MORE;
-                rest >>= BITS;
-                length += 1;
-            }
-            room[length] = rest as u8;
-            length += 1;
-        }
-        code.extend_from_slice(&room[..length]);
+        add_row(before, row, code);
         (before, count) = (row, count + 1);
     }
     Stretch { bytes: [start, code.len() as u64], rows: count }
+}
+
+fn add_row<const N: usize>(before: [u32; N], row: [u32; N], code: &mut Vec<u8>) {
+    let mut room = [[0u8; MOST]; N];
+    let room = room.as_flattened_mut();
+    let mut length = 0;
+    for (number, before) in row.into_iter().zip(before) {
+        let difference = number.wrapping_sub(before) as i32;
+        let mut rest = (difference << 1 ^ difference >> 31) as u32;
+        while rest >= u32::from(MORE) {
+            room[length] = rest as u8 | MORE;
+            rest >>= BITS;
+            length += 1;
+        }
+        room[length] = rest as u8;
+        length += 1;
+    }
+    code.extend_from_slice(&room[..length]);
 }
 
 /// Adds so many rows to the end of `rows`; `None` where the code is another's.
@@ -142,6 +174,16 @@ mod tests {
             decode(&code[start..end], stretch.rows as usize, &mut found).unwrap();
             assert_eq!(found[1..], **run);
         }
+    }
+
+    #[test]
+    fn rows_that_come_one_by_one_are_coded_alike() {
+        let rows: Vec<[u32; 2]> = (0..200).map(|n| [n * n * n, 1 << (n % 32)]).collect();
+        let [mut together, mut one_by_one] = [vec![1, 2], vec![1, 2]];
+        let mut coder = Coder::default();
+        rows.iter().for_each(|row| coder.push(*row));
+        assert_eq!(add(rows, &mut together), coder.append_to(&mut one_by_one));
+        assert_eq!(together, one_by_one);
     }
 
     #[test]

@@ -62,7 +62,8 @@ impl Bricks<'_> {
 
     /// The triangles of leaves whose cells lie in an area, by cell of the area, in rows of [`ROW_CELLS`].
     fn cells_within(&self, leaves: &[(usize, u32, Leaf)], Area { x, y }: &Area) -> Result<Vec<CellRow>, InterpError> {
-        let mut rows: Vec<CellRow> = vec![Vec::new(); x.len().div_ceil(ROW_CELLS)];
+        let dense = (DENSE * (ROW_CELLS * y.len() * self.size[2]) as f64) as usize;
+        let mut rows: Vec<CellRow> = (0..x.len().div_ceil(ROW_CELLS)).map(|_| Vec::with_capacity(dense)).collect();
         let mut room = LeafRoom::default();
         for (batch, id, leaf) in leaves.iter().filter(|(.., leaf)| leaf.meets(x, y)) {
             self.cells_of(*batch, leaf, *id, &mut room, |[cell_x, cell_y], triangle| {

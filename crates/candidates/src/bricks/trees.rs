@@ -31,7 +31,7 @@ pub(crate) struct Leaf {
     triangles: [u32; 2],
     /// Its triangles in `tree-triangles`: numbers of the task's vertices.
     code: Stretch,
-    /// Its vertices in `tree-corners`, ascending: the number among the task's, then as in [`Corner`].
+    /// Its vertices in `tree-corners`, as its triangles need them: the number among the task's, then as in [`Corner`].
     corners: Stretch,
 }
 
@@ -136,7 +136,8 @@ impl Bricks<'_> {
     ) -> Result<(), InterpError> {
         let tree = forest::tree(vertices, &mut triangles, &self.settings.forest, progress)?;
         let [node, vertex, triangle] = [made.nodes.len() as u32, made.z.len() as u32, made.reached];
-        let mut numbers = Vec::new();
+        // The vertices of a leaf, and the leaf that each vertex was met in last, counted from 1.
+        let (mut numbers, mut met) = (Vec::new(), vec![0u32; vertices.len()]);
         for own in &tree.nodes {
             let [a, b] = own.children.map_or([NONE; 2], |children| children.map(|child| node + child));
             let [first, end] = [own.triangles.start + triangle, own.triangles.end + triangle];
@@ -152,9 +153,9 @@ impl Bricks<'_> {
                     }
                 }
                 numbers.clear();
-                numbers.extend_from_slice(triangles.as_flattened());
-                numbers.sort_unstable();
-                numbers.dedup();
+                let leaf = made.leaves.len() as u32 + 1;
+                let is_new = |&v: &u32| std::mem::replace(&mut met[v as usize], leaf) != leaf;
+                numbers.extend(triangles.as_flattened().iter().copied().filter(is_new));
                 let corner = |&v: &u32| {
                     let Vertex { x, y, z } = vertices[v as usize];
                     [v + vertex, x.into(), y.into(), z.to_bits()]
@@ -192,13 +193,11 @@ impl Bricks<'_> {
         self.rows_of("tree-triangles", batch, &leaf.code, code, triangles)?;
         self.rows_of("tree-corners", batch, &leaf.corners, code, corners)?;
         let damaged = || InterpError::DamagedArray { array: "tree-corners".to_owned() };
-        let [Some([first, ..]), Some([last, ..])] = [corners.first(), corners.last()] else { return Err(damaged()) };
-        let first = *first;
+        let numbers = || corners.iter().map(|[number, ..]| *number);
+        let (Some(first), Some(last)) = (numbers().min(), numbers().max()) else { return Err(damaged()) };
         // What other leaves left in it is not asked for: triangles have no vertices but those of their own leaf.
-        places.resize(places.len().max(last.checked_sub(first).ok_or_else(damaged)? as usize + 1), 0);
-        for ([number, ..], place) in corners.iter().zip(0..) {
-            *places.get_mut(number.wrapping_sub(first) as usize).ok_or_else(damaged)? = place;
-        }
+        places.resize(places.len().max((last - first) as usize + 1), 0);
+        numbers().zip(0..).for_each(|(number, place)| places[(number - first) as usize] = place);
         for numbers in triangles {
             let mut vertices = [Vertex { x: 0, y: 0, z: 0.0 }; 3];
             for (vertex, number) in vertices.iter_mut().zip(numbers) {

@@ -4,15 +4,15 @@
 //! surface by surface. Vertices are named by their index in the survey until a whole surface is put together.
 
 use super::Bricks;
-use super::coded::{self, Stretch};
-use super::patch::{Patch, Values};
+use super::coded::{Coder, Stretch};
+use super::patch::Values;
 use super::tiles::Halo;
 use crate::error::InterpError;
-use crate::grow::assemble::{CellTriangles, SHAPES};
-use crate::grow::links::NONE;
+use crate::grow::assemble::CellTriangles;
+use crate::grow::links::{Links, NEXT_X, NEXT_Y, NONE};
 use crate::surfaces::Vertex;
 use bytemuck::{Pod, Zeroable};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Triangles of the surfaces whose trees one task builds, unless one surface has more: few seconds of work, so that many
 /// workers have enough tasks.
@@ -22,7 +22,8 @@ const TRIANGLES_OF_A_TASK: u64 = 1 << 20;
 pub(crate) type Corner = [u32; 4];
 
 /// A cell as bricks hand it on: the index of its first corner a, how much further the next along x and the next along y
-/// are, how much further than the next along x the one along both is, and its number in [`SHAPES`].
+/// are, how much further than the next along x the one along both is, and its number in
+/// [`SHAPES`](crate::grow::assemble::SHAPES).
 pub(crate) type CornersOfCell = [u32; 5];
 
 /// The corners of a cell, one after the other around it ([`CellTriangles::ring`]).
@@ -50,6 +51,41 @@ pub(crate) struct Group {
     cells: Stretch,
     /// Count of their triangles.
     triangles: u64,
+}
+
+/// A [`Group`] while it is gathered.
+struct Part {
+    label: u32,
+    first: Option<[u32; 3]>,
+    corners: Coder<4>,
+    cells: Coder<5>,
+    triangles: u64,
+}
+
+/// Number of the part of a surface that each extremum belongs to, and the parts, still empty.
+fn parts(labels: &[u32], links: &Links) -> (Vec<u32>, Vec<Part>) {
+    let (mut part_of, mut parts, mut known) = (vec![NONE; labels.len()], Vec::new(), HashMap::new());
+    for (v, &label) in labels.iter().enumerate().filter(|(_, label)| **label != NONE) {
+        if part_of[v] == NONE {
+            part_of[v] = *known.entry(label).or_insert_with(|| {
+                parts.push(Part {
+                    label,
+                    first: None,
+                    corners: Coder::default(),
+                    cells: Coder::default(),
+                    triangles: 0,
+                });
+                parts.len() as u32 - 1
+            });
+        }
+        // Most are found along links, which is faster than by their labels.
+        for next in [NEXT_X, NEXT_Y].map(|direction| links.to[direction][v]).into_iter().filter(|next| *next != NONE) {
+            if labels[next as usize] == label {
+                part_of[next as usize] = part_of[v];
+            }
+        }
+    }
+    (part_of, parts)
 }
 
 /// A surface of the whole survey, in its place.
@@ -83,52 +119,41 @@ impl Bricks<'_> {
             let patch = self.patch(kind, brick, Halo::around(1), Values::Depths)?;
             let (links, labels) = (self.links_on(&patch)?, self.joined_labels(&patch)?);
             let (indices, own) = (patch.indices(), patch.is_own());
+            let (part_of, mut parts) = parts(&labels, &links);
             let mut used = vec![false; labels.len()];
-            let mut cells: Vec<(u32, CornersOfCell)> = Vec::new();
             for (v, is_own) in own.into_iter().enumerate() {
                 let cell = CellTriangles::new(&patch.extrema, &links, &labels, v as u32);
                 cell.triangles().as_flattened().iter().for_each(|&corner| used[corner as usize] = true);
                 if let (true, Some([corner, ..])) = (is_own, cell.triangles().first()) {
-                    let ring = cell.ring.map(|corner| indices[corner as usize]);
-                    cells.push((labels[*corner as usize], cell_of(ring, cell.shape)));
+                    let part = &mut parts[part_of[*corner as usize] as usize];
+                    part.cells.push(cell_of(cell.ring.map(|corner| indices[corner as usize]), cell.shape));
+                    part.triangles += cell.triangles().len() as u64;
                 }
             }
-            // Stable, so that the order of cells stays.
-            cells.sort_by_key(|(label, _)| *label);
-            let mut corners: Vec<(u32, Corner)> = Vec::new();
             for ([x, y], v, index) in patch.own_extrema().filter(|&(_, v, _)| used[v] && labels[v] != NONE) {
-                corners.push((labels[v], [index, x as u32, y as u32, patch.extrema.z[v].to_bits()]));
+                let part = &mut parts[part_of[v] as usize];
+                let place = [x as u32, y as u32, patch.extrema.z[v].to_bits()];
+                part.first.get_or_insert(place);
+                part.corners.push([index, place[0], place[1], place[2]]);
             }
-            corners.sort_by_key(|(label, _)| *label);
-            self.write_groups(&patch, &corners, &cells)?;
+            parts.retain(|part| part.first.is_some() || part.triangles > 0);
+            parts.sort_unstable_by_key(|part| part.label);
+            let (mut corners, mut cells) = (Vec::new(), Vec::new());
+            let groups: Vec<Group> = parts
+                .into_iter()
+                .map(|part| Group {
+                    label: part.label,
+                    first: part.first.unwrap_or([u32::MAX, 0, 0]),
+                    vertices: part.corners.append_to(&mut corners),
+                    cells: part.cells.append_to(&mut cells),
+                    triangles: part.triangles,
+                })
+                .collect();
+            self.write(&self.name("corners", kind), brick, &corners)?;
+            self.write(&self.name("cells", kind), brick, &cells)?;
+            self.write(&self.name("groups", kind), brick, &groups)?;
         }
         Ok(())
-    }
-
-    fn write_groups(
-        &self,
-        patch: &Patch,
-        corners: &[(u32, Corner)],
-        cells: &[(u32, CornersOfCell)],
-    ) -> Result<(), InterpError> {
-        let mut groups: BTreeMap<u32, Group> = BTreeMap::new();
-        let empty = |label| Group { label, first: [u32::MAX, 0, 0], ..Group::zeroed() };
-        let mut code = Vec::new();
-        for same in corners.chunk_by(|a, b| a.0 == b.0) {
-            let (label, [_, first @ ..]) = same[0];
-            let vertices = coded::add(same.iter().map(|(_, corner)| *corner), &mut code);
-            groups.insert(label, Group { first, vertices, ..empty(label) });
-        }
-        let name = |array: &str| self.name(array, patch.kind);
-        self.write(&name("corners"), patch.brick, &code)?;
-        code.clear();
-        for same in cells.chunk_by(|a, b| a.0 == b.0) {
-            let group = groups.entry(same[0].0).or_insert_with_key(|&label| empty(label));
-            group.cells = coded::add(same.iter().map(|(_, cell)| *cell), &mut code);
-            group.triangles = same.iter().map(|(_, [.., shape])| SHAPES[*shape as usize].len() as u64).sum();
-        }
-        self.write(&name("cells"), patch.brick, &code)?;
-        self.write(&name("groups"), patch.brick, &groups.into_values().collect::<Vec<_>>())
     }
 
     /// Puts the surfaces of all kinds into their order, by their first vertex, and tells which bricks have parts of them
