@@ -91,7 +91,8 @@ impl VolumeParts {
             });
         }
         let size = info.geometry.size();
-        let full = StoredArray::open(path, "0")?;
+        // Its files are still to be written, so none of them may be there.
+        let full = StoredArray::of_metadata(path, "0")?;
         let sample_type = type_of(path, &full)?;
         let live = StoredArray::open(path, "live")?.read::<u8>(&Progress::silent())?;
         let parts = Self::of(path, &info, live.into_iter().map(|live| live != 0).collect(), sample_type);
@@ -326,6 +327,18 @@ mod tests {
         assert_eq!(one.keys().collect::<Vec<_>>(), other.keys().collect::<Vec<_>>());
         assert!(one == other, "the same bytes");
         assert!(StoredVolume::open(&parted).unwrap().verify(&Progress::silent()).is_ok());
+    }
+
+    #[test]
+    fn a_volume_of_many_files_is_opened_before_any_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.zarr");
+        let size = [300, 270, 400];
+        let info = VolumeInfo::of(SurveyGeometry::regular(size, 25.0, 4.0, VerticalUnit::Metres));
+        VolumeParts::create(&path, &info, None, SampleType::Float32).unwrap();
+        let worker = VolumeParts::open(&path).unwrap();
+        assert_eq!((worker.size(0), worker.files(0).len()), (Some(size), 36));
+        assert!(StoredVolume::open(&path).is_err(), "it is no volume yet");
     }
 
     #[test]
