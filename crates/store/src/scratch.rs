@@ -6,7 +6,7 @@
 //! FOLDER/.packed        where it is there, the bytes are packed ([`crate::packed`])
 //! ```
 //!
-//! Packed parts take little more than half of the disk, and an extraction with them half as much processor time again: they
+//! Packed parts take four fifths of the disk, and an extraction with them a quarter more processor time: they
 //! are for disks that have no room for others. Which they are is chosen when the folder is made, and holds for all processes.
 //!
 //! A part is written beside its place and renamed, so that a killed program leaves whole parts only. Parts are not
