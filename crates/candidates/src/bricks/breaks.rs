@@ -73,11 +73,9 @@ impl Bricks<'_> {
             let links = self.links_on(&patch)?;
             let mut found = vec![[0u8; 2]; patch.extrema.len()];
             // Sums and counts in the coarse bricks that the brick meets, by axis.
-            let units = [&patch.own.x, &patch.own.y].map(|lines| (lines.start, lines.end.max(lines.start + 1) - 1));
-            let units = [0, 1].map(|axis| {
-                let [first, last] = <[usize; 2]>::from(units[axis]).map(|line| line / surroundings::BRICK[axis]);
-                first..last + 1
-            });
+            let [edge_x, edge_y, _] = surroundings::BRICK;
+            let units = [(&patch.own.x, edge_x), (&patch.own.y, edge_y)]
+                .map(|(lines, edge)| lines.start / edge..lines.end.div_ceil(edge));
             let mut sums = vec![[[0u32; 2]; 2]; units[0].len() * units[1].len() * counts[2]];
             for axis in 0..2 {
                 let variance = [variances[2 * axis], variances[2 * axis + 1]];
@@ -88,7 +86,7 @@ impl Bricks<'_> {
                     let value = evidence::quarters(is_linked, amplitude, &noise, ratios[v], variance);
                     found[v][axis] = value;
                     if is_linked {
-                        let [x, y] = [x / surroundings::BRICK[0], y / surroundings::BRICK[1]];
+                        let [x, y] = [x / edge_x, y / edge_y];
                         let column = (x - units[0].start) * units[1].len() + y - units[1].start;
                         let down = surroundings::down(patch.extrema.z[v], counts[2]);
                         let [sum, count] = &mut sums[column * counts[2] + down][axis];
