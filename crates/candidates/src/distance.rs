@@ -28,7 +28,6 @@ mod triangle;
 
 use crate::error::InterpError;
 use crate::forest::Forest;
-use crate::lanes::widest;
 pub(crate) use index::{BRICK as ROW_CELLS, CellRow, cell_triangle};
 use index::{CellIndex, TriangleLists};
 use rayon::prelude::*;
@@ -37,6 +36,7 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use survey::Progress;
 pub use survey::candidates::BEYOND;
+use survey::wide::widest;
 pub(crate) use triangle::CellTriangle;
 
 /// The code of the greatest distance.

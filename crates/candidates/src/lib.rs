@@ -30,7 +30,6 @@ pub mod extraction;
 pub mod extrema;
 pub mod forest;
 pub mod grow;
-mod lanes;
 pub mod surfaces;
 
 pub use distance::{CandidateColumns, DistanceSettings, LeafDistances};

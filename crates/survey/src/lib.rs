@@ -13,7 +13,8 @@
 //! - volumes that do not fit into memory: [`source`], [`sparse_volume`];
 //! - bytes of a file at a place: [`positional`];
 //! - what may be read and what fits into memory, and memory that is kept for what comes next: [`mod@file`], [`memory`],
-//!   [`kept_memory`].
+//!   [`kept_memory`];
+//! - loops for wide registers: [`wide`].
 //!
 //! Deliberately absent: formats of files, the store, and any algorithm that combines several of these types.
 //!
@@ -51,6 +52,7 @@ pub mod stratigraphy;
 pub mod topology;
 pub mod volume;
 pub mod well;
+pub mod wide;
 
 pub use candidates::{CandidateBox, CandidateInfo, ForestTables};
 pub use fault::Fault;

@@ -214,7 +214,7 @@ impl<'a> Solution<'a> {
 
     /// τ at the vertices.
     fn vertex_times(&self) -> Vec<f32> {
-        self.system().at_vertices(&self.s, 1.0)
+        self.system().at_vertices(&self.s)
     }
 
     /// Takes weight from the vertices that do not fit their hub.

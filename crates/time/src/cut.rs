@@ -78,6 +78,13 @@ impl Cut {
         across as f32 - self.at(line, z)
     }
 
+    /// Least and greatest place across on each line along the fault; none lies between them where there is no fault.
+    pub fn extents(&self) -> Vec<[f32; 2]> {
+        let none = [f32::INFINITY, f32::NEG_INFINITY];
+        let both = |[least, most]: [f32; 2], place: &f32| [least.min(*place), most.max(*place)];
+        self.place.chunks(self.size[1].max(1)).map(|row| row.iter().fold(none, both)).collect()
+    }
+
     /// Whether the fault lies between two points that it both has a side for.
     #[inline]
     pub fn separates(&self, a: [usize; 2], za: f32, b: [usize; 2], zb: f32) -> bool {

@@ -62,6 +62,7 @@ mod solve;
 mod start;
 mod stencil;
 mod throws;
+mod vectors;
 
 #[cfg(test)]
 mod tests;

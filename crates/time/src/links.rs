@@ -8,6 +8,7 @@ use crate::cut::Cut;
 use crate::hubs::Hubs;
 use crate::interpretation::KnownHorizon;
 use rayon::prelude::*;
+use survey::huge_pages;
 
 /// Dips are stored in steps of this part of a sample.
 pub const DIP_STEP: f32 = 1.0 / 256.0;
@@ -80,9 +81,16 @@ impl Links {
     /// Links along the dips of the hubs, cut at faults, and weak through unconformities.
     pub fn new(hubs: &Hubs, cuts: &[Cut], horizons: &[KnownHorizon]) -> Self {
         let [nx, ny, nz] = hubs.size;
+        let extents: Vec<Vec<[f32; 2]>> = cuts.iter().map(Cut::extents).collect();
+        // Whether a fault comes within a distance of a trace, at any depth.
+        let is_near = |n: usize, trace: [usize; 2], distance: f32| {
+            let [across, line] = cuts[n].split(trace);
+            let [least, most] = extents[n][line];
+            across as f32 >= least - distance && across as f32 <= most + distance
+        };
         let jumps: Vec<Vec<f32>> = horizons.iter().filter_map(|horizon| jumps(horizon, hubs.size)).collect();
         let line = |axis: usize| -> (Vec<i16>, Vec<u8>) {
-            let (mut dips, mut weights) = (vec![0i16; nx * ny * nz], vec![0u8; nx * ny * nz]);
+            let (mut dips, mut weights) = (huge_pages::zeroed(nx * ny * nz), huge_pages::zeroed(nx * ny * nz));
             let lines = dips.par_chunks_mut(ny * nz).zip(weights.par_chunks_mut(ny * nz)).enumerate();
             lines.for_each(|(x, (dips, weights))| {
                 let (mut by_hub, mut depths) = (Vec::new(), Vec::new());
@@ -93,11 +101,18 @@ impl Links {
                     if next[0] < nx && next[1] < ny {
                         shared(hubs, x * ny + y, next[0] * ny + next[1], &mut by_hub, &mut depths);
                         fill(&depths, dips, weights);
-                        cuts.iter().for_each(|cut| cut_links(cut, [x, y], next, dips, weights));
+                        let steepest = dips.iter().map(|dip| dip.unsigned_abs()).max().unwrap_or(0);
+                        let reach = NEAR_FAULT + 0.5 * f32::from(steepest) * DIP_STEP;
+                        for (n, cut) in cuts.iter().enumerate() {
+                            if is_near(n, [x, y], reach) || is_near(n, next, reach) {
+                                cut_links(cut, [x, y], next, dips, weights);
+                            }
+                        }
                         let traces = [x * ny + y, next[0] * ny + next[1]];
                         jumps.iter().for_each(|jump| weaken(traces.map(|trace| jump[trace]), dips, weights));
                     }
-                    cuts.iter().for_each(|cut| mark_below(cut, [x, y], weights));
+                    let near = cuts.iter().enumerate().filter(|(n, _)| is_near(*n, [x, y], 1.0));
+                    near.for_each(|(_, cut)| mark_below(cut, [x, y], weights));
                     if axis == 1 {
                         jumps.iter().for_each(|jump| mark_jump(jump[x * ny + y], weights));
                     }

@@ -11,8 +11,9 @@
 use crate::hubs::Hubs;
 use crate::links::{CUT_BELOW, DIP_STEP, Links, WEIGHT_STEP};
 use crate::stencil::{Stencils, is_steep};
+use crate::vectors::{advance, dot, turn};
 use rayon::prelude::*;
-use survey::{Cancelled, Progress};
+use survey::{Cancelled, Progress, huge_pages};
 
 /// Two points that have the same time: one on either side of a fault.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -137,19 +138,19 @@ impl System<'_> {
         self.hubs.size
     }
 
-    /// Calls `first(line, its part of out)` for all inlines, then `pair(room, traces, dips, weights, trace a, trace b)` for
+    /// Calls `first(room, line, its part of out)` for all inlines, then `pair(room, traces, dips, weights, trace a, trace b)` for
     /// all pairs of neighbouring traces: those of an inline right after it, while it is in the cache.
     fn each_line(
         &self,
         out: &mut [f32],
-        first: impl Fn(usize, &mut [f32]) + Sync,
+        first: impl Fn(&mut Stencils, usize, &mut [f32]) + Sync,
         pair: impl Fn(&mut Stencils, [usize; 2], &[i16], &[u8], &mut [f32], &mut [f32]) + Sync,
     ) {
         let [nx, ny, nz] = self.size();
         let line = ny * nz;
         out.par_chunks_mut(line).enumerate().for_each(|(x, out)| {
-            first(x, out);
             let mut stencils = Stencils::new(nz);
+            first(&mut stencils, x, out);
             for y in 0..ny - 1 {
                 let at = (x * ny + y) * nz;
                 let (a, b) = out.split_at_mut((y + 1) * nz);
@@ -182,11 +183,17 @@ impl System<'_> {
         }
     }
 
-    /// τ at every vertex of the hubs, or s where `offset` is 0.
-    pub fn at_vertices(&self, s: &[f32], offset: f32) -> Vec<f32> {
-        let [_, ny, nz] = self.size();
+    /// τ at every vertex of the hubs.
+    pub fn at_vertices(&self, s: &[f32]) -> Vec<f32> {
         let mut value = vec![0.0f32; self.hubs.z.len()];
-        self.hubs.split_inlines(&mut value).into_par_iter().enumerate().for_each(|(x, value)| {
+        self.interpolate_vertices(s, 1.0, &mut value);
+        value
+    }
+
+    /// s + offset z at every vertex of the hubs.
+    fn interpolate_vertices(&self, s: &[f32], offset: f32, value: &mut [f32]) {
+        let [_, ny, nz] = self.size();
+        self.hubs.split_inlines(value).into_par_iter().enumerate().for_each(|(x, value)| {
             let first = self.hubs.on_inline(x).start;
             for y in 0..ny {
                 let trace = x * ny + y;
@@ -196,25 +203,23 @@ impl System<'_> {
                 }
             }
         });
-        value
     }
 
     /// Half the gradient of what is minimised at `s`; with `offset` 0 that of its quadratic part: the matrix times s.
-    fn gradient(&self, s: &[f32], offset: f32, out: &mut [f32]) {
+    /// `value` is room for a number at every vertex.
+    fn gradient(&self, s: &[f32], offset: f32, value: &mut [f32], out: &mut [f32]) {
         let [_, ny, nz] = self.size();
-        let mut value = self.at_vertices(s, offset);
-        let times = self.hubs.means(&value);
-        value.par_iter_mut().zip(&self.hubs.hub).zip(&self.hubs.weight).for_each(|((value, &hub), &weight)| {
-            *value = weight * (*value - times[hub as usize]);
-        });
-        let along = |x: usize, out: &mut [f32]| {
+        self.interpolate_vertices(s, offset, value);
+        let times = self.hubs.means(value);
+        let along = |stencils: &mut Stencils, x: usize, out: &mut [f32]| {
             for y in 0..ny {
                 let trace = x * ny + y;
                 let own = trace * nz..(trace + 1) * nz;
                 let out = &mut out[y * nz..(y + 1) * nz];
-                self.along_trace(&s[own.clone()], &self.links.weight[1][own], out);
+                stencils.along(self.smoothness, &s[own.clone()], &self.links.weight[1][own], out);
                 for v in self.hubs.on_trace(trace) {
-                    spread(out, self.hubs.z[v], value[v]);
+                    let off = value[v] - times[self.hubs.hub[v] as usize];
+                    spread(out, self.hubs.z[v], self.hubs.weight[v] * off);
                 }
             }
         };
@@ -242,38 +247,17 @@ impl System<'_> {
         }
     }
 
-    /// The terms of one trace: its first and second differences, not across faults and unconformities.
-    fn along_trace(&self, s: &[f32], weights: &[u8], out: &mut [f32]) {
-        let [e1, e2] = self.smoothness;
-        let nz = s.len();
-        out.fill(0.0);
-        for z in 0..nz.saturating_sub(1) {
-            if weights[z] & CUT_BELOW != 0 {
-                continue;
-            }
-            let step = e1 * (s[z + 1] - s[z]);
-            out[z] -= step;
-            out[z + 1] += step;
-            if z > 0 && weights[z - 1] & CUT_BELOW == 0 {
-                let bend = e2 * (s[z + 1] - 2.0 * s[z] + s[z - 1]);
-                out[z - 1] += bend;
-                out[z] -= 2.0 * bend;
-                out[z + 1] += bend;
-            }
-        }
-    }
-
     /// The inverse of the diagonal of the matrix, without what the means of hubs take off it.
     fn inverse_diagonal(&self) -> Vec<f32> {
         let [nx, ny, nz] = self.size();
         let [e1, e2] = self.smoothness;
-        let mut out = vec![0.0f32; nx * ny * nz];
+        let mut out = huge_pages::zeroed(nx * ny * nz);
         let square = |out: &mut [f32], z: f32, weight: f32| {
             let (low, share) = node(z, nz);
             out[low] += weight * (1.0 - share) * (1.0 - share);
             out[(low + 1).min(nz - 1)] += weight * share * share;
         };
-        let along = |x: usize, out: &mut [f32]| {
+        let along = |_: &mut Stencils, x: usize, out: &mut [f32]| {
             for y in 0..ny {
                 let trace = x * ny + y;
                 let out = &mut out[y * nz..(y + 1) * nz];
@@ -323,68 +307,32 @@ impl System<'_> {
     ) -> Result<usize, Cancelled> {
         let line = self.size()[1] * self.size()[2];
         let inverse = self.inverse_diagonal();
-        let mut image = vec![0.0f32; s.len()];
-        let mut residual = vec![0.0f32; s.len()];
+        let mut image = huge_pages::zeroed(s.len());
+        let mut residual = huge_pages::zeroed(s.len());
+        let mut value = vec![0.0f32; self.hubs.z.len()];
         // What the residual is at s = 0 measures how far the start is.
-        self.gradient(&residual, 1.0, &mut image);
+        self.gradient(&residual, 1.0, &mut value, &mut image);
         let at_rest = dot(&image, &image, Some(&inverse), line).sqrt();
-        self.gradient(s, 1.0, &mut residual);
+        self.gradient(s, 1.0, &mut value, &mut residual);
         residual.par_iter_mut().for_each(|r| *r = -*r);
-        let mut direction: Vec<f32> = residual.par_iter().zip(&inverse).map(|(r, d)| r * d).collect();
+        let mut direction = huge_pages::zeroed(s.len());
+        turn(0.0, &mut direction, [&residual, &inverse], line);
         let mut size = dot(&residual, &residual, Some(&inverse), line);
         let mut steps = 0;
         while steps < most && size.sqrt() > tolerance * at_rest && size > 0.0 {
             progress.step(1)?;
-            self.gradient(&direction, 0.0, &mut image);
+            self.gradient(&direction, 0.0, &mut value, &mut image);
             let along = dot(&direction, &image, None, line);
             if along <= 0.0 {
                 break;
             }
             let step = (size / along) as f32;
-            let lines = s.par_chunks_mut(line).zip(residual.par_chunks_mut(line)).zip(direction.par_chunks(line));
-            let next = lines.zip(image.par_chunks(line)).zip(inverse.par_chunks(line));
-            let next: Vec<f64> = next
-                .map(|((((s, residual), direction), image), inverse)| {
-                    for (((s, r), p), a) in s.iter_mut().zip(residual.iter_mut()).zip(direction).zip(image) {
-                        *s += step * p;
-                        *r -= step * a;
-                    }
-                    products(residual, residual, Some(inverse))
-                })
-                .collect();
-            let next: f64 = next.iter().sum();
+            let next = advance(step, [&mut *s, &mut residual], [&direction, &image, &inverse], line);
             let keep = (next / size) as f32;
-            let residuals = residual.par_iter().zip(&inverse);
-            direction.par_iter_mut().zip(residuals).for_each(|(p, (r, d))| *p = r * d + keep * *p);
+            turn(keep, &mut direction, [&residual, &inverse], line);
             size = next;
             steps += 1;
         }
         Ok(steps)
     }
-}
-
-/// Σ a b, or Σ a b w, summed line by line.
-fn dot(a: &[f32], b: &[f32], weights: Option<&[f32]>, line: usize) -> f64 {
-    let own = |n: usize, len: usize| weights.map(|weights| &weights[n * line..n * line + len]);
-    let lines = a.par_chunks(line).zip(b.par_chunks(line)).enumerate();
-    let parts: Vec<f64> = lines.map(|(n, (a, b))| products(a, b, own(n, a.len()))).collect();
-    parts.iter().sum()
-}
-
-/// Sums that run side by side, so that none waits for another.
-const LANES: usize = 8;
-
-/// Σ a b, or Σ a b w.
-fn products(a: &[f32], b: &[f32], weights: Option<&[f32]>) -> f64 {
-    let mut sums = [0.0f64; LANES];
-    let whole = a.len() / LANES * LANES;
-    let add = |sums: &mut [f64; LANES], n: usize| {
-        for (lane, sum) in sums.iter_mut().enumerate() {
-            let weighed = weights.map_or(b[n + lane], |weights| b[n + lane] * weights[n + lane]);
-            *sum += f64::from(a[n + lane] * weighed);
-        }
-    };
-    (0..whole).step_by(LANES).for_each(|n| add(&mut sums, n));
-    let rest: f64 = (whole..a.len()).map(|n| f64::from(a[n] * weights.map_or(b[n], |weights| b[n] * weights[n]))).sum();
-    sums.iter().sum::<f64>() + rest
 }

@@ -22,32 +22,50 @@ pub struct Neighbours {
     distance: f32,
 }
 
-/// The pairs of hubs that follow one another on a trace without a fault between them.
+/// What lies between a vertex and the next of its trace.
+#[derive(Clone, Copy, PartialEq)]
+enum Below {
+    /// A fault, or there is none.
+    Nothing,
+    /// Beds.
+    Beds,
+    /// An unconformity.
+    Jump,
+}
+
+/// The pairs of hubs that follow one another on a trace without a fault between them, ascending.
 pub fn neighbours(hubs: &Hubs, links: &Links) -> Vec<Neighbours> {
-    let [nx, ny, nz] = hubs.size;
-    let mut found: Vec<([u32; 2], f32, bool)> = (0..nx * ny)
-        .into_par_iter()
-        .flat_map_iter(|trace| {
+    let [_, ny, nz] = hubs.size;
+    let mut below = vec![Below::Nothing; hubs.z.len()];
+    hubs.split_inlines(&mut below).into_par_iter().enumerate().for_each(|(x, below)| {
+        let first = hubs.on_inline(x).start;
+        for trace in x * ny..(x + 1) * ny {
             let own = hubs.on_trace(trace);
-            own.clone().zip(own.skip(1)).filter_map(move |(v, w)| {
-                let between = hubs.z[v] as usize..(hubs.z[w].ceil() as usize).min(nz - 1);
-                let cut = between.clone().any(|z| links.is_cut_below(trace * nz + z));
-                let jumps = between.into_iter().any(|z| links.is_broken_below(trace * nz + z));
-                (!cut && hubs.hub[v] != hubs.hub[w]).then(|| ([hubs.hub[v], hubs.hub[w]], hubs.z[w] - hubs.z[v], jumps))
-            })
-        })
-        .collect();
-    found.par_sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    found
-        .chunk_by(|a, b| a.0 == b.0)
-        .map(|same| {
+            for (v, w) in own.clone().zip(own.skip(1)).filter(|&(v, w)| hubs.hub[v] != hubs.hub[w]) {
+                let mut between = hubs.z[v] as usize..(hubs.z[w].ceil() as usize).min(nz - 1);
+                if !between.clone().any(|z| links.is_cut_below(trace * nz + z)) {
+                    let jumps = between.any(|z| links.is_broken_below(trace * nz + z));
+                    below[v - first] = if jumps { Below::Jump } else { Below::Beds };
+                }
+            }
+        }
+    });
+    let of_hub = |hub: usize| {
+        let own = hubs.of_hub(hub).iter().map(|&v| v as usize).filter(|&v| below[v] != Below::Nothing);
+        let mut found: Vec<(u32, f32, bool)> =
+            own.map(|v| (hubs.hub[v + 1], hubs.z[v + 1] - hubs.z[v], below[v] == Below::Jump)).collect();
+        // Stable: sums have the order of the traces.
+        found.sort_by_key(|(next, _, _)| *next);
+        let pair = |same: &[(u32, f32, bool)]| {
             let sum: f64 = same.iter().map(|(_, distance, _)| f64::from(*distance)).sum();
             // Through an unconformity distances tell next to nothing.
             let through = same.iter().filter(|(_, _, jumps)| *jumps).count();
             let count = (same.len() - through) as f32 + THROUGH * through as f32;
-            Neighbours { hubs: same[0].0, count, distance: (sum / same.len() as f64) as f32 }
-        })
-        .collect()
+            Neighbours { hubs: [hub as u32, same[0].0], count, distance: (sum / same.len() as f64) as f32 }
+        };
+        found.chunk_by(|a, b| a.0 == b.0).map(pair).collect::<Vec<_>>()
+    };
+    (0..hubs.len()).into_par_iter().flat_map_iter(of_hub).collect()
 }
 
 /// The same for the hubs beside the two ends of ties.

@@ -10,8 +10,8 @@
 use super::index::{BRICK, Cell, CellIndex, INTERVAL};
 use super::triangle::{CellTriangle, FromColumn, LANES, greater, lesser};
 use super::{BEYOND, BlockRows, DistanceSettings};
-use crate::lanes::Wide;
 use std::ops::Range;
+use survey::wide::Wide;
 
 /// Samples that are searched together: one interval of the index.
 const RUN: usize = INTERVAL;
@@ -33,6 +33,8 @@ pub(crate) struct ColumnBlock<'a, 'r> {
 }
 
 impl Wide for ColumnBlock<'_, '_> {
+    type Output = ();
+
     #[inline(always)]
     fn run(self) {
         let Self { size: [_, _, nz], settings, index, x, y, rows } = self;

@@ -17,8 +17,8 @@
 use super::evidence::{Noise, begins};
 use super::links::{Links, NEXT_X, NEXT_Y, NONE};
 use crate::extrema::Extrema;
-use crate::lanes::{Wide, widest};
 use rayon::prelude::*;
+use survey::wide::{Wide, widest};
 use survey::{Cancelled, Progress};
 
 /// Samples of a cell: within it the steepest scanned plane shifts by one and a half traces.
@@ -105,6 +105,8 @@ struct Scan<'a> {
 }
 
 impl Wide for Scan<'_> {
+    type Output = ();
+
     #[inline(always)]
     fn run(self) {
         let Self { grid, along, striking, best } = self;

@@ -27,9 +27,9 @@ use super::medium::{FieldMedium, Zone};
 use super::samples::{BATCH, IndexPositions, NO_DATA_BELOW, VolumeSamples};
 use super::stretches::stretches;
 use super::table::absorbed;
-use super::wide::{Loops, widest};
 use crate::visible::{Ray, Solid};
 use glam::{Mat3, Vec3};
+use survey::wide::{Wide, widest};
 
 /// Number of rays in a bundle.
 pub const RAYS: usize = 64;
@@ -82,7 +82,7 @@ struct Bundle<'b> {
 /// The march of a bundle, as a loop for wide registers.
 struct March<'m, 'b>(&'m mut Bundle<'b>);
 
-impl Loops for March<'_, '_> {
+impl Wide for March<'_, '_> {
     type Output = ();
 
     #[inline(always)]

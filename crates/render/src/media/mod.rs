@@ -35,7 +35,6 @@ pub mod shell;
 mod slices;
 mod stretches;
 pub mod table;
-mod wide;
 mod windows;
 
 pub use settings::{

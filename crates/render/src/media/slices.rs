@@ -15,13 +15,13 @@ use super::medium::{FieldMedium, Zone};
 use super::samples::{BATCH, IndexPositions, NO_DATA_BELOW, VolumeSamples};
 use super::stretches::stretches;
 use super::table::absorbed;
-use super::wide::{Loops, widest};
 use super::windows::{CellWindow, windows};
 use crate::camera::View;
 use crate::visible::{Ray, Solid};
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use survey::block::VoxelBox;
+use survey::wide::{Wide, widest};
 use survey::{Cancelled, Progress};
 
 /// λ and E at the front of every slice, in its window: row by row, slice by slice.
@@ -259,7 +259,7 @@ struct Blurring<'p> {
     carried: &'p mut [f32],
 }
 
-impl Loops for Blurring<'_> {
+impl Wide for Blurring<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -322,7 +322,7 @@ struct Waiting {
     filled: usize,
 }
 
-impl Loops for Occluding<'_> {
+impl Wide for Occluding<'_> {
     type Output = ();
 
     #[inline(always)]
