@@ -8,12 +8,12 @@ use crate::known::{hide_chaos, hide_unknown, make_monotone, open_jumps, pin};
 use crate::links::Links;
 use crate::matches::Timed;
 use crate::merge::merge;
-use crate::solve::{System, Tie};
+use crate::solve::{Room, System, Tie};
 use crate::start;
 use crate::throws::{Throw, throw_of, ties};
 use interp::Surfaces;
 use serde::{Deserialize, Serialize};
-use survey::{Progress, Volume};
+use survey::{Progress, Volume, huge_pages};
 
 /// Settings of geologic time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -159,6 +159,7 @@ struct Solution<'a> {
     links: Links,
     ties: Vec<Tie>,
     s: Vec<f32>,
+    room: Room,
     steps: usize,
 }
 
@@ -186,10 +187,10 @@ impl<'a> Solution<'a> {
         near.extend(start::tied(&hubs, &wells, None));
         let ties = spanning_ties(volume, &hubs, &links, cuts, &mut near);
         let times = start::hub_times(hubs.len(), &near);
-        let mut s = vec![0.0f32; surfaces.size.iter().product()];
+        let mut s = huge_pages::zeroed(surfaces.size.iter().product());
         let of_hub = |v: usize| times[hubs.hub[v] as usize] as f32 - hubs.z[v];
         start::add_between(&hubs, &links, of_hub, &mut s, progress)?;
-        Ok(Self { volume, cuts, horizons, wells, settings, hubs, links, ties, s, steps: 0 })
+        Ok(Self { volume, cuts, horizons, wells, settings, hubs, links, ties, s, room: Room::default(), steps: 0 })
     }
 
     fn system(&self) -> System<'_> {
@@ -206,8 +207,10 @@ impl<'a> Solution<'a> {
     fn minimise(&mut self, stage: &str, progress: &Progress) -> Result<(), TimeError> {
         progress.begin(stage, self.settings.most_steps as u64);
         let mut s = std::mem::take(&mut self.s);
-        let done = self.system().minimise(&mut s, self.settings.most_steps, self.settings.tolerance, progress);
-        self.s = s;
+        let mut room = std::mem::take(&mut self.room);
+        let TimeSettings { most_steps, tolerance, .. } = *self.settings;
+        let done = self.system().minimise(&mut s, &mut room, most_steps, tolerance, progress);
+        (self.s, self.room) = (s, room);
         self.steps += done?;
         Ok(())
     }
@@ -240,6 +243,7 @@ impl<'a> Solution<'a> {
 
     /// τ, monotone, and NaN where it is not known.
     fn finish(mut self) -> Result<GeologicTime, TimeError> {
+        drop(std::mem::take(&mut self.room));
         let size = self.volume.size();
         let voxels = size.iter().product::<usize>().max(1) as f64;
         open_jumps(&mut self.s, size, self.horizons);

@@ -3,6 +3,7 @@
 
 use crate::hubs::Hubs;
 use crate::links::Links;
+use rayon::prelude::*;
 
 /// A group of hubs that is growing.
 struct Group {
@@ -68,7 +69,8 @@ pub fn merge(hubs: &mut Hubs, links: &Links, times: &[f32], tolerance: f64) -> u
                 into.count += own.len();
                 into.time = sum / into.count as f64;
                 into.places.extend(own);
-                into.places.sort_unstable();
+                // Two ascending runs: the stable sort merges them in one pass.
+                into.places.sort();
                 group_of[hub] = group as u32;
             }
             None => {
@@ -84,17 +86,20 @@ pub fn merge(hubs: &mut Hubs, links: &Links, times: &[f32], tolerance: f64) -> u
 
 /// Trace and part of the trace of every vertex.
 fn places(hubs: &Hubs, links: &Links) -> Vec<u64> {
-    let [nx, ny, nz] = hubs.size;
-    let mut places = Vec::with_capacity(hubs.z.len());
-    for trace in 0..nx * ny {
-        let (mut part, mut at) = (0u64, 0usize);
-        for v in hubs.on_trace(trace) {
-            while at < (hubs.z[v] as usize).min(nz - 1) {
-                part += u64::from(links.is_cut_below(trace * nz + at));
-                at += 1;
+    let [_, ny, nz] = hubs.size;
+    let mut places = vec![0; hubs.z.len()];
+    hubs.split_inlines(&mut places).into_par_iter().enumerate().for_each(|(x, places)| {
+        let mut places = places.iter_mut();
+        for trace in x * ny..(x + 1) * ny {
+            let (mut part, mut at) = (0u64, 0usize);
+            for (v, place) in hubs.on_trace(trace).zip(&mut places) {
+                while at < (hubs.z[v] as usize).min(nz - 1) {
+                    part += u64::from(links.is_cut_below(trace * nz + at));
+                    at += 1;
+                }
+                *place = (trace as u64) << 8 | part.min(255);
             }
-            places.push((trace as u64) << 8 | part.min(255));
         }
-    }
+    });
     places
 }

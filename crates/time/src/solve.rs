@@ -39,6 +39,30 @@ pub struct Anchor {
     pub weight: f32,
 }
 
+/// What a minimisation works in, kept for the next one. Fresh memory costs more than a step.
+#[derive(Debug, Default)]
+pub struct Room {
+    /// Of every voxel.
+    image: Vec<f32>,
+    residual: Vec<f32>,
+    direction: Vec<f32>,
+    inverse: Vec<f32>,
+    /// Of every vertex of the hubs.
+    value: Vec<f32>,
+}
+
+impl Room {
+    /// Makes room for so many voxels and vertices, where it is not there already.
+    fn fit(&mut self, voxels: usize, vertices: usize) {
+        for all in [&mut self.image, &mut self.residual, &mut self.direction, &mut self.inverse] {
+            if all.len() != voxels {
+                *all = huge_pages::zeroed(voxels);
+            }
+        }
+        self.value.resize(vertices, 0.0);
+    }
+}
+
 /// What is minimised.
 pub struct System<'a> {
     /// Patches of one time.
@@ -248,10 +272,9 @@ impl System<'_> {
     }
 
     /// The inverse of the diagonal of the matrix, without what the means of hubs take off it.
-    fn inverse_diagonal(&self) -> Vec<f32> {
-        let [nx, ny, nz] = self.size();
+    fn inverse_diagonal(&self, out: &mut [f32]) {
+        let [_, ny, nz] = self.size();
         let [e1, e2] = self.smoothness;
-        let mut out = huge_pages::zeroed(nx * ny * nz);
         let square = |out: &mut [f32], z: f32, weight: f32| {
             let (low, share) = node(z, nz);
             out[low] += weight * (1.0 - share) * (1.0 - share);
@@ -268,7 +291,7 @@ impl System<'_> {
                 }
             }
         };
-        self.each_line(&mut out, along, |_, _, dips, weights, a, b| {
+        self.each_line(out, along, |_, _, dips, weights, a, b| {
             each_link(
                 dips,
                 weights,
@@ -290,7 +313,6 @@ impl System<'_> {
             square(&mut out[from..from + nz], anchor.z, anchor.weight);
         }
         out.par_iter_mut().for_each(|d| *d = 1.0 / *d);
-        out
     }
 
     /// Moves `s` towards the minimum, until the residual has fallen to `tolerance` of what it was at s = 0 or after
@@ -301,35 +323,35 @@ impl System<'_> {
     pub fn minimise(
         &self,
         s: &mut [f32],
+        room: &mut Room,
         most: usize,
         tolerance: f64,
         progress: &Progress,
     ) -> Result<usize, Cancelled> {
         let line = self.size()[1] * self.size()[2];
-        let inverse = self.inverse_diagonal();
-        let mut image = huge_pages::zeroed(s.len());
-        let mut residual = huge_pages::zeroed(s.len());
-        let mut value = vec![0.0f32; self.hubs.z.len()];
+        room.fit(s.len(), self.hubs.z.len());
+        let Room { image, residual, direction, inverse, value } = room;
+        self.inverse_diagonal(inverse);
         // What the residual is at s = 0 measures how far the start is.
-        self.gradient(&residual, 1.0, &mut value, &mut image);
-        let at_rest = dot(&image, &image, Some(&inverse), line).sqrt();
-        self.gradient(s, 1.0, &mut value, &mut residual);
+        residual.fill(0.0);
+        self.gradient(residual, 1.0, value, image);
+        let at_rest = dot(image, image, Some(inverse), line).sqrt();
+        self.gradient(s, 1.0, value, residual);
         residual.par_iter_mut().for_each(|r| *r = -*r);
-        let mut direction = huge_pages::zeroed(s.len());
-        turn(0.0, &mut direction, [&residual, &inverse], line);
-        let mut size = dot(&residual, &residual, Some(&inverse), line);
+        turn(0.0, direction, [residual, inverse], line);
+        let mut size = dot(residual, residual, Some(inverse), line);
         let mut steps = 0;
         while steps < most && size.sqrt() > tolerance * at_rest && size > 0.0 {
             progress.step(1)?;
-            self.gradient(&direction, 0.0, &mut value, &mut image);
-            let along = dot(&direction, &image, None, line);
+            self.gradient(direction, 0.0, value, image);
+            let along = dot(direction, image, None, line);
             if along <= 0.0 {
                 break;
             }
             let step = (size / along) as f32;
-            let next = advance(step, [&mut *s, &mut residual], [&direction, &image, &inverse], line);
+            let next = advance(step, [&mut *s, &mut *residual], [&*direction, &*image, &*inverse], line);
             let keep = (next / size) as f32;
-            turn(keep, &mut direction, [&residual, &inverse], line);
+            turn(keep, direction, [residual, inverse], line);
             size = next;
             steps += 1;
         }

@@ -118,52 +118,51 @@ impl Throw {
     }
 }
 
+/// A quadratic at a line and a depth.
 fn quadratic(terms: &[f32; 6], size: [usize; 2], line: usize, z: f32) -> f32 {
-    let scaled = |at: f32, count: usize| 2.0 * at / (count.max(2) - 1) as f32 - 1.0;
-    let (u, v) = (scaled(line as f32, size[0]), scaled(z, size[1]));
-    terms[0] + terms[1] * u + terms[2] * v + terms[3] * u * u + terms[4] * u * v + terms[5] * v * v
+    let [constant, slope, bend] = on_line(terms, size[0], line);
+    let v = scaled(z, size[1]);
+    constant + v * (slope + v * bend)
+}
+
+/// A quadratic on one line, as one of depth: the terms of 1, v and v².
+fn on_line(terms: &[f32; 6], lines: usize, line: usize) -> [f32; 3] {
+    let u = scaled(line as f32, lines);
+    [terms[0] + u * (terms[1] + u * terms[3]), terms[2] + u * terms[4], terms[5]]
+}
+
+/// From −1 at the first of `count` to 1 at the last.
+fn scaled(at: f32, count: usize) -> f32 {
+    2.0 * at / (count.max(2) - 1) as f32 - 1.0
 }
 
 /// Two sides to compare.
 struct Panels {
     size: [usize; 2],
     sides: [Vec<f32>; 2],
-    /// Every so many lines and samples are compared.
-    step: [usize; 2],
+    /// Every so many lines are compared.
+    step: usize,
 }
 
 impl Panels {
     /// Correlation under a throw, a little less where little overlaps; −1 where less than enough does.
     fn score(&self, terms: &[f32; 6]) -> f32 {
         let nz = self.size[1];
-        let (mut product, mut lower, mut upper, mut both, mut there) = (0.0f32, 0.0f32, 0.0f32, 0usize, 0usize);
-        for line in (0..self.size[0]).step_by(self.step[0]) {
+        let (mut all, mut there) = ([0.0f32; 4], 0usize);
+        for line in (0..self.size[0]).step_by(self.step) {
             let row = line * nz..(line + 1) * nz;
             let (a, b) = (&self.sides[0][row.clone()], &self.sides[1][row]);
-            for z in (0..nz).step_by(self.step[1]) {
+            let [constant, slope, bend] = on_line(terms, self.size[0], line);
+            for z in 0..nz {
                 there += usize::from(a[z].is_finite() || b[z].is_finite());
-                let half = 0.5 * quadratic(terms, self.size, line, z as f32);
-                let (za, zb) = (z as f32 - half, z as f32 + half);
-                let last = (nz - 1) as f32;
-                if za < 0.0 || zb < 0.0 || za > last || zb > last {
-                    continue;
-                }
-                let (va, vb) = (interpolate(a, za), interpolate(b, zb));
-                if va.is_finite() && vb.is_finite() {
-                    product += va * vb;
-                    lower += va * va;
-                    upper += vb * vb;
-                    both += 1;
+                let v = scaled(z as f32, nz);
+                if let Some([va, vb]) = pair(a, b, z as f32, 0.5 * (constant + v * (slope + v * bend))) {
+                    let new = [va * vb, va * va, vb * vb, 1.0];
+                    all.iter_mut().zip(new).for_each(|(sum, new)| *sum += new);
                 }
             }
         }
-        let bend = BEND_COST * terms[1..].iter().map(|term| term * term).sum::<f32>();
-        let overlap = both as f32 / there.max(1) as f32;
-        if overlap < LEAST_OVERLAP {
-            -1.0
-        } else {
-            product / (lower * upper).sqrt().max(1e-9) * overlap.powf(0.25) - bend
-        }
+        scored(all, there as f32, terms)
     }
 
     /// Improves a throw term by term.
@@ -190,9 +189,96 @@ impl Panels {
     }
 }
 
-/// Lines along a fault that are compared, about; half of them and every second sample while throws are scanned.
+/// Samples of a window of depth that has one shift while throws are scanned, and steps of a shift in a sample.
+const WINDOW: usize = 8;
+const SHIFT_STEPS: f32 = 2.0;
+
+/// The sums of a score over windows of lines for every shift, so that a throw is scored by looking them up: throws are
+/// scanned by the thousand, and only the best are scored exactly.
+struct Shifts {
+    size: [usize; 2],
+    /// Greatest shift, in steps.
+    most: isize,
+    /// Every so many lines are in it.
+    step: usize,
+    /// Σ a b, Σ a², Σ b² and the count of pairs, `[line][window][shift]`.
+    sums: Vec<[f32; 4]>,
+    /// Samples that either side has.
+    there: f32,
+}
+
+impl Shifts {
+    /// The sums of panels for shifts of up to `greatest` samples.
+    fn new(panels: &Panels, greatest: f32) -> Self {
+        let [lines, nz] = panels.size;
+        let step = 2 * panels.step;
+        let most = (greatest * SHIFT_STEPS).ceil() as isize;
+        let width = (2 * most + 1) as usize;
+        let (windows, taken) = (nz.div_ceil(WINDOW), lines.div_ceil(step));
+        let mut sums = vec![[0.0f32; 4]; taken * windows * width];
+        let row = |side: usize, line: usize| &panels.sides[side][line * nz..(line + 1) * nz];
+        sums.par_chunks_mut(windows * width).enumerate().for_each(|(n, sums)| {
+            let (a, b) = (row(0, n * step), row(1, n * step));
+            for (window, sums) in sums.chunks_mut(width).enumerate() {
+                for (shift, sums) in sums.iter_mut().enumerate() {
+                    let half = 0.5 * (shift as isize - most) as f32 / SHIFT_STEPS;
+                    for z in window * WINDOW..((window + 1) * WINDOW).min(nz) {
+                        if let Some([va, vb]) = pair(a, b, z as f32, half) {
+                            let new = [va * vb, va * va, vb * vb, 1.0];
+                            sums.iter_mut().zip(new).for_each(|(sum, new)| *sum += new);
+                        }
+                    }
+                }
+            }
+        });
+        let has_any =
+            |line: usize| row(0, line).iter().zip(row(1, line)).filter(|(a, b)| a.is_finite() || b.is_finite());
+        let there = (0..lines).step_by(step).map(|line| has_any(line).count()).sum::<usize>() as f32;
+        Self { size: panels.size, most, step, sums, there }
+    }
+
+    /// About the score of a throw.
+    fn score(&self, terms: &[f32; 6]) -> f32 {
+        let [lines, nz] = self.size;
+        let width = (2 * self.most + 1) as usize;
+        let windows = nz.div_ceil(WINDOW);
+        let mut all = [0.0f32; 4];
+        for (n, line) in (0..lines).step_by(self.step).enumerate() {
+            let [constant, slope, bend] = on_line(terms, lines, line);
+            for window in 0..windows {
+                let v = scaled((window * WINDOW) as f32 + 0.5 * (WINDOW - 1) as f32, nz);
+                let shift = ((constant + v * (slope + v * bend)) * SHIFT_STEPS).round() as isize;
+                if shift.abs() <= self.most {
+                    let sums = self.sums[(n * windows + window) * width + (shift + self.most) as usize];
+                    all.iter_mut().zip(sums).for_each(|(sum, new)| *sum += new);
+                }
+            }
+        }
+        scored(all, self.there, terms)
+    }
+}
+
+/// The amplitudes of both sides half a throw above and below a sample; `None` where one of them has none there.
+#[inline]
+fn pair(a: &[f32], b: &[f32], z: f32, half: f32) -> Option<[f32; 2]> {
+    let (za, zb) = (z - half, z + half);
+    if za.min(zb) < 0.0 || za.max(zb) > (a.len() - 1) as f32 {
+        return None;
+    }
+    let (va, vb) = (interpolate(a, za), interpolate(b, zb));
+    (va.is_finite() && vb.is_finite()).then_some([va, vb])
+}
+
+/// The score of a throw from Σ a b, Σ a², Σ b², the count of pairs, and how many samples there are: the correlation, a
+/// little less where little overlaps, −1 where less than enough does.
+fn scored([product, lower, upper, both]: [f32; 4], there: f32, terms: &[f32; 6]) -> f32 {
+    let bend = BEND_COST * terms[1..].iter().map(|term| term * term).sum::<f32>();
+    let overlap = both / there.max(1.0);
+    if overlap < LEAST_OVERLAP { -1.0 } else { product / (lower * upper).sqrt().max(1e-9) * overlap.powf(0.25) - bend }
+}
+
+/// Lines along a fault that are compared, about; half of them while throws are scanned.
 const LINES: usize = 48;
-const SCANNED_SAMPLES: usize = 2;
 /// Count of throws that are refined.
 const REFINED: usize = 6;
 
@@ -203,8 +289,7 @@ pub fn throw_of(volume: &Volume<f32>, links: &Links, cut: &Cut) -> Option<Throw>
         return None;
     }
     let step = cut.size[0].div_ceil(LINES).max(1);
-    // A part of the points tells which throws are worth all of them.
-    let mut panels = Panels { size: cut.size, sides, step: [2 * step, SCANNED_SAMPLES] };
+    let panels = Panels { size: cut.size, sides, step };
     let samples = cut.size[1] as f32;
     let greatest = (GREATEST_SHARE * samples).max(THIN.min(0.5 * samples)).floor();
     let steps = |most: f32, step: f32| {
@@ -218,9 +303,9 @@ pub fn throw_of(volume: &Volume<f32>, links: &Links, cut: &Cut) -> Option<Throw>
         })
         .filter(|terms| terms[0].abs() + 0.5 * (terms[1].abs() + terms[2].abs()) <= 1.2 * greatest)
         .collect();
-    let mut found: Vec<([f32; 6], f32)> = starts.into_par_iter().map(|terms| (terms, panels.score(&terms))).collect();
+    let shifts = Shifts::new(&panels, 1.2 * greatest);
+    let mut found: Vec<([f32; 6], f32)> = starts.into_par_iter().map(|terms| (terms, shifts.score(&terms))).collect();
     found.sort_by(|a, b| b.1.total_cmp(&a.1));
-    panels.step = [step, 1];
     let mut chosen: Vec<([f32; 6], f32)> = Vec::new();
     for (terms, _) in found {
         let is_new = chosen.iter().all(|(other, _)| (0..3).any(|n| (terms[n] - other[n]).abs() > SAME_THROW));
