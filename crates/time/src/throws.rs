@@ -279,7 +279,8 @@ fn scored([product, lower, upper, both]: [f32; 4], there: f32, terms: &[f32; 6])
 
 /// Lines along a fault that are compared, about; half of them while throws are scanned.
 const LINES: usize = 48;
-/// Count of throws that are refined.
+/// Count of throws that are scored exactly, and of those that are refined.
+const CONSIDERED: usize = 40;
 const REFINED: usize = 6;
 
 /// Finds the throw of a fault; `None` where one of its sides is nowhere inside the volume.
@@ -306,16 +307,16 @@ pub fn throw_of(volume: &Volume<f32>, links: &Links, cut: &Cut) -> Option<Throw>
     let shifts = Shifts::new(&panels, 1.2 * greatest);
     let mut found: Vec<([f32; 6], f32)> = starts.into_par_iter().map(|terms| (terms, shifts.score(&terms))).collect();
     found.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut chosen: Vec<([f32; 6], f32)> = Vec::new();
+    let mut chosen: Vec<[f32; 6]> = Vec::new();
     for (terms, _) in found {
-        let is_new = chosen.iter().all(|(other, _)| (0..3).any(|n| (terms[n] - other[n]).abs() > SAME_THROW));
-        if is_new {
-            chosen.push((terms, panels.score(&terms)));
-        }
-        if chosen.len() == REFINED {
-            break;
+        let is_new = |other: &[f32; 6]| (0..3).any(|n| (terms[n] - other[n]).abs() > SAME_THROW);
+        if chosen.len() < CONSIDERED && chosen.iter().all(is_new) {
+            chosen.push(terms);
         }
     }
+    let mut chosen: Vec<([f32; 6], f32)> = chosen.into_par_iter().map(|terms| (terms, panels.score(&terms))).collect();
+    chosen.sort_by(|a, b| b.1.total_cmp(&a.1));
+    chosen.truncate(REFINED);
     let mut refined: Vec<([f32; 6], f32)> =
         chosen.into_par_iter().map(|(terms, score)| panels.refine(terms, score)).collect();
     refined.sort_by(|a, b| b.1.total_cmp(&a.1));

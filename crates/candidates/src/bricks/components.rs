@@ -17,6 +17,11 @@ use std::cmp::Reverse;
 /// A part of a surface after all bricks were merged: its name in its brick, its rank among all, and its label.
 type Ranked = [u32; 3];
 
+/// The greatest of some widths.
+fn widest(widths: &[(&str, usize)]) -> usize {
+    widths.iter().map(|(_, width)| *width).max().unwrap_or(0)
+}
+
 impl Bricks<'_> {
     /// The widths for which windows are searched, and the names of their arrays: surfaces, and their cores if those are
     /// wider.
@@ -37,14 +42,14 @@ impl Bricks<'_> {
     /// The parts of surfaces in a brick: for each extremum that is a window the least window of its part; the count of
     /// windows of each part; and windows at faces with the part that they are linked to.
     pub(crate) fn windows(&self, brick: usize) -> Result<(), InterpError> {
+        let widths = self.widths();
         for kind in 0..self.kinds.len() {
-            for (name, width) in self.widths() {
-                let patch = self.patch(kind, brick, Halo::behind(width + 2), Values::None)?;
-                let (links, broken) = (self.links_on(&patch)?, self.broken(&patch)?);
-                let open = cells::open_cells(&links, &broken);
+            let patch = self.patch(kind, brick, Halo::behind(widest(&widths) + 2), Values::None)?;
+            let links = self.links_on(&patch)?;
+            let open = cells::open_cells(&links, &self.broken(&patch)?);
+            let (own, indices) = (patch.is_own(), patch.indices());
+            for &(name, width) in &widths {
                 let windows = cells::windows(&patch.extrema, &links, &open, width - 1);
-                drop((open, broken));
-                let own = patch.is_own();
                 let mut sets = UnionFind::new(patch.extrema.len());
                 for v in (0..patch.extrema.len() as u32).filter(|&v| own[v as usize] && windows[v as usize]) {
                     for direction in [NEXT_X, NEXT_Y] {
@@ -54,7 +59,6 @@ impl Bricks<'_> {
                         }
                     }
                 }
-                let indices = patch.indices();
                 let mut parts = vec![NONE; indices.len()];
                 let mut counts = vec![0u32; indices.len()];
                 let mut faces: Vec<[u32; 2]> = Vec::new();
@@ -89,7 +93,7 @@ impl Bricks<'_> {
 
     /// Merges the parts of all bricks and ranks them.
     pub(crate) fn components(&self) -> Result<(), InterpError> {
-        for kind in 0..self.kinds.len() {
+        self.each_kind(|kind| {
             for (name, _) in self.widths() {
                 let (mut parts, mut faces) = (Vec::new(), Vec::new());
                 for brick in 0..self.tiles.count() {
@@ -98,18 +102,19 @@ impl Bricks<'_> {
                 }
                 self.write(&self.name(&format!("{name}-ranks"), kind), 0, &ranked(parts, faces))?;
             }
-        }
-        Ok(())
+            Ok(())
+        })
     }
 
     /// The label of each extremum: of the part with the most windows that cover it.
     pub(crate) fn labels(&self, brick: usize) -> Result<(), InterpError> {
+        let widths = self.widths();
         for kind in 0..self.kinds.len() {
-            for (name, width) in self.widths() {
+            let halo = Halo { before: [widest(&widths); 2], behind: [0; 2] };
+            let patch = self.patch(kind, brick, halo, Values::None)?;
+            let links = self.links_back(&patch)?;
+            for &(name, width) in &widths {
                 let ranks: Vec<Ranked> = self.read(&self.name(&format!("{name}-ranks"), kind), 0)?;
-                let halo = Halo { before: [width; 2], behind: [0; 2] };
-                let patch = self.patch(kind, brick, halo, Values::None)?;
-                let links = self.links(&patch)?;
                 let parts: Vec<u32> = self.values(&format!("{name}-part"), &patch)?;
                 let rank_of = |part: u32| {
                     let found = ranks.binary_search_by_key(&part, |ranked| ranked[0]);

@@ -16,6 +16,7 @@ use crate::grow::UnionFind;
 use crate::grow::flood::{LAYERED, OUTSKIRTS, PASSABLE, near};
 use crate::grow::links::{NEXT_X, NEXT_Y, NONE};
 use bytemuck::{Pod, Zeroable};
+use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 
 /// Which of the two floods.
@@ -44,6 +45,14 @@ type Key = u64;
 
 fn key_of(evidence: u8, index: u32, axis: usize) -> Key {
     u64::from(evidence) << 40 | u64::from(index) << 1 | axis as u64
+}
+
+fn axis_of(key: Key) -> usize {
+    (key & 1) as usize
+}
+
+fn index_of(key: Key) -> u32 {
+    (key >> 1) as u32
 }
 
 /// A link, or a chain of links, between two ends: indices of extrema, or labels.
@@ -134,6 +143,9 @@ impl Bricks<'_> {
             let mut branches = basin.branches();
             branches.extend(&basin.across);
             let gates: Vec<u32> = basin.gates.iter().map(|&v| basin.indices[v as usize]).collect();
+            let mut forest = vec![0u8; basin.labels.len()];
+            basin.forest.iter().for_each(|&(key, [v, _])| forest[v as usize] |= 1 << axis_of(key));
+            self.keep(&format!("{}-forest", flood.prefix()), &basin.patch, &forest)?;
             self.write(&self.name_of(flood, "branches", kind), brick, &branches)?;
             self.write(&self.name_of(flood, "gates", kind), brick, &gates)?;
         }
@@ -143,16 +155,16 @@ impl Bricks<'_> {
     /// Finds the forest of all branches. For each brick: the keys of its links that are no part of it, and the label of
     /// each of its gates.
     pub(crate) fn divides(&self, flood: Flood) -> Result<(), InterpError> {
-        for kind in 0..self.kinds.len() {
+        self.each_kind(|kind| {
             let (branches_name, gates_name) =
                 (self.name_of(flood, "branches", kind), self.name_of(flood, "gates", kind));
             let mut all: Vec<(Branch, u32)> = Vec::new();
             for brick in 0..self.tiles.count() {
                 all.extend(self.read::<Branch>(&branches_name, brick)?.into_iter().map(|b| (b, brick as u32)));
             }
-            all.sort_unstable();
+            all.par_sort_unstable();
             let mut ends: Vec<u64> = all.iter().flat_map(|(branch, _)| branch.ends).collect();
-            ends.sort_unstable();
+            ends.par_sort_unstable();
             ends.dedup();
             let place = |end: u64| ends.binary_search(&end).map(|at| at as u32).unwrap_or(NONE);
             let mut label: Vec<u32> =
@@ -179,22 +191,53 @@ impl Bricks<'_> {
                 self.write(&self.name_of(flood, "outside", kind), brick, &keys)?;
                 self.write(&self.name_of(flood, "gate-labels", kind), brick, &labels)?;
             }
+            Ok(())
+        })
+    }
+
+    /// Labels of a brick's own extrema after a flood: of the gate or the surface that their part of the forest leads to.
+    fn filled(&self, flood: Flood, patch: &Patch) -> Result<Vec<u32>, InterpError> {
+        let of = |array: &str| self.name_of(flood, array, patch.kind);
+        let mut labels = self.rooted(flood, patch)?;
+        let mut forest: Vec<u8> = self.values(&format!("{}-forest", flood.prefix()), patch)?;
+        let indices = patch.indices();
+        let place = |index: u32| indices.binary_search(&index).ok();
+        for key in self.read::<Key>(&of("outside"), patch.brick)? {
+            if let Some(v) = place(index_of(key)) {
+                forest[v] &= !(1 << axis_of(key));
+            }
         }
-        Ok(())
+        let links = self.links_on(patch)?;
+        let (mut sets, mut found) = (UnionFind::new(labels.len()), labels.clone());
+        for (v, in_forest) in forest.into_iter().enumerate().filter(|(_, axes)| *axes != 0) {
+            for axis in (0..2).filter(|axis| in_forest >> axis & 1 != 0) {
+                let [a, b] = [v as u32, links.to[[NEXT_X, NEXT_Y][axis]][v]].map(|end| sets.find(end));
+                let label = found[a as usize].min(found[b as usize]);
+                found[sets.union(a, b) as usize] = label;
+            }
+        }
+        let gates: Vec<u32> = self.read(&of("gates"), patch.brick)?;
+        let gate_labels: Vec<u32> = self.read(&of("gate-labels"), patch.brick)?;
+        for (gate, label) in gates.into_iter().filter_map(place).zip(gate_labels) {
+            let root = sets.find(gate as u32) as usize;
+            found[root] = found[root].min(label);
+        }
+        for (v, label) in labels.iter_mut().enumerate().filter(|(_, label)| **label == NONE) {
+            *label = found[sets.find(v as u32) as usize];
+        }
+        Ok(labels)
     }
 
     /// Labels after the flood, and how often each lies on its traces.
     pub(crate) fn flooded(&self, flood: Flood, brick: usize) -> Result<(), InterpError> {
         for kind in 0..self.kinds.len() {
-            let mut basin = self.basin(flood, kind, brick, Halo::around(1))?;
-            let outside: Vec<Key> = self.read(&self.name_of(flood, "outside", kind), brick)?;
-            let gate_labels: Vec<u32> = self.read(&self.name_of(flood, "gate-labels", kind), brick)?;
-            basin.fill(&outside, &gate_labels);
+            let patch = self.patch(kind, brick, Halo::default(), Values::None)?;
+            let labels = self.filled(flood, &patch)?;
             // Last trace (counted from 1), traces, how often on a trace again.
             let mut layers: HashMap<u32, [u32; 3]> = HashMap::new();
-            for (n, (_, places, _)) in basin.patch.own_traces().enumerate() {
+            for (n, (_, places, _)) in patch.own_traces().enumerate() {
                 let trace = n as u32 + 1;
-                for &label in basin.labels[places].iter().filter(|&&label| label != NONE) {
+                for &label in labels[places].iter().filter(|&&label| label != NONE) {
                     let [last, traces, again] = layers.entry(label).or_default();
                     if *last == trace {
                         *again += 1;
@@ -206,7 +249,7 @@ impl Bricks<'_> {
             let mut layers: Vec<[u32; 3]> =
                 layers.into_iter().map(|(label, [_, traces, again])| [label, traces, again]).collect();
             layers.sort_unstable();
-            self.keep(&format!("{}-flooded", flood.prefix()), &basin.patch, &basin.labels)?;
+            self.keep(&format!("{}-flooded", flood.prefix()), &patch, &labels)?;
             self.write(&self.name_of(flood, "layers", kind), brick, &layers)?;
         }
         Ok(())
@@ -214,7 +257,7 @@ impl Bricks<'_> {
 
     /// The labels that lie over themselves, ascending.
     pub(crate) fn layers(&self, flood: Flood) -> Result<(), InterpError> {
-        for kind in 0..self.kinds.len() {
+        self.each_kind(|kind| {
             let mut all: BTreeMap<u32, [u32; 2]> = BTreeMap::new();
             for brick in 0..self.tiles.count() {
                 for [label, traces, again] in self.read::<[u32; 3]>(&self.name_of(flood, "layers", kind), brick)? {
@@ -227,9 +270,8 @@ impl Bricks<'_> {
                 .filter(|(_, [traces, again])| again * LAYERED > *traces)
                 .map(|(label, _)| label)
                 .collect();
-            self.write(&self.name_of(flood, "layered", kind), 0, &over)?;
-        }
-        Ok(())
+            self.write(&self.name_of(flood, "layered", kind), 0, &over)
+        })
     }
 
     /// Takes back what a flood gave to surfaces that lie over themselves, but for what is near; after the flood of cores
@@ -337,32 +379,5 @@ impl Basin {
             label => LABEL | u64::from(label),
         };
         tree.into_iter().flatten().map(|(key, ends)| Branch { key, ends: ends.map(end) }).collect()
-    }
-
-    /// Gives every open extremum its label: of the gate or the surface that its part of the forest leads to.
-    fn fill(&mut self, outside: &[Key], gate_labels: &[u32]) {
-        let mut outside = outside.to_vec();
-        outside.sort_unstable();
-        let mut sets = UnionFind::new(self.labels.len());
-        let mut found = self.labels.clone();
-        let join = |sets: &mut UnionFind, found: &mut [u32], a: u32, b: u32| {
-            let [a, b] = [sets.find(a), sets.find(b)];
-            let label = found[a as usize].min(found[b as usize]);
-            found[sets.union(a, b) as usize] = label;
-        };
-        for &(key, [a, b]) in &self.forest {
-            if outside.binary_search(&key).is_err() {
-                join(&mut sets, &mut found, a, b);
-            }
-        }
-        for (&gate, &label) in self.gates.iter().zip(gate_labels) {
-            let root = sets.find(gate) as usize;
-            found[root] = found[root].min(label);
-        }
-        for v in 0..self.labels.len() as u32 {
-            if self.labels[v as usize] == NONE {
-                self.labels[v as usize] = found[sets.find(v) as usize];
-            }
-        }
     }
 }

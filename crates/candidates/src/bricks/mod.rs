@@ -58,6 +58,7 @@ use crate::extraction::ExtractSettings;
 use crate::grow::{GrowError, Method};
 use crate::surfaces::Extremum;
 use bytemuck::Pod;
+use rayon::prelude::*;
 use std::convert::Infallible;
 use survey::arrays::NamedArrays;
 use survey::source::BoxSource;
@@ -102,6 +103,11 @@ impl<'a> Bricks<'a> {
         let tiles = Tiling { size: [size[0], size[1]], edge: bricks.edge.map(|edge| edge.max(1)) };
         let (settings, together) = (settings.clone(), bricks.triangles_together.max(1));
         Ok(Self { source, arrays, settings, kinds, size, tiles, together })
+    }
+
+    /// Does the same for each kind of extremum, at a time where there are threads for it.
+    fn each_kind(&self, work: impl Fn(usize) -> Result<(), InterpError> + Sync + Send) -> Result<(), InterpError> {
+        (0..self.kinds.len()).into_par_iter().try_for_each(work)
     }
 
     /// Name of an array that each kind of extremum has.

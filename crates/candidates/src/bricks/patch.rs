@@ -160,6 +160,15 @@ impl Bricks<'_> {
         self.keep("links", patch, &codes)
     }
 
+    /// The links of a patch, from the next traces back alone.
+    pub(crate) fn links_back(&self, patch: &Patch) -> Result<Links, InterpError> {
+        let mut links = self.links(patch)?;
+        for next in [NEXT_X, NEXT_Y] {
+            links.to[next] = Vec::new();
+        }
+        Ok(links)
+    }
+
     /// The links of a patch.
     pub(crate) fn links(&self, patch: &Patch) -> Result<Links, InterpError> {
         let mut links = self.links_on(patch)?;

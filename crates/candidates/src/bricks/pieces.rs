@@ -87,11 +87,10 @@ impl Bricks<'_> {
 
     /// Joins pieces over the whole survey: the label of each piece, and that of the surface that it belongs to.
     pub(crate) fn joined(&self, progress: &Progress) -> Result<(), InterpError> {
-        for kind in 0..self.kinds.len() {
+        self.each_kind(|kind| {
             let joined = if self.settings.grow.join_share > 1.0 { Vec::new() } else { self.join(kind, progress)? };
-            self.write(&self.name("joined", kind), 0, &joined)?;
-        }
-        Ok(())
+            self.write(&self.name("joined", kind), 0, &joined)
+        })
     }
 
     fn join(&self, kind: usize, progress: &Progress) -> Result<Vec<[u32; 2]>, InterpError> {
