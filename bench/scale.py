@@ -137,12 +137,12 @@ def candidates(folder, side):
     }
 
 
-def modelled_candidates(lines, measured, overhead):
-    """Tasks of an extraction of lines x lines traces: seconds, and what each needs.
+def modelled_candidates(lines, measured, edge, overhead):
+    """Tasks of an extraction of lines x lines traces in bricks of an edge, as they were measured: seconds, and what each needs.
 
-    What one task does for the whole survey grows with the survey; all other stages have a task for each column.
+    What one task does for the whole survey grows with the survey; other stages have a task for each brick or each column.
     """
-    columns = -(-lines // stages.FILE_LINES)
+    columns, bricks = -(-lines // stages.FILE_LINES), -(-lines // edge)
     samples = lines * lines * SAMPLES
     tasks, before = {}, []
     for name, (count, seconds, size, whole) in measured.items():
@@ -152,7 +152,8 @@ def modelled_candidates(lines, measured, overhead):
             continue
         level = int(name.removeprefix("store-level-")) if name.startswith("store-level-") else 0
         is_single = count == 1 and not level and name != "trees"
-        many = 1 if is_single else max(columns**2 // 4**level, 1)
+        is_by_column = name in ("trees", "distances") or name.startswith("store-")
+        many = 1 if is_single else max((columns if is_by_column else bricks) ** 2 // 4**level, 1)
         each = (seconds + size / BANDWIDTH) * samples / many + whole * samples / BANDWIDTH + overhead
         own = [(name, n) for n in range(many)]
         tasks.update({key: (each, before) for key in own})
@@ -238,7 +239,8 @@ def main():
     for kind in ("envelope", "semblance", "candidates"):
         for lines, workers in ((2048, 16), (terabyte, 64)):
             if kind == "candidates":
-                tasks = modelled_candidates(lines, measured, overhead)
+                edge = stages._brick_edge((side, side, side), os.cpu_count() or 1)
+                tasks = modelled_candidates(lines, measured, edge, overhead)
             else:
                 tasks = modelled(lines, rates, kind, overhead)
             total = sum(seconds for seconds, _ in tasks.values())

@@ -101,8 +101,8 @@ pub fn extraction_stages(
     let volume = StoredVolume::open(&path).map_err(|error| refusal::of(py, error))?;
     // No array is read while tasks are counted.
     let arrays = FolderArrays::shared(&path).map_err(|error| refusal::of(py, error))?;
-    let cut = BrickSettings::within(memory, volume.info().geometry.size(), 1);
-    let cut = cut.map_err(|error| refusal::of(py, error))?.with_edge(edge);
+    let size = volume.info().geometry.size();
+    let cut = BrickSettings::within(memory, size, 1).map_err(|error| refusal::of(py, error))?.with_edge(edge, size);
     let plan = ExtractionPlan {
         volume: path.clone(),
         arrays: path.clone(),
@@ -111,6 +111,7 @@ pub fn extraction_stages(
         settings,
         edge: cut.edge,
         triangles_together: cut.triangles_together,
+        memory_bytes: memory,
     };
     let tasks = ExtractionTasks { plan, volume, arrays };
     Ok((cut.edge, tasks.stages(py)?))
@@ -233,6 +234,7 @@ impl ExtractionTasks {
     /// Does a task of a stage, unless it is done.
     fn run(&self, py: Python<'_>, stage: &str, number: usize) -> PyResult<()> {
         task(py, || -> Result<(), ProjectError> {
+            let _keeping = survey::kept_memory::keep_freed(self.plan.memory_bytes / 2);
             let bricks = self.bricks()?;
             match named(&bricks, stage) {
                 Some(stage) => Ok(bricks.do_task(stage, number, &Progress::silent())?),

@@ -30,6 +30,9 @@ mod work;
 
 use pyo3::prelude::*;
 
+#[global_allocator]
+static MEMORY: survey::kept_memory::ProgramMemory = survey::kept_memory::ProgramMemory;
+
 /// The module that Python imports.
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -295,8 +295,8 @@ def test_candidates_are_the_same_when_a_worker_is_killed_in_the_middle(large, wh
     marker = str(tmp_path / "killed")
     original = petroglyph.dask._candidates_graph
 
-    def with_a_killer(plan):
-        graph, wanted = original(plan)
+    def with_a_killer(*plan):
+        graph, wanted = original(*plan)
         killer = ("killer", 0)
         # Once the stage before is done, whose answers are lost with the worker.
         victims = [key for key in graph.tasks if key[0].startswith(f"{stage}-") and len(key) == 2]

@@ -273,3 +273,47 @@ impl Hubs {
         self.index();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cut::Across;
+    use interp::Vertex;
+
+    #[test]
+    fn sides_of_many_faults_are_those_of_each() {
+        // Faults at every third place, by turns across either axis, each with a gap, more than fit into one word.
+        let cut = |n: usize| {
+            let across = if n.is_multiple_of(2) { Across::Inlines } else { Across::Crosslines };
+            let place = move |line: usize, z: usize| {
+                if (line + n).is_multiple_of(7) { f32::NAN } else { 1.5 * n as f32 + 0.2 * z as f32 }
+            };
+            Cut::new(across, 70, 9, place)
+        };
+        let cuts: Vec<Cut> = (0..40).map(cut).collect();
+        let vertex =
+            |n: usize| Vertex { x: (n * 37 % 70) as u16, y: (n * 53 % 70) as u16, z: (n * 29 % 80) as f32 / 10.0 };
+        let vertices: Vec<Vertex> = (0..300).map(vertex).collect();
+        let triangles = (0..298u32).map(|n| [n, n + 1, n + 2]).collect();
+        let surfaces = Surfaces { size: [70, 70, 9], vertices, triangles, ..Surfaces::default() };
+        let found = Sides::of(&surfaces, &cuts);
+        let place = |v: u32| {
+            let Vertex { x, y, z } = surfaces.vertices[v as usize];
+            ([usize::from(x), usize::from(y)], z)
+        };
+        for (triangle, apart) in surfaces.triangles.iter().zip(&found.apart) {
+            for (n, edge) in EDGES.into_iter().enumerate() {
+                let [(a, za), (b, zb)] = edge.map(|corner| place(triangle[corner]));
+                let meant = cuts.iter().any(|cut| cut.separates(a, za, b, zb));
+                assert_eq!(apart >> n & 1 == 1, meant);
+            }
+        }
+        for (v, beside) in found.beside.iter().enumerate() {
+            let (trace, z) = place(v as u32);
+            assert_eq!(*beside, cuts.iter().any(|cut| cut.side(trace, z).abs() < 1.0));
+        }
+        assert!(
+            found.beside.contains(&false) && found.apart.contains(&0) && found.apart.iter().any(|edges| *edges != 0)
+        );
+    }
+}

@@ -239,7 +239,9 @@ mod tests {
                 meant[z + 1] += step;
                 if z > 0 && goes_on(z - 1) {
                     let bend = 0.7 * (s[z + 1] - 2.0 * s[z] + s[z - 1]);
-                    [(z - 1, 1.0), (z, -2.0), (z + 1, 1.0)].map(|(z, share)| meant[z] += share * bend);
+                    for (z, share) in [(z - 1, 1.0), (z, -2.0), (z + 1, 1.0)] {
+                        meant[z] += share * bend;
+                    }
                 }
             }
             for (found, meant) in found.iter().zip(&meant) {

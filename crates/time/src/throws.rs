@@ -347,3 +347,34 @@ pub fn ties(cut: &Cut, size: [usize; 3], throw: &Throw, step: [usize; 2], weight
     }
     ties
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_throw_of_whole_samples_is_scored_alike_by_what_was_looked_up() {
+        let size = [24, 96];
+        let wave = |line: usize, z: f32| (0.31 * z + 0.1 * (0.07 * z).sin() * z + 0.05 * line as f32).sin();
+        let side = |shift: f32| -> Vec<f32> {
+            let there = |n: usize| if n % 96 < 4 { f32::NAN } else { wave(n / 96, (n % 96) as f32 + shift) };
+            (0..24 * 96).map(there).collect()
+        };
+        let panels = Panels { size, sides: [side(3.0), side(-3.0)], step: 1 };
+        let every_second = Panels { size, sides: panels.sides.clone(), step: 2 };
+        let shifts = Shifts::new(&panels, 20.0);
+        let mut best = (f32::NEG_INFINITY, 0.0);
+        for throw in (-10..=10).map(|n| 2.0 * n as f32) {
+            let terms = [throw, 0.0, 0.0, 0.0, 0.0, 0.0];
+            let (found, meant) = (shifts.score(&terms), every_second.score(&terms));
+            assert!((found - meant).abs() < 1e-3, "{throw}: {found} {meant}");
+            if found > best.0 {
+                best = (found, throw);
+            }
+        }
+        assert_eq!(best.1, 6.0);
+        // One that varies is scored within windows, which is about the same.
+        let terms = [6.0, 1.0, 1.5, 0.0, 0.5, 0.0];
+        assert!((shifts.score(&terms) - every_second.score(&terms)).abs() < 0.1);
+    }
+}

@@ -60,17 +60,25 @@ impl BrickSettings {
             return Err(InterpError::TooLittleMemory { stated: memory_bytes, samples: size[2], least });
         }
         let inside = (edge - WIDEST_HALO) as usize;
-        // Bricks of equal size rather than a narrow rest.
-        let even = |lines: usize| lines.div_ceil(lines.div_ceil(inside).max(1)).max(1);
         let triangles_together = (memory_bytes / workers / BYTES_A_TRIANGLE).max(1);
-        Ok(Self { edge: [even(size[0]), even(size[1])], triangles_together, workers: workers as usize })
+        Ok(Self {
+            edge: [size[0], size[1]].map(|lines| even(lines, inside)),
+            triangles_together,
+            workers: workers as usize,
+        })
     }
 
-    /// The same with bricks of at most `edge` traces along x and y: more tasks, for more workers.
+    /// The same with bricks of at most `edge` traces along x and y of a volume of `size`: more tasks, for more workers.
     #[must_use]
-    pub fn with_edge(self, edge: usize) -> Self {
-        Self { edge: self.edge.map(|fitting| fitting.min(edge.max(1))), ..self }
+    pub fn with_edge(self, edge: usize, size: [usize; 3]) -> Self {
+        let edge = [0, 1].map(|axis| even(size[axis], self.edge[axis].min(edge.max(1))));
+        Self { edge, ..self }
     }
+}
+
+/// The edge of bricks of equal size, at most `most`, rather than with a narrow rest.
+fn even(lines: usize, most: usize) -> usize {
+    lines.div_ceil(lines.div_ceil(most).max(1)).max(1)
 }
 
 /// Name of the array that notes which tasks of a stage are done.

@@ -82,7 +82,8 @@ impl BrickedExtraction<'_> {
         memory_bytes: u64,
         edge: usize,
     ) -> Result<SharedExtraction, ProjectError> {
-        let cut = BrickSettings::within(memory_bytes, self.source.info().geometry.size(), 1)?.with_edge(edge);
+        let size = self.source.info().geometry.size();
+        let cut = BrickSettings::within(memory_bytes, size, 1)?.with_edge(edge, size);
         let scratch = self.scratch(&cut)?;
         self.arrays(&scratch, &Progress::silent())?;
         let arrays = scratch.path("arrays");
@@ -94,6 +95,7 @@ impl BrickedExtraction<'_> {
             settings: self.settings.clone(),
             edge: cut.edge,
             triangles_together: cut.triangles_together,
+            memory_bytes,
         };
         Ok(SharedExtraction { scratch, plan, file: self.file.to_owned() })
     }
@@ -164,6 +166,8 @@ pub struct ExtractionPlan {
     pub edge: [usize; 2],
     /// Triangles of the surfaces whose trees one task builds.
     pub triangles_together: u64,
+    /// Memory that a task takes at most.
+    pub memory_bytes: u64,
 }
 
 impl SharedExtraction {

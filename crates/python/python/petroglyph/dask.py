@@ -13,6 +13,7 @@ Every function takes ``scheduler``, as of :func:`dask.compute` (``"threads"``, `
 from __future__ import annotations
 
 import json
+import math
 import os
 import shutil
 import socket
@@ -265,12 +266,16 @@ class _Graph:
         return self.add(f"finish{label}", (), (_finish, path, levels, version))
 
 
+def _is_client(scheduler: Scheduler) -> bool:
+    return hasattr(scheduler, "get") and hasattr(scheduler, "scheduler_info")
+
+
 def _run(graph: _Graph, wanted: list[Any], scheduler: Scheduler, retries: int) -> list[Any]:
     """Runs a graph on a cluster's client or on a scheduler of this process."""
     import dask
     from dask.base import get_scheduler
 
-    if hasattr(scheduler, "get") and hasattr(scheduler, "scheduler_info"):
+    if _is_client(scheduler):
         return list(scheduler.get(graph.tasks, wanted, retries=retries))
     get = get_scheduler(scheduler=scheduler or "threads")
     with dask.config.set({"optimization.fuse.active": False}):
@@ -483,12 +488,12 @@ def _candidates(plan: str, version: tuple[str, int]) -> _native.ExtractionTasks:
     return _native.ExtractionTasks(plan)
 
 
-def _candidates_graph(plan: str) -> tuple[_Graph, list[Any]]:
-    """Stages one after the other; of each, one task for each brick, column, file or slot."""
+def _candidates_graph(plan: str, told: Any = None) -> tuple[_Graph, list[Any]]:
+    """Stages one after the other; of each, one task for each brick, column, file or slot. `told` stands for the plan."""
     version = (__version__, STORE_VERSION)
     stages = _native.ExtractionTasks(plan).stages()
     graph = _Graph(_token(plan))
-    told = graph.add("plan", (), (str, plan))
+    told = plan if told is None else told
     slots = _slots(stages)
     before: Any = None
     for stage, count in stages:
@@ -498,13 +503,33 @@ def _candidates_graph(plan: str) -> tuple[_Graph, list[Any]]:
     return graph, [before]
 
 
+def _everywhere(scheduler: Scheduler, value: str) -> Any:
+    """A value on every worker of a cluster: a scheduler gives a task to a worker that has what the task needs, and would
+    give all tasks of a stage to one."""
+    if not _is_client(scheduler):
+        return value
+    future = scheduler.submit(str, value, pure=False)
+    scheduler.replicate([future])
+    return future
+
+
+def _threads(scheduler: Scheduler) -> int:
+    """Tasks that are done at a time."""
+    return (sum(scheduler.nthreads().values()) if _is_client(scheduler) else os.cpu_count()) or 1
+
+
+def _brick_edge(shape: tuple[int, int, int], threads: int) -> int:
+    """Traces of a brick so that there are two for every thread: larger ones read less of what lies around them."""
+    return max(FILE_LINES, math.isqrt(shape[0] * shape[1] // (2 * threads)))
+
+
 def _slots(stages: list[tuple[str, int | None]]) -> int:
     """Tasks of stages whose count depends on what is found: as many as others have."""
     return max(count or 1 for _, count in stages)
 
 
 def plan_extraction(
-    source: Path, *, settings: Options | None = None, edge: int = FILE_LINES, memory: int = MEMORY
+    source: Path, *, settings: Options | None = None, edge: int | None = None, memory: int = MEMORY
 ) -> Plan:
     """What :func:`extract` of a stored volume will do.
 
@@ -513,7 +538,7 @@ def plan_extraction(
     source : path
         Folder of the volume.
     settings, edge, memory
-        As of :func:`extract`.
+        As of :func:`extract`, on threads of this process.
 
     Notes
     -----
@@ -524,6 +549,8 @@ def plan_extraction(
 
     found = json.loads(_native.volume_info(source))
     levels: list[tuple[int, int, int]] = [tuple(size) for size in found["levels"]]
+    if edge is None:
+        edge = _brick_edge(levels[0], os.cpu_count() or 1)
     _, stages = _native.extraction_stages(source, _as_json(settings), memory, edge)
     slots = _slots(stages)
     tasks = {stage: slots if count is None else count for stage, count in stages}
@@ -540,7 +567,7 @@ def extract(
     *,
     volume: str | None = None,
     settings: Options | None = None,
-    edge: int = FILE_LINES,
+    edge: int | None = None,
     scheduler: Scheduler = None,
     memory: int = MEMORY,
     retries: int = RETRIES,
@@ -555,9 +582,10 @@ def extract(
         The volume to extract from; by default the first on the project's lattice.
     settings : mapping, optional
         Settings, as of :meth:`petroglyph.Project.extract`.
-    edge : int
+    edge : int, optional
         Traces of a brick along both axes, at most; fewer where `memory` asks for it. Smaller bricks are more tasks, and
-        read more of what lies around them.
+        read more of what lies around them. By default there are two bricks for each thread of the cluster, but none is
+        smaller than a file of 128 x 128 traces.
     scheduler : str or distributed.Client, optional
         Where it runs; by default on threads of this process.
     memory : int
@@ -574,15 +602,19 @@ def extract(
     -----
     The bytes are those of :meth:`petroglyph.Project.extract`, whatever the bricks and the workers. Stages exchange what
     they find through files in the project. If a task fails for good they are removed, and the project is what it was. If
-    the run was interrupted, or the cluster was lost, the same call goes on where it was.
+    the run was interrupted, or the cluster was lost, the same call goes on where it was; on a cluster of another size, if
+    it states the same `edge`.
     """
+    if edge is None:
+        edge = _brick_edge(project.geometry.shape, _threads(scheduler))
     change = {"volume": volume, "settings": None if settings is None else dict(settings)}
     command = {"extract": {name: value for name, value in change.items() if value is not None}}
     shared = _native.Extraction.begin(project._native, volume, _as_json(settings), memory, edge)
     if shared is None:
         return project.apply(command)
     try:
-        graph, wanted = _candidates_graph(shared.plan())
+        plan = shared.plan()
+        graph, wanted = _candidates_graph(plan, _everywhere(scheduler, plan))
         _run(graph, wanted, scheduler, retries)
     except PetroglyphError:
         shared.end(leave=False)
