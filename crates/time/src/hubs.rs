@@ -292,7 +292,7 @@ mod tests {
         };
         let cuts: Vec<Cut> = (0..40).map(cut).collect();
         let vertex =
-            |n: usize| Vertex { x: (n * 37 % 70) as u16, y: (n * 53 % 70) as u16, z: (n * 29 % 80) as f32 / 10.0 };
+            |n: usize| Vertex { x: (n / 2 % 70) as u16, y: (n * 5 / 4 % 70) as u16, z: (n * 29 % 80) as f32 / 10.0 };
         let vertices: Vec<Vertex> = (0..300).map(vertex).collect();
         let triangles = (0..298u32).map(|n| [n, n + 1, n + 2]).collect();
         let surfaces = Surfaces { size: [70, 70, 9], vertices, triangles, ..Surfaces::default() };

@@ -1,7 +1,7 @@
 //! The extraction of candidates in bricks: spilled to `derived/unfinished/bricks-KEY`, gone on with after a kill, and
 //! stored as an extraction in one piece is.
 
-use crate::derived::{RESUMABLE, Scratch};
+use crate::derived::{RESUMABLE, Scratch, abandoned};
 use crate::error::ProjectError;
 use interp::bricks::{BrickSettings, Bricks};
 use interp::{CandidateColumns, ExtractReport, ExtractSettings, InterpError, StageSeconds};
@@ -75,7 +75,17 @@ impl BrickedExtraction<'_> {
         Scratch::resume(self.root, &name)?.ok_or_else(|| InterpError::DoneElsewhere.into())
     }
 
-    /// Begins, for other processes to do the tasks.
+    /// The bricks of an interrupted extraction that took as much memory.
+    fn interrupted(&self, cut: &BrickSettings) -> Option<[usize; 2]> {
+        let (start, end) = (format!("{RESUMABLE}{}-", self.key), format!("-{}", cut.triangles_together));
+        abandoned(self.root).iter().find_map(|file| {
+            let name = file.rsplit('/').next()?.strip_prefix(&start)?.strip_suffix(&end)?;
+            let (x, y) = name.split_once('x')?;
+            Some([x.parse().ok()?, y.parse().ok()?])
+        })
+    }
+
+    /// Begins, for other processes to do the tasks; an interrupted extraction goes on with its own bricks.
     pub(super) fn share(
         &self,
         volume: &Path,
@@ -83,7 +93,8 @@ impl BrickedExtraction<'_> {
         edge: usize,
     ) -> Result<SharedExtraction, ProjectError> {
         let size = self.source.info().geometry.size();
-        let cut = BrickSettings::within(memory_bytes, size, 1)?.with_edge(edge, size);
+        let mut cut = BrickSettings::within(memory_bytes, size, 1)?.with_edge(edge, size);
+        cut.edge = self.interrupted(&cut).unwrap_or(cut.edge);
         let scratch = self.scratch(&cut)?;
         self.arrays(&scratch, &Progress::silent())?;
         let arrays = scratch.path("arrays");

@@ -272,7 +272,8 @@ impl<'a> Job<'a> {
 }
 
 /// Begins an extraction whose tasks other processes do; `None` when its candidates are stored, undamaged, already.
-/// Bricks have as many traces as fit in `memory_bytes` of one process, and at most `edge` along both axes.
+/// Bricks have as many traces as fit in `memory_bytes` of one process, and at most `edge` along both axes; an extraction
+/// that was interrupted and took as much memory goes on with its own.
 ///
 /// # Errors
 /// There is no such volume, the settings are invalid, the memory is too little, or another program does the same.

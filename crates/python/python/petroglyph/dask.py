@@ -602,8 +602,8 @@ def extract(
     -----
     The bytes are those of :meth:`petroglyph.Project.extract`, whatever the bricks and the workers. Stages exchange what
     they find through files in the project. If a task fails for good they are removed, and the project is what it was. If
-    the run was interrupted, or the cluster was lost, the same call goes on where it was; on a cluster of another size, if
-    it states the same `edge`.
+    the run was interrupted, or the cluster was lost, the same call goes on where it was, in the same bricks, also on a
+    cluster of another size; with another `memory` it begins anew.
     """
     if edge is None:
         edge = _brick_edge(project.geometry.shape, _threads(scheduler))
