@@ -361,8 +361,8 @@ def test_an_extraction_that_cannot_be_done_leaves_nothing(large, monkeypatch):
     graph_of = petroglyph.dask._candidates_graph
     monkeypatch.setattr(petroglyph.dask, "__version__", "9.9.9")
 
-    def on_a_worker_of_another_version(plan):
-        graph = graph_of(plan)
+    def on_a_worker_of_another_version(*plan):
+        graph = graph_of(*plan)
         monkeypatch.setattr(petroglyph.dask, "__version__", petroglyph.__version__)
         return graph
 
