@@ -118,6 +118,7 @@ impl Hubs {
                 count[*set as usize] += 1;
             }
         }
+        drop(sets);
         let mut hub_of_set = vec![NONE; vertices.len()];
         let mut kind = Vec::new();
         for surface in &surfaces.surfaces {
@@ -135,7 +136,9 @@ impl Hubs {
             let trace = (usize::from(vertex.x) * ny + usize::from(vertex.y)) as u32;
             (hub != NONE).then_some(Entry { trace, z: vertex.z, hub, weight })
         });
-        Self::by_trace(surfaces.size, kept.collect(), kind)
+        let kept: Vec<Entry> = kept.collect();
+        drop((count, hub_of_set));
+        Self::by_trace(surfaces.size, kept, kind)
     }
 
     /// The same with picked horizons as hubs of their own, each following what most of its nodes lie on.

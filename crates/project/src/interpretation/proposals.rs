@@ -186,6 +186,8 @@ pub(crate) fn compute(
         None => None,
     };
     let found = propose_faults(&horizons, geometry, &blocks, likeness.as_ref(), settings, progress)?;
+    // What comes next needs as much memory.
+    drop(likeness);
     let mut all = found.proposals;
     if document.extraction.is_some() {
         join(&mut all, new_faults(root, document, &blocks, progress)?, geometry);
