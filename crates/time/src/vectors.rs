@@ -50,30 +50,25 @@ impl Wide for Products<'_> {
 
     #[inline(always)]
     fn run(self) -> f64 {
-        let Self { a, b, weights } = self;
-        let mut sums = [0.0f64; LANES];
-        let whole = a.len() / LANES * LANES;
-        let rest = match weights {
-            Some(weights) => {
-                let parts = a.chunks_exact(LANES).zip(b.chunks_exact(LANES)).zip(weights.chunks_exact(LANES));
-                for ((a, b), weights) in parts {
-                    for lane in 0..LANES {
-                        sums[lane] += f64::from(a[lane] * (b[lane] * weights[lane]));
-                    }
-                }
-                (whole..a.len()).map(|n| f64::from(a[n] * (b[n] * weights[n]))).sum::<f64>()
-            }
-            None => {
-                for (a, b) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
-                    for lane in 0..LANES {
-                        sums[lane] += f64::from(a[lane] * b[lane]);
-                    }
-                }
-                (whole..a.len()).map(|n| f64::from(a[n] * b[n])).sum::<f64>()
-            }
-        };
-        sums.iter().sum::<f64>() + rest
+        let ((a, a_rest), (b, b_rest)) = (self.a.as_chunks::<LANES>(), self.b.as_chunks::<LANES>());
+        let pairs = a.iter().zip(b);
+        let rest = a_rest.iter().zip(b_rest);
+        match self.weights.map(<[f32]>::as_chunks::<LANES>) {
+            Some((weights, weights_rest)) => summed(
+                pairs.zip(weights).map(|((a, b), w)| std::array::from_fn(|lane| a[lane] * (b[lane] * w[lane]))),
+                rest.zip(weights_rest).map(|((a, b), w)| a * (b * w)),
+            ),
+            None => summed(pairs.map(|(a, b)| std::array::from_fn(|lane| a[lane] * b[lane])), rest.map(|(a, b)| a * b)),
+        }
     }
+}
+
+/// The sum of all lanes and of what is left.
+#[inline(always)]
+fn summed(lanes: impl Iterator<Item = [f32; LANES]>, rest: impl Iterator<Item = f32>) -> f64 {
+    let mut sums = [0.0f64; LANES];
+    lanes.for_each(|lanes| sums.iter_mut().zip(lanes).for_each(|(sum, new)| *sum += f64::from(new)));
+    sums.iter().sum::<f64>() + rest.map(f64::from).sum::<f64>()
 }
 
 /// One line of [`advance`].
