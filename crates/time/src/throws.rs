@@ -120,15 +120,19 @@ impl Throw {
 
 /// A quadratic at a line and a depth.
 fn quadratic(terms: &[f32; 6], size: [usize; 2], line: usize, z: f32) -> f32 {
-    let [constant, slope, bend] = on_line(terms, size[0], line);
-    let v = scaled(z, size[1]);
-    constant + v * (slope + v * bend)
+    at_depth(on_line(terms, size[0], line), scaled(z, size[1]))
 }
 
 /// A quadratic on one line, as one of depth: the terms of 1, v and v².
 fn on_line(terms: &[f32; 6], lines: usize, line: usize) -> [f32; 3] {
     let u = scaled(line as f32, lines);
     [terms[0] + u * (terms[1] + u * terms[3]), terms[2] + u * terms[4], terms[5]]
+}
+
+/// A quadratic of depth at v.
+#[inline]
+fn at_depth([constant, slope, bend]: [f32; 3], v: f32) -> f32 {
+    constant + v * (slope + v * bend)
 }
 
 /// From −1 at the first of `count` to 1 at the last.
@@ -148,18 +152,15 @@ impl Panels {
     /// Correlation under a throw, a little less where little overlaps; −1 where less than enough does.
     fn score(&self, terms: &[f32; 6]) -> f32 {
         let nz = self.size[1];
-        let (mut all, mut there) = ([0.0f32; 4], 0usize);
+        let (mut all, mut there) = (Sums::default(), 0usize);
         for line in (0..self.size[0]).step_by(self.step) {
             let row = line * nz..(line + 1) * nz;
             let (a, b) = (&self.sides[0][row.clone()], &self.sides[1][row]);
-            let [constant, slope, bend] = on_line(terms, self.size[0], line);
+            let on_line = on_line(terms, self.size[0], line);
             for z in 0..nz {
                 there += usize::from(a[z].is_finite() || b[z].is_finite());
-                let v = scaled(z as f32, nz);
-                if let Some([va, vb]) = pair(a, b, z as f32, 0.5 * (constant + v * (slope + v * bend))) {
-                    let new = [va * vb, va * va, vb * vb, 1.0];
-                    all.iter_mut().zip(new).for_each(|(sum, new)| *sum += new);
-                }
+                let throw = at_depth(on_line, scaled(z as f32, nz));
+                add(&mut all, products(a, b, z as f32, 0.5 * throw));
             }
         }
         scored(all, there as f32, terms)
@@ -201,8 +202,8 @@ struct Shifts {
     most: isize,
     /// Every so many lines are in it.
     step: usize,
-    /// Σ a b, Σ a², Σ b² and the count of pairs, `[line][window][shift]`.
-    sums: Vec<[f32; 4]>,
+    /// `[line][window][shift]`.
+    sums: Vec<Sums>,
     /// Samples that either side has.
     there: f32,
 }
@@ -215,7 +216,7 @@ impl Shifts {
         let most = (greatest * SHIFT_STEPS).ceil() as isize;
         let width = (2 * most + 1) as usize;
         let (windows, taken) = (nz.div_ceil(WINDOW), lines.div_ceil(step));
-        let mut sums = vec![[0.0f32; 4]; taken * windows * width];
+        let mut sums = vec![Sums::default(); taken * windows * width];
         let row = |side: usize, line: usize| &panels.sides[side][line * nz..(line + 1) * nz];
         sums.par_chunks_mut(windows * width).enumerate().for_each(|(n, sums)| {
             let (a, b) = (row(0, n * step), row(1, n * step));
@@ -223,10 +224,7 @@ impl Shifts {
                 for (shift, sums) in sums.iter_mut().enumerate() {
                     let half = 0.5 * (shift as isize - most) as f32 / SHIFT_STEPS;
                     for z in window * WINDOW..((window + 1) * WINDOW).min(nz) {
-                        if let Some([va, vb]) = pair(a, b, z as f32, half) {
-                            let new = [va * vb, va * va, vb * vb, 1.0];
-                            sums.iter_mut().zip(new).for_each(|(sum, new)| *sum += new);
-                        }
+                        add(sums, products(a, b, z as f32, half));
                     }
                 }
             }
@@ -242,15 +240,14 @@ impl Shifts {
         let [lines, nz] = self.size;
         let width = (2 * self.most + 1) as usize;
         let windows = nz.div_ceil(WINDOW);
-        let mut all = [0.0f32; 4];
+        let mut all = Sums::default();
         for (n, line) in (0..lines).step_by(self.step).enumerate() {
-            let [constant, slope, bend] = on_line(terms, lines, line);
+            let on_line = on_line(terms, lines, line);
             for window in 0..windows {
                 let v = scaled((window * WINDOW) as f32 + 0.5 * (WINDOW - 1) as f32, nz);
-                let shift = ((constant + v * (slope + v * bend)) * SHIFT_STEPS).round() as isize;
+                let shift = (at_depth(on_line, v) * SHIFT_STEPS).round() as isize;
                 if shift.abs() <= self.most {
-                    let sums = self.sums[(n * windows + window) * width + (shift + self.most) as usize];
-                    all.iter_mut().zip(sums).for_each(|(sum, new)| *sum += new);
+                    add(&mut all, self.sums[(n * windows + window) * width + (shift + self.most) as usize]);
                 }
             }
         }
@@ -258,20 +255,28 @@ impl Shifts {
     }
 }
 
-/// The amplitudes of both sides half a throw above and below a sample; `None` where one of them has none there.
+/// Σ a b, Σ a², Σ b² and the count of pairs.
+type Sums = [f32; 4];
+
 #[inline]
-fn pair(a: &[f32], b: &[f32], z: f32, half: f32) -> Option<[f32; 2]> {
-    let (za, zb) = (z - half, z + half);
-    if za.min(zb) < 0.0 || za.max(zb) > (a.len() - 1) as f32 {
-        return None;
-    }
-    let (va, vb) = (interpolate(a, za), interpolate(b, zb));
-    (va.is_finite() && vb.is_finite()).then_some([va, vb])
+fn add(sums: &mut Sums, more: Sums) {
+    sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
 }
 
-/// The score of a throw from Σ a b, Σ a², Σ b², the count of pairs, and how many samples there are: the correlation, a
+/// What the amplitudes of both sides half a throw above and below a sample add; nothing where one of them has none there.
+#[inline]
+fn products(a: &[f32], b: &[f32], z: f32, half: f32) -> Sums {
+    let (za, zb) = (z - half, z + half);
+    if za.min(zb) < 0.0 || za.max(zb) > (a.len() - 1) as f32 {
+        return Sums::default();
+    }
+    let (a, b) = (interpolate(a, za), interpolate(b, zb));
+    if a.is_finite() && b.is_finite() { [a * b, a * a, b * b, 1.0] } else { Sums::default() }
+}
+
+/// The score of a throw from its sums and how many samples there are: the correlation, a
 /// little less where little overlaps, −1 where less than enough does.
-fn scored([product, lower, upper, both]: [f32; 4], there: f32, terms: &[f32; 6]) -> f32 {
+fn scored([product, lower, upper, both]: Sums, there: f32, terms: &[f32; 6]) -> f32 {
     let bend = BEND_COST * terms[1..].iter().map(|term| term * term).sum::<f32>();
     let overlap = both / there.max(1.0);
     if overlap < LEAST_OVERLAP { -1.0 } else { product / (lower * upper).sqrt().max(1e-9) * overlap.powf(0.25) - bend }
