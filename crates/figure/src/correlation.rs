@@ -329,5 +329,4 @@ fn curve_names(wells: &[&Well]) -> Vec<(String, usize)> {
 }
 
 #[cfg(test)]
-#[path = "../tests/unit/correlation.rs"]
 mod tests;

@@ -212,5 +212,4 @@ pub fn weighed((r, to_r): (f32, Vec3), (log, to_log): (f32, Vec3)) -> (f32, Vec3
 }
 
 #[cfg(test)]
-#[path = "../tests/unit/weight.rs"]
 mod tests;

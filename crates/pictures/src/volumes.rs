@@ -232,5 +232,4 @@ fn at_level(covers: VoxelBox, full: [usize; 3], size: [usize; 3], level: usize) 
 }
 
 #[cfg(test)]
-#[path = "../tests/unit/volumes.rs"]
 mod tests;

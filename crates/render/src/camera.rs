@@ -311,5 +311,4 @@ impl View {
 }
 
 #[cfg(test)]
-#[path = "../tests/unit/camera.rs"]
 mod tests;

@@ -480,5 +480,4 @@ impl Heights {
 }
 
 #[cfg(test)]
-#[path = "../tests/unit/ground.rs"]
 mod tests;

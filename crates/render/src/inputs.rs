@@ -325,5 +325,4 @@ impl<'a> NamedVolume<'a> {
 }
 
 #[cfg(test)]
-#[path = "../tests/unit/inputs.rs"]
 mod tests;

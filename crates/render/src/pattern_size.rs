@@ -62,5 +62,4 @@ impl Frequencies {
 }
 
 #[cfg(test)]
-#[path = "../tests/unit/pattern_size.rs"]
 mod tests;

@@ -129,5 +129,4 @@ impl Solid {
 }
 
 #[cfg(test)]
-#[path = "../tests/unit/visible.rs"]
 mod tests;

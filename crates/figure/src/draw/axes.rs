@@ -129,5 +129,4 @@ pub fn drawn(whole: Rect, body: Rect, [across, down]: [&Axis; 2]) -> Group {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/axes.rs"]
 mod tests;

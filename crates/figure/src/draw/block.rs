@@ -306,5 +306,4 @@ impl BlockPanel<'_> {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/block.rs"]
 mod tests;

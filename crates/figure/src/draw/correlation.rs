@@ -421,5 +421,4 @@ fn thinned(places: &[DVec2]) -> Vec<DVec2> {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/correlation_names.rs"]
 mod tests;

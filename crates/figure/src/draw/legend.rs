@@ -293,5 +293,4 @@ fn name(name: &str, beside: DVec2, room: Rect, size_pt: f64) -> Text {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/legend.rs"]
 mod tests;

@@ -122,5 +122,4 @@ fn mean_of(line: &Measured, at: f64) -> DVec2 {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/map_faults.rs"]
 mod tests;

@@ -264,5 +264,4 @@ pub fn stick(places: Vec<DVec2>, colour: Colour) -> Group {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/overlay.rs"]
 mod tests;

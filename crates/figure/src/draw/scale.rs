@@ -126,5 +126,4 @@ pub fn block_caption(scene: &Scene, geometry: &SurveyGeometry) -> String {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/scale.rs"]
 mod tests;

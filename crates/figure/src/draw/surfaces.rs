@@ -241,5 +241,4 @@ fn fill(image: &mut RgbaImage, [a, mut b, mut c]: [DVec2; 3], colour: [f32; 3], 
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/surfaces.rs"]
 mod tests;

@@ -45,5 +45,4 @@ fn runs(count: usize, is_so: impl Fn(usize) -> bool) -> impl Iterator<Item = [us
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/hatch.rs"]
 mod tests;

@@ -147,5 +147,4 @@ impl Refs {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/pdf.rs"]
 mod tests;

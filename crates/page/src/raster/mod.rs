@@ -9,7 +9,6 @@ mod glyphs;
 mod paths;
 mod pictures;
 #[cfg(test)]
-#[path = "../../tests/unit/raster.rs"]
 mod tests;
 mod tiff;
 

@@ -207,5 +207,4 @@ fn base64(bytes: &[u8]) -> String {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/svg.rs"]
 mod tests;

@@ -109,5 +109,4 @@ fn read(input: &mut dyn Read, length: u64) -> io::Result<FaultNetwork> {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/blocks.rs"]
 mod tests;

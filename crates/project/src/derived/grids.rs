@@ -313,5 +313,4 @@ pub fn load_volumes(root: &Path, key: &str, size: [usize; 3], progress: &Progres
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/grids.rs"]
 mod tests;

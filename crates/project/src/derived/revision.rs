@@ -20,5 +20,4 @@ pub const PROPOSALS: u32 = 1;
 pub const FOUND_FAULTS: u32 = 1;
 
 #[cfg(test)]
-#[path = "../../tests/unit/revision.rs"]
 mod tests;

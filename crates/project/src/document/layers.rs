@@ -122,5 +122,4 @@ impl Document {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/layers.rs"]
 mod tests;

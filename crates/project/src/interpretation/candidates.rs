@@ -152,5 +152,4 @@ pub(crate) fn amplitudes(document: &Document) -> Result<&VolumeEntry, ProjectErr
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/candidates.rs"]
 mod tests;

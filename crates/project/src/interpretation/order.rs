@@ -251,5 +251,4 @@ fn depths(horizon: &Horizon, has_nodes: bool, grid: &NodeGrid, trace: [usize; 2]
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/order.rs"]
 mod tests;

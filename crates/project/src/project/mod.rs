@@ -373,5 +373,4 @@ impl Drop for NewProject {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/project.rs"]
 mod tests;

@@ -14,7 +14,6 @@ mod light;
 mod media;
 mod model;
 #[cfg(test)]
-#[path = "../../tests/unit/faces.rs"]
 mod tests;
 mod textures;
 mod tile;

@@ -310,5 +310,4 @@ fn shades(tables: &TtfTables, layer: usize) -> Vec<Shade> {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/media_bricks.rs"]
 mod tests;

@@ -198,5 +198,4 @@ fn difference(ahead: f32, behind: f32) -> f32 {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/media_samples.rs"]
 mod tests;

@@ -414,5 +414,4 @@ impl Waiting {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/slices.rs"]
 mod tests;

@@ -35,5 +35,4 @@ pub(super) fn dashed(points: &[DVec2], [on, off]: [f64; 2]) -> Vec<Vec<DVec2>> {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/dash.rs"]
 mod tests;

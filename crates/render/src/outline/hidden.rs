@@ -98,5 +98,4 @@ fn bisect(mut visible: DVec3, mut hidden: DVec3, seen: &impl Fn(DVec3) -> bool) 
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/hidden.rs"]
 mod tests;

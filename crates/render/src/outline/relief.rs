@@ -316,5 +316,4 @@ fn cut_away(resolved: &ResolvedScene, p: DVec3) -> bool {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/relief_lines.rs"]
 mod tests;

@@ -259,5 +259,4 @@ pub(crate) fn is_rock(solid: &Solid, p: Vec3) -> bool {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/outline_solid.rs"]
 mod tests;

@@ -233,5 +233,4 @@ pub(super) fn clipped(ring: &[DVec2], convex: &[DVec2]) -> Vec<DVec2> {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/vector_cut.rs"]
 mod tests;

@@ -51,5 +51,4 @@ pub(super) fn joined(lines: &[Vec<DVec2>]) -> Vec<Vec<DVec2>> {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/join.rs"]
 mod tests;

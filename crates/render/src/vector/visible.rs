@@ -211,5 +211,4 @@ fn half(polygon: &[DVec2], side: impl Fn(DVec2) -> f64) -> Vec<DVec2> {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/seen_faces.rs"]
 mod tests;

@@ -118,5 +118,4 @@ fn apart(wanted: &[f64], least: f64, [low, high]: [f64; 2]) -> Vec<f64> {
 }
 
 #[cfg(test)]
-#[path = "../../../tests/unit/column.rs"]
 mod tests;

@@ -309,5 +309,4 @@ pub(crate) fn turning(text: &Text) -> Option<f64> {
 }
 
 #[cfg(test)]
-#[path = "../../../tests/unit/names.rs"]
 mod tests;
