@@ -66,7 +66,7 @@ test: setup
 
 check: setup
 	cargo fmt --all --check
-	cargo clippy --workspace --all-targets --locked --features petroglyph-fuzz/documents,petroglyph-fuzz/data -- -D warnings
+	cargo clippy --workspace --all-targets --locked --features fuzz/documents,fuzz/data -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
 
 accuracy: setup

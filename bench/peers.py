@@ -11,13 +11,13 @@ With --store: segyio reads `survey.sgy` (cube, inline, crossline, depth slice; t
 template for post-stack volumes and its default chunks and codec, then reads the same three sections; the shortest of seven counts.
 
     venv/bin/pip install vtk
-    cargo run -p petroglyph-render --example volume_speed -- --dump volume.raw
+    cargo run -p render --example volume_speed -- --dump volume.raw
     venv/bin/python bench/peers.py --volume volume.raw [--side 256 --pixels 800 --function typical]
 
 times VTK's volume mappers on the volume, function, camera and step that `volume_speed` draws: one sample a voxel, the white ramp, a parallel
 projection over a corner. VTK's graphics mapper runs on whatever OpenGL there is, without a window.
 
-    cargo run -p petroglyph-candidates --example extraction_speed -- 256 1 amplitude.npy
+    cargo run -p candidates --example extraction_speed -- 256 1 amplitude.npy
     venv/bin/python bench/peers.py --amplitude amplitude.npy
 
 times scipy's nearest extrema and connected extrema on the samples that our extraction was timed on.

@@ -2,9 +2,9 @@
 """Relative geologic time by published means, on the volume that our own was measured on, for docs/time.md.
 
     python3 -m venv venv && venv/bin/pip install numpy scipy pyseistr
-    cargo run -p petroglyph-time --example isochrons 128 3 1 --dump volume.f32
+    cargo run -p time --example isochrons 128 3 1 --dump volume.f32
     venv/bin/python bench/time_peers.py volume.f32 128 tau.f32 --method tensor
-    cargo run -p petroglyph-time --example isochrons 128 3 1 --tau tau.f32
+    cargo run -p time --example isochrons 128 3 1 --tau tau.f32
 
 Methods:
 

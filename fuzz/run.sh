@@ -16,7 +16,7 @@ export RAYON_NUM_THREADS=1
 # Compiles the programs named after the features, with coverage counters. Features of the whole workspace are united, so
 # that crates of others are those of every other build.
 compile() {
-    features=petroglyph-fuzz/libfuzzer$1
+    features=fuzz/libfuzzer$1
     shift
     for program in "$@"; do set -- "$@" --bin "fuzz-$program"; shift; done
     RUSTC_WORKSPACE_WRAPPER=$PWD/fuzz/instrument.sh CARGO_INCREMENTAL=0 \
@@ -31,12 +31,12 @@ features=
 programs="segy segy-headers surface well"
 case " ${*:-documents} " in
     *" documents"* | *" derived"* | *" model"*)
-        features=$features,petroglyph-fuzz/documents
+        features=$features,fuzz/documents
         programs="$programs documents derived model" ;;
 esac
 case " ${*:-tile} " in
     *" tile"* | *" store"*)
-        features=$features,petroglyph-fuzz/data
+        features=$features,fuzz/data
         programs="$programs tile store" ;;
 esac
 compile "$features" $programs

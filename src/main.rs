@@ -1,7 +1,7 @@
 //! The `petroglyph` program.
 
 #[global_allocator]
-static MEMORY: survey::kept_memory::ProgramMemory = survey::kept_memory::ProgramMemory;
+static MEMORY: system::kept_memory::ProgramMemory = system::kept_memory::ProgramMemory;
 
 fn main() -> std::process::ExitCode {
     petroglyph::main()

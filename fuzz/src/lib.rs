@@ -14,7 +14,7 @@ pub use inputs::{HAND_WRITTEN, WELL_FILES, interpretation, well_path};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::path::{Path, PathBuf};
 
-use segy::{
+use files::segy::{
     ByteOrder, FileUnit, KeptDuplicate, LengthUnit, LineSource, NumberType, SampleFormat, SegyFile, SegyOptions,
     TraceWeight,
 };

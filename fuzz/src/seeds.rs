@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use formats::{Format, write_fault, write_horizon};
-use segy::{ByteOrder, WriteFormat, WriteOptions};
+use files::segy::{ByteOrder, WriteFormat, WriteOptions};
+use files::{Format, write_fault, write_horizon};
 use survey::{Progress, Volume};
 
 type Done = Result<(), Box<dyn std::error::Error>>;
@@ -49,7 +49,7 @@ fn segy_seeds(corpus: &Path) -> Done {
     ] {
         let path = whole.join(name);
         let options = WriteOptions { format, byte_order, ..WriteOptions::default() };
-        segy::write(&path, &geometry, &volume, &options, &Progress::silent())?;
+        files::segy::write(&path, &geometry, &volume, &options, &Progress::silent())?;
         let bytes = fs::read(&path)?;
         fs::write(headers.join(name), [&[0; 12], &bytes[3200..]].concat())?;
         // Without line numbers, and with a missing trace: what the place of traces alone has to tell.

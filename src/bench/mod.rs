@@ -16,9 +16,9 @@ pub use self::interp::ExtractionRow;
 mod store;
 
 use param::{PackedVolume, ParamSettings, Parameterization};
-use pictures::load::{self, Loaded, Rock, Stage};
-use pictures::{Device, Painter};
 use project::error::ProjectError;
+use project::pictures::load::{self, Loaded, Rock, Stage};
+use project::pictures::{Device, Painter};
 use render::{Lookup, Scene};
 use serde::Serialize;
 use std::fmt;

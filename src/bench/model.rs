@@ -7,8 +7,8 @@
 
 use glam::{DVec2, DVec3};
 use model::{ModelSettings, StructuralModel};
-use pictures::load::{self, Rock};
 use project::error::ProjectError;
+use project::pictures::load::{self, Rock};
 use std::f64::consts::TAU;
 use survey::{
     Contact, Fault, Horizon, NodeGrid, Progress, Quality, Sheet, StratigraphicHorizon, Stratigraphy, SurveyGeometry,

@@ -5,8 +5,8 @@
 //! `bench/peers.py` times segyio on the same files. A third file goes into the store and out of it.
 
 use super::StoreMeasured;
+use files::segy::{SegyOptions, WriteFormat, WriteOptions};
 use project::error::ProjectError;
-use segy::{SegyOptions, WriteFormat, WriteOptions};
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
@@ -69,11 +69,11 @@ pub fn run(side: usize, folder: &Path, progress: &Progress) -> Result<SegyReads,
     let mut reads = Vec::new();
     for (format, name) in [(WriteFormat::Ieee32, "ieee"), (WriteFormat::Ibm32, "ibm")] {
         let path = folder.join(format!("{name}.sgy"));
-        segy::write(&path, &geometry, &volume, &WriteOptions { format, ..WriteOptions::default() }, progress)?;
+        files::segy::write(&path, &geometry, &volume, &WriteOptions { format, ..WriteOptions::default() }, progress)?;
         let mut seconds = Vec::new();
         for _ in 0..ROUNDS {
             let start = Instant::now();
-            let read = segy::read(&path, &SegyOptions::default(), progress)?;
+            let read = files::segy::read(&path, &SegyOptions::default(), progress)?;
             seconds.push(start.elapsed().as_secs_f64());
             drop(read);
         }

@@ -4,8 +4,8 @@
 //! can be timed on it (`bench/peers.py --store`).
 
 use attribute::{DipSettings, SemblanceSettings, dip, semblance};
+use files::segy::{SegyFile, SegyOptions, WriteOptions};
 use project::error::ProjectError;
-use segy::{SegyFile, SegyOptions, WriteOptions};
 use serde::Serialize;
 use std::fmt;
 use std::fs;
@@ -85,7 +85,7 @@ fn measure(side: usize, kept: &Path, own: &Path, progress: &Progress) -> Result<
     write_survey(side, &file, progress)?;
 
     let start = Instant::now();
-    let read = segy::read(&file, &SegyOptions::default(), progress)?;
+    let read = files::segy::read(&file, &SegyOptions::default(), progress)?;
     let read_seconds = start.elapsed().as_secs_f64();
     let attribute_side = side.min(256);
     let part = corner(&read.volume, attribute_side);
@@ -157,7 +157,7 @@ fn write_survey(side: usize, path: &Path, progress: &Progress) -> Result<(), Pro
         }
         Ok(samples.into())
     };
-    segy::write_lines(path, &geometry, None, &WriteOptions::default(), 16, &mut source, progress)?;
+    files::segy::write_lines(path, &geometry, None, &WriteOptions::default(), 16, &mut source, progress)?;
     Ok(())
 }
 

@@ -15,6 +15,7 @@ use interp::evaluate::{
 };
 use interp::faults::ProposeSettings;
 use interp::holes::FillSettings;
+use interp::refine::{SmoothSettings, TrackSettings};
 use model::FaultNetwork;
 use project::Project;
 use project::command::{
@@ -23,7 +24,6 @@ use project::command::{
 };
 use project::document::Drawn;
 use project::interpretation::candidates::Candidates;
-use refine::{SmoothSettings, TrackSettings};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use survey::Progress;
@@ -139,7 +139,7 @@ pub(super) fn fault_accept(project: PathBuf, id: u32, name: String) -> Request {
 /// Measures the present extraction against a synthetic survey's truth.
 pub(super) fn evaluate(project: &Path, truth: &Path, progress: &Progress) -> anyhow::Result<Report> {
     let project = Project::open(project)?;
-    let truth = chains::demo::survey_files::read_truth(truth)?;
+    let truth = project::chains::demo::survey_files::read_truth(truth)?;
     let candidates = Candidates::load(project.root(), project.document(), progress)?;
     let size = candidates.forest.surfaces.size;
     if size != truth.size {

@@ -3,8 +3,8 @@
 use super::args::ViewArgs;
 use super::request::{Usage, numbers};
 use glam::{DVec2, DVec3};
-use pictures::load;
 use project::Project;
+use project::pictures::load;
 use render::{Corner, CutShape, Scene, Side, VoxelBox};
 use survey::SurveyGeometry;
 use survey::block::Leaves;

@@ -4,15 +4,16 @@ use super::page::PageRequest;
 use super::report::Report;
 use super::request::RenderRequest;
 use super::run::scene_file;
-use pictures::figures::NamedConfusion;
-use pictures::{Device, Painter, figures};
-use pictures::{load, scene};
 use project::Project;
 use project::folder::refuse_inside_project;
 use project::memory_budget;
+use project::pictures::figures::NamedConfusion;
+use project::pictures::{Device, Painter, figures};
+use project::pictures::{load, scene};
 use render::{FaceData, Scene};
 use std::path::{Path, PathBuf};
-use survey::{Progress, VerticalUnit, memory};
+use survey::{Progress, VerticalUnit};
+use system::memory;
 
 /// Most layers that are named where a list of them is told.
 const MOST_NAMED: usize = 12;
@@ -57,7 +58,7 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
         loaded = load::load_within(&project, &scene, volume_bytes, progress)?;
         (image, stage) = painter.draw(&scene, &loaded, progress)?;
     }
-    pictures::write_png(&request.out, &image, request.dpi)?;
+    project::pictures::write_png(&request.out, &image, request.dpi)?;
 
     let distortion = match scene.face_data {
         FaceData::Distortion => loaded.distortion(&scene, progress)?,

@@ -1,6 +1,6 @@
 //! What to do next about an error, in the words of the command line.
 
-use formats::FormatError;
+use files::FormatError;
 use param::ParamError;
 use project::ProjectError;
 use std::error::Error;

@@ -2,12 +2,12 @@
 
 use super::report::Report;
 use super::{info_interpretation, option};
-use formats::ImportOptions;
-use pictures::{load, scene};
+use files::ImportOptions;
+use files::segy::{SegyFile, SegyOptions};
 use project::Project;
 use project::error::Noun;
+use project::pictures::{load, scene};
 use render::{FaceData, Scene};
-use segy::{SegyFile, SegyOptions};
 use serde_json::json;
 use std::path::Path;
 use survey::{Progress, SurveyGeometry};

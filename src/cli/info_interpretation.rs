@@ -2,12 +2,12 @@
 
 use super::option;
 use super::report::Report;
-use formats::well::{self, WellFileDescription};
-use formats::{FileDescription, FormatError, ImportOptions, SurfaceDescription};
+use files::well::{self, WellFileDescription};
+use files::{FileDescription, FormatError, ImportOptions, SurfaceDescription};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
-use survey::file;
+use system::file;
 
 /// Files longer than this are taken for volumes.
 const LARGEST: u64 = file::MAX_INTERPRETATION_BYTES;
@@ -24,7 +24,7 @@ pub(super) fn describe(path: &Path, options: &ImportOptions) -> anyhow::Result<O
             return Ok(Some(well_file(&found)));
         }
     }
-    match formats::describe(path, options) {
+    match files::describe(path, options) {
         Ok(mut found) => {
             found.surfaces.iter_mut().for_each(|surface| option::name_in(surface.notes_mut()));
             Ok(Some(interpretation(&found)))
@@ -57,8 +57,8 @@ fn begin(path: &Path) -> Option<[u8; 4]> {
 fn interpretation(found: &FileDescription) -> Report {
     let mut report = Report::default();
     let evidence = match &found.format.source {
-        formats::Provenance::File(words) => words.as_str(),
-        formats::Provenance::Option | formats::Provenance::Assumed => "as stated",
+        files::Provenance::File(words) => words.as_str(),
+        files::Provenance::Option | files::Provenance::Assumed => "as stated",
     };
     report.say(format!(
         "{}: {} file in the format {} ({evidence}), {} bytes",

@@ -8,7 +8,8 @@ use super::assembly;
 use super::request::{Listing, Request, Usage};
 use super::segy::segy_options;
 use attribute::{DipSettings, SemblanceSettings};
-use formats::{
+use files::segy::WriteFormat;
+use files::{
     Column, ExportOptions, Format, HorizonShape, ImportOptions, PlaceBy, SurfaceKind, ValueOrder, WhenRotated,
     ZPositive, ZUnit,
 };
@@ -19,7 +20,6 @@ use project::command::{
 };
 use project::document::Polarity;
 use project::memory_budget;
-use segy::WriteFormat;
 use survey::Contact;
 
 /// Parses one of several words.

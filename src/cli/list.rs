@@ -3,10 +3,10 @@
 use super::report::Report;
 use super::request::Listing;
 use super::well;
-use pictures::scene;
 use project::Project;
 use project::content;
 use project::error::Noun;
+use project::pictures::scene;
 use project::styles;
 use serde_json::{Value, json};
 use survey::Progress;

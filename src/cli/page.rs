@@ -11,12 +11,13 @@ use figure::draw::section::Zoom;
 use figure::{
     Annotation, BlockPart, CorrelationPart, FencePart, Figure, MapPart, PageSize, Part, SectionKind, SectionPart,
 };
-use pictures::figures::{self, FigureSettings, InterpreterView};
-use pictures::load;
+use project::pictures::figures::{self, FigureSettings, InterpreterView};
+use project::pictures::load;
 use project::{Project, memory_budget};
 use render::{FaceData, Scene};
 use std::path::PathBuf;
-use survey::{Progress, file};
+use survey::Progress;
+use system::file;
 
 /// A page that was asked for.
 #[derive(Debug, Default)]

@@ -12,21 +12,21 @@ use super::view::ViewChanges;
 use super::well;
 use super::{assembly, extraction, interpretation};
 use crate::bench;
-use chains::illustrate::IllustrateSettings;
-use formats::{ExportOptions, Format, ImportOptions, SurfaceKind};
+use files::segy::{SegyOptions, WriteFormat};
+use files::{ExportOptions, Format, ImportOptions, SurfaceKind};
 use interp::faults::ProposeSettings;
 use param::KDefinition;
-use pictures::Device;
-use pictures::figures::FigureFormat;
-use pictures::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
+use project::chains::illustrate::IllustrateSettings;
 use project::command::{
     AddNote, AddTexture, Command, Extract, LinkVolume, RemoveNote, RemoveScalar, RemoveScene, RemoveVolume,
     RenameScene, RenameVolume, ResetLayer, SetLayer, SetParameterization, SetScalar, SetVelocity,
 };
 use project::document::{NoteEntry, Polarity};
 use project::memory_budget;
+use project::pictures::Device;
+use project::pictures::figures::FigureFormat;
+use project::pictures::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use render::{IsosurfaceSource, Scope};
-use segy::{SegyOptions, WriteFormat};
 use std::path::PathBuf;
 use std::time::Duration;
 use survey::SurveyGeometry;

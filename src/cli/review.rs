@@ -3,10 +3,10 @@
 use super::args::{ExportArgs, ReviewArgs};
 use super::report::Report;
 use super::request::{Usage, drawing};
-use pictures::Device;
 use project::Project;
 use project::folder::refuse_inside_project;
 use project::memory_budget;
+use project::pictures::Device;
 use review::glb::TRIANGLES;
 use review::html::SIZES_MB;
 use review::{DENSITIES, MOST_SECTIONS, ReviewSettings, glb, html};

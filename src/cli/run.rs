@@ -6,21 +6,22 @@ use super::terminal::Terminal;
 use super::{animate, assembly, check, draw, info, list, option, review};
 use crate::bench;
 use anyhow::Context;
-use chains::demo::{self, survey_files};
-use chains::illustrate;
-use formats::{ExportOptions, Format, SurfaceKind};
-use pictures::load::Stage;
-use pictures::{load, scene};
+use files::{ExportOptions, Format, SurfaceKind};
 use project::Project;
 use project::ProjectError;
+use project::chains::demo::{self, survey_files};
+use project::chains::illustrate;
 use project::command::{AddScene, Command, Effect, ProposeFaults, SetParameterization, SetRaw};
 use project::folder::refuse_inside_project;
+use project::pictures::load::Stage;
+use project::pictures::{load, scene};
 use project::{derived, styles};
 use render::Scene;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use survey::{Progress, file};
+use survey::Progress;
 use synth::SynthSettings;
+use system::file;
 use ttf::{TextureLibrary, contact_sheet};
 
 /// Why a request failed.
@@ -97,23 +98,23 @@ pub(super) fn carry_out(request: Request, wait: Duration, progress: &Progress) -
             }
         }
         Request::ExportCandidates { project, out } => {
-            let count = exports::candidates::write(&open(&project)?, &out, progress)?;
+            let count = project::exports::candidates::write(&open(&project)?, &out, progress)?;
             let mut report = Report::line(format!("{}: {count} points of horizon candidates", out.display()));
             report.field("file", &out).field("points", count);
             report
         }
         Request::ExportValues { project, out, horizon, values, window } => {
             let project = open(&project)?;
-            let done = exports::surface::write_values(&project, &out, (&horizon, &values), window, progress)?;
+            let done = project::exports::surface::write_values(&project, &out, (&horizon, &values), window, progress)?;
             let mut report = Report::line(format!("{}: {} nodes of {horizon}", out.display(), done.nodes));
             report.field("file", &out).field("nodes", done.nodes);
             report
         }
         Request::ExportVolume { project, out, volume, format } => {
-            told(exports::volume::write(&open(&project)?, &out, &volume, format, progress)?)
+            told(project::exports::volume::write(&open(&project)?, &out, &volume, format, progress)?)
         }
         Request::UploadVolume { project, url, volume } => {
-            told(exports::volume::upload(&open(&project)?, &url, &volume, progress)?)
+            told(project::exports::volume::upload(&open(&project)?, &url, &volume, progress)?)
         }
         Request::Parameterize { project, size, change, memory } => {
             parameterize(open(&project)?, (size, memory), change, progress)?
@@ -231,7 +232,8 @@ fn export(
     options: &ExportOptions,
     progress: &Progress,
 ) -> anyhow::Result<Report> {
-    let written = exports::surface::write(&Project::open(project)?, out, surface, (format, options), progress)?;
+    let written =
+        project::exports::surface::write(&Project::open(project)?, out, surface, (format, options), progress)?;
     let mut report = Report::line(format!("{} written as {format}", out.display()));
     for note in &written.notes {
         report.say(format!("  {note}"));
@@ -254,7 +256,7 @@ fn parameterize(
         Some(size) => size,
         None => project.document().frame()?.size(),
     };
-    pictures::sampling_threads(size, memory).map_err(ProjectError::from)?;
+    project::pictures::sampling_threads(size, memory).map_err(ProjectError::from)?;
     if let Some(change) = change {
         report.say(project.apply(&Command::SetParameterization(change), progress)?.summary());
     }
@@ -311,7 +313,7 @@ fn patterns(out: &Path, project: Option<&Path>) -> anyhow::Result<Report> {
         }
         None => TextureLibrary::builtin()?,
     };
-    pictures::write_png(out, &contact_sheet(&library)?, SHEET_DPI)?;
+    project::pictures::write_png(out, &contact_sheet(&library)?, SHEET_DPI)?;
     let names: Vec<&str> = library.patterns().map(|pattern| pattern.name.as_str()).collect();
     let mut report = Report::line(format!("{} patterns drawn in {}", names.len(), out.display()));
     report.field("file", out).field("patterns", names);

@@ -3,7 +3,7 @@
 use super::args::SegyArgs;
 use super::interpretation::word;
 use super::request::Usage;
-use segy::{
+use files::segy::{
     ByteOrder, FileUnit, KeptDuplicate, LengthUnit, LineSource, NumberType, SampleFormat, SegyOptions, TraceWeight,
 };
 

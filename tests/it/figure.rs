@@ -242,7 +242,7 @@ mod window {
     /// What the window shows.
     fn shown(at: &Path) -> Rocks {
         let opened = ::project::Project::open(&at.join("p.petro")).unwrap();
-        let loaded = pictures::load::load(&opened, &Scene::default(), &Progress::silent()).unwrap();
+        let loaded = project::pictures::load::load(&opened, &Scene::default(), &Progress::silent()).unwrap();
         Arc::new(RwLock::new(loaded))
     }
 

@@ -2,7 +2,7 @@
 //! resident pages of every kind count.
 
 use crate::program::command;
-use segy::WriteOptions;
+use files::segy::WriteOptions;
 use std::fs;
 use std::path::Path;
 use std::process::Stdio;
@@ -106,7 +106,7 @@ fn import_and_attributes_keep_to_the_memory_they_are_given() {
     let samples = (0..size.iter().product::<usize>()).map(|n| (n * 7919 % 60_013) as f32 - 30_000.0).collect();
     let volume = Volume::from_samples(size, samples).unwrap();
     let geometry = SurveyGeometry::regular(size, 12.5, 4.0, VerticalUnit::Milliseconds);
-    segy::write(&at.join("a.sgy"), &geometry, &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
+    files::segy::write(&at.join("a.sgy"), &geometry, &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
     drop(volume);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let limit = MEMORY_MIB * TOLERANCE + BASE_MIB + THREAD_MIB * threads as f64;

@@ -2,7 +2,7 @@
 //! wrong is stored or shown.
 
 use crate::program::{Run, begin_in, bytes, project, run_in};
-use segy::WriteOptions;
+use files::segy::WriteOptions;
 use std::fs::{self, File};
 use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ fn write_survey(at: &Path) -> PathBuf {
     let samples = (0..SIZE.iter().product::<usize>()).map(|n| (n * 7919 % 60_013) as f32 - 30_000.0).collect();
     let volume = Volume::from_samples(SIZE, samples).unwrap();
     let geometry = SurveyGeometry::regular(SIZE, 12.5, 4.0, VerticalUnit::Milliseconds);
-    segy::write(&path, &geometry, &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
+    files::segy::write(&path, &geometry, &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
     path
 }
 
@@ -141,7 +141,8 @@ fn turn_a_bit(root: &Path, [x, y, z]: [u64; 3]) {
 fn a_section_refuses_a_wrong_bit_and_names_the_brick() {
     let folder = project();
     let at = folder.path();
-    let seismic = segy::scan(&at.join("s/survey.sgy"), &segy::SegyOptions::default(), &Progress::silent()).unwrap();
+    let seismic =
+        files::segy::scan(&at.join("s/survey.sgy"), &files::segy::SegyOptions::default(), &Progress::silent()).unwrap();
     let inline = |index: i32| seismic.inlines.first + index * seismic.inlines.step;
     let crossline = |index: i32| seismic.crosslines.first + index * seismic.crosslines.step;
     turn_a_bit(&at.join("p.petro"), [20, 11, 30]);

@@ -1,7 +1,7 @@
 //! Volumes into the store and out of it: bounded memory, every trace order, interruptions, SEG-Y again, attributes.
 
 use crate::program::{Run, bytes, command, project, run_in};
-use segy::{SegyOptions, WriteFormat, WriteOptions};
+use files::segy::{SegyOptions, WriteFormat, WriteOptions};
 use std::fs;
 use std::path::Path;
 use std::process::Stdio;
@@ -22,7 +22,7 @@ fn write(path: &Path, size: [usize; 3], format: WriteFormat) -> Volume<f32> {
     let mut volume = volume(size);
     volume.set_live(Some((0..size[0] * size[1]).map(|n| n % 11 != 4).collect())).unwrap();
     let options = WriteOptions { format, ..WriteOptions::default() };
-    segy::write(path, &geometry, &volume, &options, &Progress::silent()).unwrap();
+    files::segy::write(path, &geometry, &volume, &options, &Progress::silent()).unwrap();
     volume
 }
 
@@ -45,11 +45,11 @@ fn integers_stay_integers_in_the_store_and_come_back_exactly() {
     assert_eq!(stored.type_name(), "int16");
     same_live_samples(&stored.read_f32(0, &Progress::silent()).unwrap(), &original);
 
-    let first = segy::read(&at.join("a.sgy"), &SegyOptions::default(), &Progress::silent()).unwrap();
+    let first = files::segy::read(&at.join("a.sgy"), &SegyOptions::default(), &Progress::silent()).unwrap();
     for (line, code) in [("", 3), ("--format-code 3", 3), ("--format-code 5", 5), ("--format-code 1", 1)] {
         let run = run_in(at, &format!("export p.petro b.sgy --volume seismic {line} --json")).done();
         assert_eq!(run.json()["format_code"], code);
-        let again = segy::read(&at.join("b.sgy"), &SegyOptions::default(), &Progress::silent()).unwrap();
+        let again = files::segy::read(&at.join("b.sgy"), &SegyOptions::default(), &Progress::silent()).unwrap();
         assert_eq!(again.info.format_code, code);
         assert_eq!(again.geometry, first.geometry);
         same_live_samples(&again.volume, &original);

@@ -17,8 +17,8 @@ fn write(at: &Path, size: [usize; 3], amplitude: impl Fn(usize, usize, usize) ->
     let samples = (0..nx * ny * nz).map(|n| amplitude(n / (ny * nz), n / nz % ny, n % nz)).collect();
     let volume = Volume::from_samples(size, samples).unwrap();
     let geometry = SurveyGeometry::regular(size, 25.0, 4.0, VerticalUnit::Milliseconds);
-    let options = segy::WriteOptions::default();
-    segy::write(&at.join("a.sgy"), &geometry, &volume, &options, &Progress::silent()).unwrap();
+    let options = files::segy::WriteOptions::default();
+    files::segy::write(&at.join("a.sgy"), &geometry, &volume, &options, &Progress::silent()).unwrap();
 }
 
 /// A number that looks like noise.

@@ -10,10 +10,11 @@
 
 use anyhow::{Context as _, bail};
 use app::Window;
+use app::widgets::raster::Raster;
 use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, TexturesDelta, vec2};
 use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, TestRenderer};
-use formats::well::WellFiles;
+use files::well::WellFiles;
 use glam::DVec3;
 use image::{Rgba, RgbaImage};
 use project::command::{AddNote, AddScene, AddWell, Command};
@@ -28,7 +29,6 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use survey::SurveyGeometry;
-use widgets::raster::Raster;
 
 /// Margin that the harness leaves around the window, points.
 const MARGIN: f32 = 8.0;

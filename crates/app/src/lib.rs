@@ -11,7 +11,7 @@
 //!   itself.
 //!
 //! Every change to a project goes through [`project::Command`] and the project's history, as on the command line.
-//! Pictures come from the same [`pictures::Painter`] as those of `petroglyph render`, so the window and the
+//! Pictures come from the same [`project::pictures::Painter`] as those of `petroglyph render`, so the window and the
 //! file show the same.
 //!
 //! Deliberately absent: project state that is not on disk, and any drawing of rock.
@@ -19,6 +19,7 @@
 pub mod error;
 mod hold;
 pub mod views;
+pub mod widgets;
 pub mod window;
 pub mod work;
 

@@ -1,5 +1,5 @@
 //! Times extraction stage by stage and says whether its result changed:
-//! `cargo run -p petroglyph-candidates --example extraction_speed [SIDE | NXxNYxNZ [ROUNDS [FILE]]]`.
+//! `cargo run -p candidates --example extraction_speed [SIDE | NXxNYxNZ [ROUNDS [FILE]]]`.
 //!
 //! A synthetic survey at SNR 3 of SIDE³ (256) voxels. For every round and stage: seconds of the clock,
 //! seconds of the processor (all threads), bytes a voxel held at its peak beyond the volume, and a digest of

@@ -36,7 +36,7 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use survey::Progress;
 pub use survey::candidates::BEYOND;
-use survey::wide::widest;
+use system::wide::widest;
 pub(crate) use triangle::CellTriangle;
 
 /// The code of the greatest distance.

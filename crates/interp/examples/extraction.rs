@@ -1,4 +1,4 @@
-//! Measures the quality of extraction for `docs/extraction.md`: `cargo run -p petroglyph-interp --example
+//! Measures the quality of extraction for `docs/extraction.md`: `cargo run -p interp --example
 //! extraction [SIDE]`.
 //!
 //! Synthetic surveys of SIDE³ voxels (default 256) at three signal-to-noise ratios with three seeds. It

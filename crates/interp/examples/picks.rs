@@ -1,7 +1,7 @@
 //! Prints docs/picks.md: how many picks the horizons of synthetic surveys take, for several noise levels and
 //! seeds.
 //!
-//! `cargo run -p petroglyph-interp --example picks [SIZE] [SEEDS]`
+//! `cargo run -p interp --example picks [SIZE] [SEEDS]`
 
 use glam::DVec3;
 use interp::assembly::{ClimbSettings, Selection, highest_valid, leaf_at};
@@ -60,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     println!("# Picks\n");
     println!(
-        "Written by `cargo run -p petroglyph-interp --example picks`, from synthetic surveys of {size}³ samples;\n\
+        "Written by `cargo run -p interp --example picks`, from synthetic surveys of {size}³ samples;\n\
          no fault is interpreted.\n"
     );
     println!("## Extraction and picks\n");

@@ -24,6 +24,7 @@ pub mod evaluate;
 pub mod faults;
 pub mod holes;
 pub mod reassembly;
+pub mod refine;
 mod sheet;
 
 pub use candidates::{bricks, distance, error, extraction, extrema, forest, grow, surfaces};

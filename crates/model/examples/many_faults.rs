@@ -1,5 +1,5 @@
 //! Times a network of long faults and a model of five horizons that they cut, with so many faults and voxels a side:
-//! `cargo run --release -p petroglyph-model --example many_faults -- 20 128`. Half of the faults dip one way, half the
+//! `cargo run --release -p model --example many_faults -- 20 128`. Half of the faults dip one way, half the
 //! other, and their strikes differ, so that they cross.
 
 use glam::DVec3;

@@ -8,9 +8,9 @@ pub use advice::remedy_of;
 pub use noun::Noun;
 
 use crate::placement::PlacementError;
-use formats::FormatError;
-use formats::well::WellFileError;
-use segy::SegyError;
+use files::FormatError;
+use files::segy::SegyError;
+use files::well::WellFileError;
 use std::io;
 use std::path::PathBuf;
 use store::StoreError;
@@ -76,7 +76,7 @@ pub enum ProjectError {
     },
     /// What is asked for does not fit into memory.
     #[error(transparent)]
-    Memory(#[from] survey::memory::NotEnough),
+    Memory(#[from] system::memory::NotEnough),
     /// Stored data of another size than the project says.
     #[error("the data of \"{name}\" have {found:?} inlines, crosslines and samples, but the project says {expected:?}")]
     OtherSize {

@@ -22,15 +22,18 @@
 //! only where it is the same everywhere. The names of options and fields are known only to the program that shows the
 //! error.
 
+pub mod chains;
 pub mod check;
 pub mod command;
 pub mod content;
 pub mod derived;
 pub mod document;
 pub mod error;
+pub mod exports;
 pub mod folder;
 pub mod interpretation;
 pub mod memory_budget;
+pub mod pictures;
 pub mod placement;
 mod project;
 pub mod styles;

@@ -1,8 +1,8 @@
 //! The memory that is available.
 
-/// Half of the memory that is available now, bytes ([`survey::memory::available`]).
+/// Half of the memory that is available now, bytes ([`system::memory::available`]).
 pub fn half_of_available() -> u64 {
-    survey::memory::available() / 2
+    system::memory::available() / 2
 }
 
 /// Parses a number of bytes such as `2G`, `512M`, `800K` or a plain number.

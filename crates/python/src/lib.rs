@@ -31,7 +31,7 @@ mod work;
 use pyo3::prelude::*;
 
 #[global_allocator]
-static MEMORY: survey::kept_memory::ProgramMemory = survey::kept_memory::ProgramMemory;
+static MEMORY: system::kept_memory::ProgramMemory = system::kept_memory::ProgramMemory;
 
 /// The module that Python imports.
 #[pymodule]

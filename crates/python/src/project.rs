@@ -5,10 +5,10 @@ use crate::refusal;
 use crate::stored::{box_of, info_of};
 use crate::work::{long, long_of, on, task};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods};
-use pictures::load::{self, Rock};
 use project::command::Command;
 use project::document::VolumeEntry;
 use project::error::Noun;
+use project::pictures::load::{self, Rock};
 use project::{ProjectError, content};
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -243,7 +243,7 @@ impl Project {
         let sample = |progress: &Progress| -> Result<_, ProjectError> {
             let project = self.lock();
             let rock = Self::rock(&project, progress)?;
-            survey::memory::check("i, j and k for each voxel", &part, VOXEL_BYTES)?;
+            system::memory::check("i, j and k for each voxel", &part, VOXEL_BYTES)?;
             Ok(rock.parameterization.voxel_box(&rock.model, size, start, part, progress)?)
         };
         let sampled =

@@ -1,4 +1,4 @@
-//! Draws a block of the synthetic survey: `cargo run -p petroglyph-render --example block -- OUT_DIR [SIZE]
+//! Draws a block of the synthetic survey: `cargo run -p render --example block -- OUT_DIR [SIZE]
 //! [PICTURE]`.
 //!
 //! Writes illustrative, raw and half-blended pictures, a corner cut, a stair and the ground as relief, each

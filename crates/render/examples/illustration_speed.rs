@@ -1,4 +1,4 @@
-//! Measures how long the scene of P-illus 5 takes: `cargo run -p petroglyph-render --example
+//! Measures how long the scene of P-illus 5 takes: `cargo run -p render --example
 //! illustration_speed -- [--side N] [--size WxH] [--device cpu|gpu|both] [--repeats N]`.
 //!
 //! Needs only a Vulkan driver (none with `--device cpu`). The scene is a folded, faulted synthetic survey

@@ -1,4 +1,4 @@
-//! Measures how long volumes take to draw: `cargo run -p petroglyph-render --example volume_speed -- [--side
+//! Measures how long volumes take to draw: `cargo run -p render --example volume_speed -- [--side
 //! N] [--size WxH] [--device cpu|gpu|both] [--only TEXT] [--keep FOLDER] [--dump FILE]`.
 //!
 //! Needs only a Vulkan driver (none with `--device cpu`). A closed-form volume of folded layers with noise is

@@ -11,12 +11,12 @@ use figure::draw::swatch;
 use glam::DVec3;
 use image::{RgbImage, imageops};
 use model::section::SectionPlane;
-use pictures::load::{self, Loaded, Rock};
-use pictures::{Device, Painter, figures, scene};
 use project::Project;
 use project::content;
 use project::document::{Document, NoteEntry};
 use project::error::ProjectError;
+use project::pictures::load::{self, Loaded, Rock};
+use project::pictures::{Device, Painter, figures, scene};
 use project::styles;
 use render::ground::is_air;
 use render::{Faces, Scene};
@@ -501,7 +501,7 @@ fn provenance(document: &Document, loaded: &Loaded) -> Vec<String> {
     if let Some(raw) = &loaded.raw {
         lines.push(format!("raw data: volume {}", raw.volume));
     }
-    lines.extend(pictures::sparse_sentences(&loaded.sparse()));
+    lines.extend(project::pictures::sparse_sentences(&loaded.sparse()));
     for entry in document.volumes.iter().take(1) {
         let file = entry.source.path.file_name().map(|name| name.to_string_lossy().into_owned());
         lines.extend(file.map(|file| format!("seismic data: {file}")));

@@ -6,7 +6,7 @@ use super::notice::{Notice, Place};
 use super::picking::{PickingStep, PickingTask};
 use super::session::Snapshot;
 use super::view::{Compare, Layout, Panel, SectionVolumes, StandardView};
-use formats::SurfaceKind;
+use files::SurfaceKind;
 use project::command::Command;
 use render::Scene;
 use std::path::PathBuf;

@@ -1,7 +1,7 @@
 //! What each action does to the state.
 
 use super::{Action, Compare, Notice, Panel, PickingTask, Place, Session, State, Task, ViewState, camera};
-use pictures::scene;
+use project::pictures::scene;
 
 impl State {
     /// Applies an action; returns the tasks for the workers.

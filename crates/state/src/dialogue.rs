@@ -1,10 +1,10 @@
 //! The dialogues.
 
 use figure::Annotation;
-use formats::{Format, SurfaceKind};
+use files::segy::WriteFormat;
+use files::{Format, SurfaceKind};
 use review::glb::OFFICE_TRIANGLES;
 use review::html::SIZE_MB;
-use segy::WriteFormat;
 use std::path::{Path, PathBuf};
 
 /// What a file or folder is chosen for.

@@ -1,6 +1,6 @@
 //! What to do next about an error, in the words of the window.
 
-use formats::FormatError;
+use files::FormatError;
 use project::ProjectError;
 use std::error::Error;
 

@@ -9,6 +9,7 @@ mod apply;
 pub mod camera;
 mod dialogue;
 pub mod faces;
+pub mod fields;
 mod hint;
 mod notice;
 pub mod picking;

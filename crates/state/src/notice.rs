@@ -1,11 +1,11 @@
 //! Messages: errors and notes, kept where they arose until the user has seen them.
 
+use crate::fields;
 use crate::hint;
 use project::ProjectError;
 use project::check::CheckReport;
 use project::error::remedy_of;
 use std::path::{Path, PathBuf};
-use widgets::fields;
 
 /// The part of the window where a message is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

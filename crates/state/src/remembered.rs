@@ -8,7 +8,7 @@
 use super::view::ViewState;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use survey::file;
+use system::file;
 
 /// Number of recent projects that are kept.
 const RECENT: usize = 8;

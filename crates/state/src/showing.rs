@@ -3,7 +3,7 @@
 
 use super::picking::Look;
 use super::{Panel, Session};
-use pictures::scene::{Technique, VolumeRendering};
+use project::pictures::scene::{Technique, VolumeRendering};
 use render::{FaceData, Media, PickedHorizon, Scene, Scope};
 use ttf::Colour;
 

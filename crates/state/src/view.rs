@@ -3,9 +3,9 @@
 pub use figure::SectionKind;
 
 use super::picking::Picking;
-use formats::SurfaceKind;
-use pictures::scene;
+use files::SurfaceKind;
 use project::document::Document;
+use project::pictures::scene;
 use render::{Scene, Unpicked, VoxelBox};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;

@@ -1,9 +1,9 @@
 //! Volume rendering as the window sets it up: one volume in the cut-outs or in the whole block, and horizons in it that
 //! may give off light (P-illus 5.1, P-horiz 5).
 
-use pictures::scene::{Technique, VolumeRendering};
 use project::document::Document;
 use project::error::ProjectError;
+use project::pictures::scene::{Technique, VolumeRendering};
 use render::media::Interleaved;
 use render::{Faces, Ground, Medium, Occlusion, Phong, PickedHorizon, Scene, Scope, Shading};
 use ttf::{Colour, RgbaFunction, RgbaStop};

@@ -38,13 +38,13 @@ pub(super) fn check_count(group: &Path, name: &str, shape: &[usize], counts: &[u
 
 /// Checks that metadata, where they are there, are an ordinary file of a size that people would read.
 pub(super) fn check_metadata(path: &Path) -> Result<(), StoreError> {
-    let facts = match survey::file::ordinary(path) {
+    let facts = match system::file::ordinary(path) {
         Ok(facts) => facts,
         // That they are missing is said by those who need them.
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
         Err(source) => return Err(StoreError::io("read", path, source)),
     };
-    if facts.len() <= survey::file::MAX_DOCUMENT_BYTES {
+    if facts.len() <= system::file::MAX_DOCUMENT_BYTES {
         return Ok(());
     }
     Err(StoreError::io("read", path, ErrorKind::FileTooLarge.into()))
@@ -74,7 +74,7 @@ pub(super) fn check_content(length: u64, shape: &[usize], bytes_each: usize) -> 
 impl StoredArray {
     /// Checks that so many elements of `bytes_each` fit into memory.
     pub(super) fn check_memory(&self, size: &[usize], bytes_each: usize) -> Result<(), StoreError> {
-        survey::memory::check("reading it", size, bytes_each)
+        system::memory::check("reading it", size, bytes_each)
             .map(|_| ())
             .map_err(|source| StoreError::Memory { path: self.path(), source })
     }

@@ -3,8 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 use survey::geometry::GeometryError;
-use survey::memory::NotEnough;
 use survey::progress::Cancelled;
+use system::memory::NotEnough;
 
 /// Why something could not be stored or read back.
 #[derive(Debug, thiserror::Error)]

@@ -9,9 +9,9 @@ use serde::Deserialize;
 use std::fmt::Write;
 use std::path::Path;
 use survey::fault::Fault;
-use survey::file;
 use survey::geometry::MAX_COORDINATE;
 use survey::mesh::TriangleMesh;
+use system::file;
 
 /// Kind of the file.
 const KIND: &str = "fault";

@@ -24,12 +24,12 @@ use std::fs;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Mutex;
-use survey::huge_pages::zeroed;
 use survey::progress::Progress;
 use survey::sample::Sample;
 use survey::sample::SampleType;
 use survey::source::{Block, BlockSource, LineOrder, SourceError};
 use survey::volume::Volume;
+use system::huge_pages::zeroed;
 
 /// The file that marks a folder as being written; it is removed when the volume is complete.
 pub(super) const MARKER: &str = "unfinished";

@@ -55,7 +55,7 @@ impl Link {
     /// The link of the volume at `path`, if it is a linked one; asks whether what was linked is still there.
     pub(super) fn read(path: &Path) -> Result<Option<Self>, StoreError> {
         let file = path.join(LINK);
-        let text = match survey::file::read_text(&file, survey::file::MAX_DOCUMENT_BYTES) {
+        let text = match system::file::read_text(&file, system::file::MAX_DOCUMENT_BYTES) {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(source) => return Err(StoreError::io("read", &file, source)),

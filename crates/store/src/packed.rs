@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
-use survey::positional::PlacedFile;
+use system::positional::PlacedFile;
 use zstd::bulk::{Compressor, Decompressor};
 
 /// Bytes of a block before it is packed: a short stretch that is read costs unpacking one.

@@ -212,7 +212,7 @@ impl VolumeParts {
             all.take(ranges.next().unwrap_or_default().into_iter().filter(|(brick, _)| *brick < bricks).collect());
             all.write(&self.path, level)?;
         }
-        survey::file::sync_folder(&self.path).map_err(fail)?;
+        system::file::sync_folder(&self.path).map_err(fail)?;
         fs::remove_file(self.path.join(MARKER)).map_err(fail)
     }
 

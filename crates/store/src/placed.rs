@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 use std::io;
 use std::path::PathBuf;
-use survey::positional::PlacedFile;
+use system::positional::PlacedFile;
 
 /// Bytes that are read at places.
 pub(super) trait PlacedBytes {

@@ -10,7 +10,7 @@ use super::error::StoreError;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
-use survey::file::{create_folders, sync_folder};
+use system::file::{create_folders, sync_folder};
 
 /// A target that is being replaced. If it is dropped without [`Replacement::commit`], the target remains as
 /// it was.

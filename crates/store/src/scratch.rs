@@ -23,8 +23,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 use survey::arrays::NamedArrays;
-use survey::positional::PlacedFile;
 use survey::source::SourceError;
+use system::positional::PlacedFile;
 
 /// Bytes of a checksum.
 const CHECKSUM: usize = 4;

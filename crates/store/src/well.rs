@@ -8,8 +8,8 @@ use serde::Deserialize;
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
-use survey::file;
 use survey::well::Well;
+use system::file;
 
 /// Kind of the file.
 const KIND: &str = "well";

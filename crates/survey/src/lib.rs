@@ -11,7 +11,7 @@
 //! - progress and cancellation of long computations: [`progress`];
 //! - what a user can state about a file: [`remedy`];
 //! - volumes that do not fit into memory: [`source`], [`sparse_volume`];
-//! - bytes of a file at a place: [`positional`];
+//!
 //! - what may be read and what fits into memory, and memory that is kept for what comes next: [`mod@file`], [`memory`],
 //!   [`kept_memory`];
 //! - loops for wide registers: [`wide`].
@@ -33,16 +33,11 @@ pub mod arrays;
 pub mod block;
 pub mod candidates;
 pub mod fault;
-pub mod file;
 pub mod geometry;
 pub mod height_field;
 pub mod horizon;
-pub mod huge_pages;
-pub mod kept_memory;
 pub mod level_field;
-pub mod memory;
 pub mod mesh;
-pub mod positional;
 pub mod progress;
 pub mod remedy;
 pub mod sample;
@@ -52,7 +47,6 @@ pub mod stratigraphy;
 pub mod topology;
 pub mod volume;
 pub mod well;
-pub mod wide;
 
 pub use candidates::{CandidateBox, CandidateInfo, ForestTables};
 pub use fault::Fault;

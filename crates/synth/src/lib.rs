@@ -115,7 +115,7 @@ pub enum SynthError {
     },
     /// The volumes do not fit into memory.
     #[error(transparent)]
-    Memory(#[from] survey::memory::NotEnough),
+    Memory(#[from] system::memory::NotEnough),
     /// A setting is not a positive number.
     #[error("{what} must be a positive number, found {found}")]
     NotPositive {
@@ -187,7 +187,7 @@ impl Synthetic {
     /// [`SynthError`] when the size is too small, a setting makes no sense or the user cancelled.
     pub fn generate(settings: &SynthSettings, progress: &Progress) -> Result<Self, SynthError> {
         let design = SynthDesign::new(settings)?;
-        survey::memory::check("the synthetic survey", &settings.size, BYTES_A_VOXEL)?;
+        system::memory::check("the synthetic survey", &settings.size, BYTES_A_VOXEL)?;
         let size = settings.size;
         let mut seismic = Volume::filled(size, 0.0f32);
         let mut lines = design.seismic(progress)?;

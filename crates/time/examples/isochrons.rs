@@ -1,4 +1,4 @@
-//! Measures isochrons for `docs/time.md`: `cargo run -p petroglyph-time --example isochrons [SIDE] [SNR SEED]`.
+//! Measures isochrons for `docs/time.md`: `cargo run -p time --example isochrons [SIDE] [SNR SEED]`.
 //!
 //! With a signal-to-noise ratio and a seed, that survey alone, with its faults drawn and found (`drawn` after it: only
 //! drawn); `--dump FILE` then writes

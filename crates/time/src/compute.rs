@@ -13,7 +13,8 @@ use crate::start;
 use crate::throws::{Throw, throw_of, ties};
 use interp::Surfaces;
 use serde::{Deserialize, Serialize};
-use survey::{Progress, Volume, huge_pages};
+use survey::{Progress, Volume};
+use system::huge_pages;
 
 /// Settings of geologic time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -110,7 +111,7 @@ pub fn geologic_time(
     if surfaces.size != size {
         return Err(TimeError::Size { candidates: surfaces.size, volume: size });
     }
-    survey::memory::check("geologic time", &size, BYTES_A_VOXEL)?;
+    system::memory::check("geologic time", &size, BYTES_A_VOXEL)?;
     let mut solution = Solution::start(volume, surfaces, interpretation, settings, progress)?;
     if solution.hubs.len() == 0 {
         return Ok(GeologicTime { tau: Volume::filled(size, f32::NAN), known: 0.0, not_monotone: 0.0, steps: 0 });

@@ -18,5 +18,5 @@ pub enum TimeError {
     },
     /// It does not fit into memory.
     #[error(transparent)]
-    Memory(#[from] survey::memory::NotEnough),
+    Memory(#[from] system::memory::NotEnough),
 }

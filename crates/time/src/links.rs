@@ -8,7 +8,7 @@ use crate::cut::Cut;
 use crate::hubs::Hubs;
 use crate::interpretation::KnownHorizon;
 use rayon::prelude::*;
-use survey::huge_pages;
+use system::huge_pages;
 
 /// Dips are stored in steps of this part of a sample.
 pub const DIP_STEP: f32 = 1.0 / 256.0;

@@ -13,7 +13,8 @@ use crate::links::{CUT_BELOW, DIP_STEP, Links, WEIGHT_STEP};
 use crate::stencil::{Stencils, is_steep};
 use crate::vectors::{advance, dot, turn};
 use rayon::prelude::*;
-use survey::{Cancelled, Progress, huge_pages};
+use survey::{Cancelled, Progress};
+use system::huge_pages;
 
 /// Two points that have the same time: one on either side of a fault.
 #[derive(Debug, Clone, Copy, PartialEq)]

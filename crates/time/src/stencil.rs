@@ -5,7 +5,7 @@
 //! several samples at a time; steeper links are left to be visited one by one.
 
 use crate::links::{CUT_BELOW, DIP_STEP, WEIGHT_STEP};
-use survey::wide::{Wide, widest};
+use system::wide::{Wide, widest};
 
 /// The steepest dip of which both ends are stencils, in [`DIP_STEP`]: two samples from trace to trace.
 const STEEPEST: i16 = 512;

@@ -1,7 +1,7 @@
 //! Sums over whole volumes and steps along a direction, line by line: sums have one order on any number of threads.
 
 use rayon::prelude::*;
-use survey::wide::{Wide, widest};
+use system::wide::{Wide, widest};
 
 /// Sums that run side by side, so that none waits for another.
 const LANES: usize = 8;

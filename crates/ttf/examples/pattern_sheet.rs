@@ -1,6 +1,6 @@
 //! Draws the sheet of patterns for the documentation, at 110 dots an inch, and sets the tiles of the standard beside
 //! ours where a folder of them is given:
-//! `cargo run -p petroglyph-ttf --example pattern_sheet SHEET.png [TILES_FOLDER]`.
+//! `cargo run -p ttf --example pattern_sheet SHEET.png [TILES_FOLDER]`.
 //!
 //! The folder holds an SVG for each number of section 37 (`601.svg`), whose width and height are printed points.
 

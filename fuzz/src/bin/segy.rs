@@ -2,7 +2,7 @@
 
 #![no_main]
 
-use segy::SegyOptions;
+use files::segy::SegyOptions;
 
 libfuzzer_sys::fuzz_target!(
     init: fuzz::seeds::write_if_asked(),

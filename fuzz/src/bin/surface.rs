@@ -4,7 +4,7 @@
 
 use std::sync::LazyLock;
 
-use formats::{Format, ImportOptions, read_fault, read_horizons};
+use files::{Format, ImportOptions, read_fault, read_horizons};
 
 static FORMAT: LazyLock<Option<Format>> = LazyLock::new(|| {
     let name = std::env::var("FUZZ_FORMAT").ok().filter(|name| name != "detected")?;

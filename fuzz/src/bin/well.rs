@@ -5,7 +5,7 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use formats::well::{WellOptions, describe, parse_checkshot, parse_deviation, parse_las, parse_tops};
+use files::well::{WellOptions, describe, parse_checkshot, parse_deviation, parse_las, parse_tops};
 use survey::well::WellPath;
 
 static KIND: LazyLock<String> = LazyLock::new(|| std::env::var("FUZZ_FORMAT").unwrap_or_default());

@@ -6,7 +6,7 @@
 use super::supervised::{self, Verdict};
 use super::{folder_with, program, run_once};
 use crate::program::STATE_HOME;
-use segy::WriteOptions;
+use files::segy::WriteOptions;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -89,7 +89,7 @@ fn write_files(at: &Path) {
         values.push((phase * std::f32::consts::TAU / 8.0).cos() * 100.0);
     }
     let volume = Volume::from_samples(SIZE, values).unwrap();
-    segy::write(&at.join("a.sgy"), &geometry, &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
+    files::segy::write(&at.join("a.sgy"), &geometry, &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
     for (name, z) in [("top.csv", 28.0), ("base.csv", 60.0)] {
         let mut text = "x,y,z\n".to_owned();
         for (x, y) in (0..inlines * crosslines).map(|n| (n / crosslines, n % crosslines)).filter(|at| *at != (5, 5)) {

@@ -3,10 +3,10 @@
 use crate::state::{
     Action, Appearance, Choice, Compare, Dialogue, ExportForm, Layout as Arrangement, Panel, Session, ShareForm, State,
 };
+use crate::widgets::obstacle::{needs, unless};
+use crate::widgets::percent;
 use eframe::egui::{Align, Button, Label, Layout, RichText, Ui};
 use render::Scene;
-use widgets::obstacle::{needs, unless};
-use widgets::percent;
 
 /// Width of everything but the project's name and the comparison, points.
 const OTHERS: f32 = 680.0;

@@ -2,6 +2,7 @@
 
 use crate::state::picking::{PickingStep, Tool, free_name};
 use crate::state::{Action, Session};
+use crate::widgets::obstacle::{needs, unless};
 use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Align, Button, ComboBox, DragValue, Grid, Layout, ProgressBar, Ui};
 use interp::{ExtractSettings, Extremum, Method};
@@ -10,7 +11,6 @@ use project::document::Document;
 use project::error::Noun;
 use project::interpretation::times::has_time;
 use time::TimeSettings;
-use widgets::obstacle::{needs, unless};
 
 /// The volume and the settings of the next extraction.
 #[derive(Default)]

@@ -5,11 +5,11 @@
 
 use super::notices;
 use crate::state::{Action, Choice, Dialogue, FileContent, Place, State, Target};
+use crate::widgets::dialogue;
+use crate::widgets::keyboard::is_entered;
 use crate::work::folder::Folder;
 use eframe::egui::{Context, RichText, ScrollArea, TextEdit, Ui};
 use std::path::{Path, PathBuf};
-use widgets::dialogue;
-use widgets::keyboard::is_entered;
 
 /// The chooser.
 pub struct Chooser {

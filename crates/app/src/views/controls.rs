@@ -2,16 +2,16 @@
 
 use super::{cut_shapes, notices};
 use crate::state::{Action, Panel, Place, Session, StandardView, State};
+use crate::widgets::form::{self, LABELS};
+use crate::widgets::keyboard::{Renamed, Renaming};
+use crate::widgets::obstacle::{needs, unless};
+use crate::widgets::percent;
 use eframe::egui::{Align, Button, ComboBox, DragValue, Grid, Layout, ScrollArea, Slider, TextEdit, Ui};
 use glam::DVec3;
 use project::command::{AddScene, Command, RemoveScene, RenameScene};
 use render::{Corner, Ground, PatternSize, Projection, Scene, VoxelBox};
 use survey::VerticalUnit;
 use ttf::Preset;
-use widgets::form::{self, LABELS};
-use widgets::keyboard::{Renamed, Renaming};
-use widgets::obstacle::{needs, unless};
-use widgets::percent;
 
 /// Opening angle that a perspective starts with.
 const FOV_DEG: f64 = 35.0;

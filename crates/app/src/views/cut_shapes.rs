@@ -1,11 +1,11 @@
 //! Cut-outs that are no boxes, in the panel of the block: fences, round shafts, sloping planes.
 
 use crate::state::Session;
+use crate::widgets::obstacle::{needs, unless};
 use eframe::egui::{Button, DragValue, Response, Ui};
 use glam::{DVec2, DVec3};
 use render::{CutShape, Scene, Side};
 use survey::SurveyGeometry;
-use widgets::obstacle::{needs, unless};
 
 /// Radius of a new shaft as a share of the shorter side of the block.
 const SHAFT: f64 = 0.25;

@@ -3,10 +3,14 @@
 use super::notices;
 use super::picking::{palette, swatch};
 use crate::state::{Action, Blended, Choice, DataForm, Dialogue, Place, SectionVolumes, Session, State, Written};
+use crate::widgets::form;
+use crate::widgets::keyboard::{Renamed, Renaming};
+use crate::widgets::obstacle::{needs, unless};
+use crate::widgets::percent;
 use eframe::egui::{
     Align, Button, ComboBox, DragValue, Id, Label, Layout, Response, ScrollArea, Ui, UiBuilder, WidgetInfo,
 };
-use formats::SurfaceKind;
+use files::SurfaceKind;
 use project::command::{
     Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameFault, RenameHorizon, RenameVolume,
     RenameWell, SetFaultColour, SetFaultExtent, SetRaw, SetVelocity, SetWellColour,
@@ -16,10 +20,6 @@ use project::styles;
 use render::Scene;
 use survey::VerticalUnit;
 use ttf::ColourMap;
-use widgets::form;
-use widgets::keyboard::{Renamed, Renaming};
-use widgets::obstacle::{needs, unless};
-use widgets::percent;
 
 /// Room at the right for the scroll bar, points.
 const BESIDE_BAR: f32 = 8.0;

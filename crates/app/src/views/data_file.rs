@@ -2,12 +2,12 @@
 
 use super::notices;
 use crate::state::{Action, DataForm, Dialogue, Place, State, Written};
+use crate::widgets::dialogue;
+use crate::widgets::keyboard::is_entered;
+use crate::widgets::obstacle::{needs, unless};
 use eframe::egui::{Button, ComboBox, Context, Grid, TextEdit};
-use formats::{Format, SurfaceKind};
-use segy::WriteFormat;
-use widgets::dialogue;
-use widgets::keyboard::is_entered;
-use widgets::obstacle::{needs, unless};
+use files::segy::WriteFormat;
+use files::{Format, SurfaceKind};
 
 /// Shows the dialogue.
 pub fn dialogue(ctx: &Context, state: &State, form: &DataForm, actions: &mut Vec<Action>) {

@@ -3,9 +3,9 @@
 
 use crate::state::{Action, Choice, Dialogue, FileContent, Notice, Place, State, Target};
 use crate::views::chooser;
+use crate::widgets::dialogue;
 use eframe::egui::{Align2, Color32, Context, FontId, Id, LayerId, Order};
 use std::path::{Path, PathBuf};
-use widgets::dialogue;
 
 /// The file that was dropped last, until the window can take it in.
 #[derive(Default)]

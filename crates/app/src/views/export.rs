@@ -4,19 +4,19 @@ use super::notices;
 use crate::state::{
     Action, Dialogue, ExportForm, Layout, Panel, Place, SectionFill, SectionVolumes, Session, Shown, State,
 };
+use crate::widgets::dialogue;
+use crate::widgets::keyboard::is_entered;
+use crate::widgets::obstacle::{needs, unless};
+use crate::widgets::page::PagePreview;
 use eframe::egui::{
     Align, Button, Checkbox, Context, DragValue, Grid, Layout as Alignment, ScrollArea, Spinner, TextEdit, Ui, Vec2,
     vec2,
 };
 use figure::Annotation;
-use pictures::PickedShare;
-use pictures::figures::FigureFormat;
+use project::pictures::PickedShare;
+use project::pictures::figures::FigureFormat;
 use render::{LabelChange, Scene, Unpicked};
 use std::path::Path;
-use widgets::dialogue;
-use widgets::keyboard::is_entered;
-use widgets::obstacle::{needs, unless};
-use widgets::page::PagePreview;
 
 /// Largest side of a picture, pixels.
 const LARGEST: u32 = 16_000;
@@ -260,7 +260,7 @@ pub(super) fn accept(ui: &mut Ui, sparse: &[PickedShare], wanted: &str, accepts:
         return true;
     }
     ScrollArea::vertical().max_height(SENTENCES).id_salt("sparse").show(ui, |ui| {
-        for sentence in pictures::sparse_sentences(sparse) {
+        for sentence in project::pictures::sparse_sentences(sparse) {
             ui.colored_label(ui.visuals().warn_fg_color, capital(&sentence));
         }
     });

@@ -8,6 +8,8 @@ use super::pointed::{self, Pointed};
 use super::sections::name_across;
 use super::texture;
 use crate::state::{Action, Panel, Session};
+use crate::widgets::canvas;
+use crate::widgets::obstacle::{needs, unless};
 use crate::work::fence::FenceRequest;
 use crate::work::{Rocks, Slices};
 use eframe::egui::{Button, Context, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo, vec2};
@@ -18,8 +20,6 @@ use glam::DVec2;
 use image::RgbaImage;
 use render::FaceData;
 use std::sync::Arc;
-use widgets::canvas;
-use widgets::obstacle::{needs, unless};
 
 /// Margin for the numbers at the left and the top, points.
 const MARGIN: Vec2 = vec2(52.0, 20.0);
@@ -107,7 +107,7 @@ impl FenceView {
             image: &shown.image,
             extent,
             lines: if is_interpreting { &[] } else { &shown.lines },
-            horizons: &pictures::figures::horizons(&session.document),
+            horizons: &project::pictures::figures::horizons(&session.document),
             faults: &[],
             fault_colours: &session.document.faults.iter().map(|entry| entry.colour).collect::<Vec<_>>(),
             interpretation: None,

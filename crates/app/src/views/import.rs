@@ -3,25 +3,25 @@
 
 use super::{notices, texture};
 use crate::state::{Action, Place, State, Target};
+use crate::widgets::dialogue;
+use crate::widgets::form;
+use crate::widgets::keyboard::is_entered;
+use crate::widgets::obstacle::{needs, unless};
+use crate::widgets::theme;
 use crate::work::Work;
 use crate::work::scan::{self, Reading, SurveyScan};
 use eframe::egui::{
     Align, Button, CollapsingHeader, Color32, ComboBox, Context, DragValue, Grid, Layout, Mesh, Pos2, Rect, Role,
     ScrollArea, Sense, Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
+use files::segy::{FileUnit, KeptDuplicate, LengthUnit, LineSource, SegyInfo, SegyOptions, TraceWeight};
 use glam::DVec2;
 use image::RgbaImage;
 use project::command::ImportVolume;
 use project::document::Polarity;
-use segy::{FileUnit, KeptDuplicate, LengthUnit, LineSource, SegyInfo, SegyOptions, TraceWeight};
+use state::fields;
 use std::path::{Path, PathBuf};
 use survey::{Setting, SurveyGeometry};
-use widgets::dialogue;
-use widgets::fields;
-use widgets::form;
-use widgets::keyboard::is_entered;
-use widgets::obstacle::{needs, unless};
-use widgets::theme;
 
 /// The text of a field whose value is detected in the file.
 const AS_FOUND: &str = "as found";

@@ -4,17 +4,17 @@
 use super::layers::contact_name;
 use super::notices;
 use crate::state::{Action, FileContent, Place, Session, State};
+use crate::widgets::dialogue;
+use crate::widgets::form;
+use crate::widgets::keyboard::is_entered;
+use crate::widgets::obstacle::{needs, unless};
 use crate::work::Work;
 use crate::work::scan::{self, InterpretationScan, Reading};
 use eframe::egui::{Button, CollapsingHeader, ComboBox, Context, DragValue, Grid, ScrollArea, Spinner, TextEdit, Ui};
-use formats::{Column, Format, HorizonShape, ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
+use files::{Column, Format, HorizonShape, ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
 use project::command::{AddFault, AddHorizon, Age, Command};
 use std::path::{Path, PathBuf};
 use survey::{Contact, Setting};
-use widgets::dialogue;
-use widgets::form;
-use widgets::keyboard::is_entered;
-use widgets::obstacle::{needs, unless};
 
 /// The dialogue.
 #[derive(Default)]

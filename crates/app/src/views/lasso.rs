@@ -1,10 +1,10 @@
 //! What the pointer does on sections and on the block: a click picks, a lasso erases.
 
 use crate::state::{Action, How, Panel, PickingStep, Session, Tool};
+use crate::widgets::event_order::moves;
+use crate::widgets::theme;
 use eframe::egui::{Color32, Key, Painter, Pos2, Response, Shape, Stroke, Ui};
 use glam::DVec3;
-use widgets::event_order::moves;
-use widgets::theme;
 
 /// Smallest distance between two corners, points.
 const EVERY: f32 = 3.0;

@@ -3,6 +3,8 @@
 
 use super::texture;
 use crate::state::{Action, Session};
+use crate::widgets::canvas;
+use crate::widgets::obstacle::{needs, unless};
 use crate::work::map::{MapData, MapRequest, Maps};
 use eframe::egui::{
     Button, ComboBox, Context, Rect, Role, Sense, TextWrapMode, TextureHandle, Ui, Vec2, WidgetInfo, vec2,
@@ -10,8 +12,6 @@ use eframe::egui::{
 use figure::draw::map::{self as drawing, MapFrame};
 use figure::map::{HorizonMap, Mapped};
 use glam::DVec2;
-use widgets::canvas;
-use widgets::obstacle::{needs, unless};
 
 /// Smallest and largest zoom.
 const ZOOM: [f32; 2] = [0.8, 40.0];

@@ -7,21 +7,21 @@
 use super::surfaces;
 use crate::state::picking::voxel_of;
 use crate::state::{Hidden, Look, Panel, Session, StickPoint, Tool, camera};
+use crate::widgets::canvas;
 use crate::work::{Interpreted, ShownPick, sheet};
 use eframe::egui::{Painter, Pos2, Rect, Ui};
 use figure::SectionKind;
 use figure::draw::overlay::{OverlayLines, SeenOn, stick};
 use figure::draw::surfaces::{Cells, OPACITY, fault_opacity, of_fault};
 use figure::interpretation::{DrawnInterpretation, DrawnSelection, Stick};
-use formats::SurfaceKind;
+use files::SurfaceKind;
 use glam::DVec2;
-use pictures::figures::InterpreterView;
 use project::document::FaultEntry;
+use project::pictures::figures::InterpreterView;
 use render::Faces;
 use std::collections::HashMap;
 use std::sync::Arc;
 use ttf::Colour;
-use widgets::canvas;
 
 /// The sticks of a fault being drawn, and the stick being drawn.
 const STICKS: [Colour; 2] = [Colour::new(0x9c, 0x27, 0x6f), Colour::new(0xe0, 0x20, 0x60)];

@@ -3,12 +3,12 @@
 use super::notices;
 use super::tiles::Tiles;
 use crate::state::{Action, Choice, Dialogue, Place, Session, State};
+use crate::widgets::dialogue;
+use crate::widgets::theme;
 use crate::work::Swatches;
 use eframe::egui::{Context, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, WidgetInfo, vec2};
 use project::command::{Command, SetLayer};
 use ttf::{LayerStyle, Pattern};
-use widgets::dialogue;
-use widgets::theme;
 
 /// Size of a swatch, points.
 const SWATCH: [f32; 2] = [104.0, 66.0];

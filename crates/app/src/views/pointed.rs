@@ -2,8 +2,8 @@
 
 use crate::state::camera;
 use glam::{DVec2, DVec3, Vec3};
-use pictures::LeafFacts;
-use pictures::load::Loaded;
+use project::pictures::LeafFacts;
+use project::pictures::load::Loaded;
 use render::Scene;
 use render::visible::Ray;
 

@@ -7,6 +7,8 @@ use super::block::{BlockView, paper};
 use super::overlay::Overlay;
 use super::texture;
 use crate::state::{Action, Panel, Session};
+use crate::widgets::obstacle::{needs, unless};
+use crate::widgets::theme;
 use crate::work::{Drawing, Rocks};
 use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
@@ -15,8 +17,6 @@ use eframe::egui::{
 };
 use image::RgbaImage;
 use std::collections::HashMap;
-use widgets::obstacle::{needs, unless};
-use widgets::theme;
 
 /// Size of a scene's small picture, points.
 pub const THUMBNAIL: [u32; 2] = [132, 84];

@@ -1,12 +1,13 @@
 //! What is on the screen as a figure: for the preview of the page and for the exported file.
 //!
-//! The page itself is made by [`pictures::figures::make`], as for `petroglyph render`.
+//! The page itself is made by [`project::pictures::figures::make`], as for `petroglyph render`.
 
 use super::block::{self, BEHIND_VOLUMES};
 use super::overlay::{Overlay, interpreter_view};
 use super::sections::Sections;
 use crate::state::picking::place_of;
 use crate::state::{Compare, ExportForm, Layout, Panel, SectionFill, SectionKind, Session, Shown, State, showing};
+use crate::widgets::page::PREVIEW_DPI;
 use crate::work::{Rocks, compute};
 use figure::cut::value_at;
 use figure::draw::block::Comparison;
@@ -14,15 +15,14 @@ use figure::map::Mapped;
 use figure::{BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionPart};
 use glam::DVec3;
 use page::DisplayList;
-use pictures::Device;
-use pictures::figures::{self, FigureFormat, FigureSettings, InterpreterView};
+use project::pictures::Device;
+use project::pictures::figures::{self, FigureFormat, FigureSettings, InterpreterView};
 use project::{Project, ProjectError, memory_budget};
 use render::{Background, FaceData, Scene};
 use std::path::{Path, PathBuf};
 use std::sync::PoisonError;
 use survey::{Progress, SurveyGeometry};
 use ttf::{Colour, Preset};
-use widgets::page::PREVIEW_DPI;
 
 /// Samples a pixel along each axis.
 const SAMPLES: u32 = 3;

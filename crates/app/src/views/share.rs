@@ -6,23 +6,23 @@
 use super::{export, notices, texture};
 use crate::state::picking::place_of;
 use crate::state::{Action, Dialogue, Place, Session, ShareForm, ShareKind, State};
+use crate::widgets::dialogue;
+use crate::widgets::keyboard::is_entered;
+use crate::widgets::obstacle::{needs, unless};
 use crate::work::{RunningLine, SharePreview};
 use eframe::egui::{
     Align2, Button, Color32, ComboBox, Context, DragValue, FontId, Grid, Pos2, ProgressBar, Rect, Role, ScrollArea,
     Sense, Stroke, StrokeKind, TextEdit, TextureHandle, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
-use pictures::PickedShare;
 use project::command::{AddNote, Command, RemoveNote};
 use project::document::NoteEntry;
+use project::pictures::PickedShare;
 use review::preview::{Preview, Shown, draw};
 use review::{DENSITIES, MOST_SECTIONS, glb, html};
 use std::sync::Arc;
 use survey::VerticalUnit;
 use survey::block::VoxelBox;
-use widgets::dialogue;
-use widgets::keyboard::is_entered;
-use widgets::obstacle::{needs, unless};
 
 /// Width of the labels in front of the fields, points: one column for all of them.
 const LABELS: f32 = 134.0;

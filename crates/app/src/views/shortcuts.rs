@@ -6,13 +6,13 @@ use crate::state::{
     Action, Choice, Compare, Dialogue, ExportForm, Layout, Look, Panel, PickingStep, Session, StandardView, State,
     Tool, camera,
 };
+use crate::widgets::dialogue;
+use crate::widgets::keyboard::{Listener, is_entered};
 use eframe::egui::{Context, Grid, Key, Modifiers, ScrollArea};
 use glam::DVec2;
 use interp::holes::FillSettings;
 use project::command::{Command, FillHorizon};
 use render::{FaceData, Scene};
-use widgets::dialogue;
-use widgets::keyboard::{Listener, is_entered};
 
 /// What a key does to an open project.
 type Deed = fn(&Session) -> Option<Action>;

@@ -2,14 +2,14 @@
 
 use super::{notices, texture};
 use crate::state::{Action, Choice, Dialogue, Place, State};
+use crate::widgets::obstacle::{needs, unless};
+use crate::widgets::theme;
 use crate::work::folder::Presence;
 use eframe::egui::{
     Align, Button, Color32, Context, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Stroke, TextureHandle,
     TextureOptions, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
 };
 use std::path::Path;
-use widgets::obstacle::{needs, unless};
-use widgets::theme;
 
 /// Width of the column in the middle.
 const WIDTH: f32 = 660.0;

@@ -2,20 +2,20 @@
 
 use super::notices;
 use crate::state::{Action, Notice, Place, State};
+use crate::widgets::dialogue;
+use crate::widgets::form;
+use crate::widgets::keyboard::is_entered;
+use crate::widgets::obstacle::{needs, unless};
 use crate::work::Work;
 use crate::work::folder::{Folder, FolderListing};
 use crate::work::scan::Reading;
 use eframe::egui::{Button, Context, Grid, ScrollArea, Spinner, TextEdit, Ui};
-use formats::ZUnit;
-use formats::well::{WellFiles, WellOptions, read_well};
+use files::ZUnit;
+use files::well::{WellFiles, WellOptions, read_well};
 use project::command::{AddWell, Command};
+use state::fields;
 use std::path::{Path, PathBuf};
 use survey::Setting;
-use widgets::dialogue;
-use widgets::fields;
-use widgets::form;
-use widgets::keyboard::is_entered;
-use widgets::obstacle::{needs, unless};
 
 /// File extensions of tables.
 const TABLES: [&str; 3] = ["csv", "txt", "dat"];

@@ -3,7 +3,7 @@
 
 use crate::state::Snapshot;
 use eframe::egui::{FontData, FontDefinitions};
-use pictures::figures::{FontFile, font_files};
+use project::pictures::figures::{FontFile, font_files};
 use std::sync::Arc;
 
 /// The faces for a project that was opened. Files that cannot be used are left out: figures say what is wrong with them.

@@ -17,6 +17,10 @@ use super::views::{
     sections::Sections, share::ShareView, shortcuts, start::StartPage, status, tiles::Tiles, well::WellDialogue,
 };
 use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
+use crate::widgets::event_order::EventOrder;
+use crate::widgets::keyboard::Listener;
+use crate::widgets::page::PagePreview;
+use crate::widgets::theme;
 use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};
 use follow::Needs;
 use frames::FrameTimes;
@@ -27,10 +31,6 @@ use state::{Action, Appearance, DataForm, Dialogue, ExportForm, Notice, Place, R
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use widgets::event_order::EventOrder;
-use widgets::keyboard::Listener;
-use widgets::page::PagePreview;
-use widgets::theme;
 
 /// Interval at which the view is saved.
 const MARK_EVERY: Duration = Duration::from_secs(5);
@@ -236,12 +236,12 @@ impl Window {
             let path = PathBuf::from(path.trim());
             let write = |project: Project| match what {
                 Written::Surface(kind, format) => {
-                    let options = formats::ExportOptions::default();
+                    let options = files::ExportOptions::default();
                     let surface = (kind, name.as_str());
-                    Ok(exports::surface::write(&project, &path, surface, (format, &options), progress)?.notes)
+                    Ok(project::exports::surface::write(&project, &path, surface, (format, &options), progress)?.notes)
                 }
                 Written::Volume(format) => {
-                    let written = exports::volume::write(&project, &path, &name, format, progress)?;
+                    let written = project::exports::volume::write(&project, &path, &name, format, progress)?;
                     let clipped = format!("{} samples do not fit the format and were clipped", written.clipped);
                     Ok((written.clipped > 0).then_some(clipped).into_iter().collect())
                 }

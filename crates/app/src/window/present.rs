@@ -5,7 +5,7 @@ use crate::state::{Action, Notice, Place};
 use crate::views::present::THUMBNAIL;
 use crate::work::{Event, Rocks, compute};
 use eframe::egui::{Ui, ViewportCommand};
-use pictures::{Device, Painter};
+use project::pictures::{Device, Painter};
 use render::{Background, Scene};
 use std::sync::PoisonError;
 

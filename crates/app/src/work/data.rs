@@ -8,11 +8,11 @@ use super::running::Running;
 use super::{Event, Outbox};
 use crate::state::{Notice, Place};
 use model::ModelSettings;
-use pictures::load::{self, Loaded};
 use project::Project;
 use project::document::{Document, WellEntry};
 use project::error::ProjectError;
 use project::interpretation::solid;
+use project::pictures::load::{self, Loaded};
 use project::{derived, styles};
 use render::media::{LayerOpacity, MediumColour, white_ramp};
 use render::{FaceData, Medium, PickedHorizon, Scene};
@@ -303,7 +303,7 @@ mod tests {
             name: "Top".to_owned(),
             contact: survey::Contact::Conformable,
             age: Age::ByDepth,
-            options: formats::ImportOptions::default(),
+            options: files::ImportOptions::default(),
         });
         new.project().apply(&add, &Progress::silent()).unwrap();
         let mut project = new.publish().unwrap();
@@ -321,7 +321,7 @@ mod tests {
             "w.las",
             "~V\nVERS. 2.0 :\nWRAP. NO :\n~W\nNULL. -999.25 :\n~C\nDEPT.M :\nGR.API :\n~A\n0 40\n15 -999.25\n30 90\n",
         );
-        let files = formats::well::WellFiles { deviation, las: vec![las], ..Default::default() };
+        let files = files::well::WellFiles { deviation, las: vec![las], ..Default::default() };
         let well = AddWell { name: "W".to_owned(), files, options: Default::default() };
         project.apply(&Command::AddWell(well), &Progress::silent()).unwrap();
         let after = load(&wanted(&project), &mut kept, &Progress::silent()).unwrap();

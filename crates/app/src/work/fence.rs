@@ -4,7 +4,7 @@ use super::Rocks;
 use super::slice::source;
 use figure::cut::FenceCut;
 use glam::DVec2;
-use pictures::load::Loaded;
+use project::pictures::load::Loaded;
 use render::FaceData;
 
 /// A request for a fence.

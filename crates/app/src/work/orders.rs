@@ -4,8 +4,8 @@
 use super::running::{Running, RunningGuard};
 use super::{Event, Outbox, keep_working};
 use crate::state::{Notice, Place, Snapshot};
-use chains::{demo, illustrate};
 use project::Project;
+use project::chains::{demo, illustrate};
 use project::check::check;
 use project::command::{Command, ImportVolume};
 use project::error::ProjectError;

@@ -2,12 +2,12 @@
 
 use super::Wake;
 use crate::state::Place;
+use state::fields;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use survey::progress::ProgressSink;
 use survey::{Note, Progress};
-use widgets::fields;
 
 /// Smallest interval at which progress wakes the window.
 const WAKE_EVERY: Duration = Duration::from_millis(100);

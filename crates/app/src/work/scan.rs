@@ -4,14 +4,14 @@ use super::Work;
 use super::latest::Latest;
 use crate::state::{Notice, Place};
 use eframe::egui::Context;
-use formats::{ImportOptions, ImportReport};
+use files::segy::{SegyFile, SegyInfo, SegyOptions};
+use files::{ImportOptions, ImportReport};
 use image::{Rgba, RgbaImage};
-use segy::{SegyFile, SegyInfo, SegyOptions};
+use state::fields;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use survey::{Progress, SurveyGeometry};
 use ttf::{ColourMap, RgbaFunction};
-use widgets::fields;
 
 /// Longest side of a preview, pixels.
 const PREVIEW_PX: usize = 480;
@@ -107,7 +107,7 @@ impl<O: Clone + PartialEq, T: Send + 'static> Reading<O, T> {
 /// # Errors
 /// Why it cannot be read as a volume, for the dialogue.
 pub fn survey(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<SurveyScan, Notice> {
-    let failed = |error: segy::SegyError| Notice::failure(Place::Dialogue, &error);
+    let failed = |error: files::segy::SegyError| Notice::failure(Place::Dialogue, &error);
     let file = SegyFile::open(path, options, progress).map_err(failed)?;
     let geometry = file.geometry().map_err(failed)?;
     let inline = middle_inline(&file).map_err(failed)?;
@@ -124,7 +124,7 @@ fn traces(file: &SegyFile) -> RgbaImage {
     })
 }
 
-fn middle_inline(file: &SegyFile) -> Result<RgbaImage, segy::SegyError> {
+fn middle_inline(file: &SegyFile) -> Result<RgbaImage, files::segy::SegyError> {
     let [inlines, crosslines, samples] = file.size();
     let columns = crosslines.clamp(1, PREVIEW_PX);
     let rows = samples.clamp(1, PREVIEW_PX);
@@ -147,7 +147,7 @@ fn middle_inline(file: &SegyFile) -> Result<RgbaImage, segy::SegyError> {
 /// Why it cannot be read, for the dialogue.
 pub fn horizon(path: &Path, geometry: &SurveyGeometry, options: &ImportOptions) -> Result<InterpretationScan, Notice> {
     let found =
-        formats::read_horizons(path, geometry, options).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
+        files::read_horizons(path, geometry, options).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
     Ok(InterpretationScan {
         surfaces: found.into_iter().map(|(horizon, report)| (horizon.name, told(report))).collect(),
     })
@@ -158,8 +158,7 @@ pub fn horizon(path: &Path, geometry: &SurveyGeometry, options: &ImportOptions) 
 /// # Errors
 /// Why it cannot be read, for the dialogue.
 pub fn fault(path: &Path, geometry: &SurveyGeometry, options: &ImportOptions) -> Result<InterpretationScan, Notice> {
-    let found =
-        formats::read_fault(path, geometry, options).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
+    let found = files::read_fault(path, geometry, options).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
     Ok(InterpretationScan { surfaces: found.into_iter().map(|(fault, report)| (fault.name, told(report))).collect() })
 }
 

@@ -1,7 +1,7 @@
 //! The block for people without the program: what a reader will see, and the files.
 
 use crate::state::{ShareForm, ShareKind};
-use pictures::Device;
+use project::pictures::Device;
 use project::{Project, ProjectError, memory_budget};
 use review::{Model, ReviewSettings, SizeEstimate, glb, html};
 use std::path::Path;

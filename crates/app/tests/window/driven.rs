@@ -5,10 +5,10 @@ use app::window::Window;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use formats::ImportOptions;
+use files::ImportOptions;
+use files::segy::WriteOptions;
 use project::Project;
 use project::command::{AddHorizon, Age, Command};
-use segy::WriteOptions;
 use state::{Compare, Dialogue, FileContent, Layout, State, Target};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -71,7 +71,7 @@ pub fn survey(folder: &Path) -> PathBuf {
     let path = folder.join("north.sgy");
     let samples = (0..24 * 20 * 32).map(|n| ((n % 32) as f32 * 0.7).sin()).collect();
     let volume = Volume::from_samples([24, 20, 32], samples).unwrap();
-    segy::write(&path, &geometry(), &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
+    files::segy::write(&path, &geometry(), &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
     path
 }
 

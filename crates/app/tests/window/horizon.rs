@@ -5,7 +5,7 @@ use super::driven::{Driven, click, document, open, state, wait};
 use super::picking::{act, interpreting, on_a_trough, picking};
 use eframe::egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use formats::ImportOptions;
+use files::ImportOptions;
 use glam::DVec3;
 use interp::ExtractSettings;
 use project::command::{AddHorizon, Age, Command};

@@ -1,6 +1,7 @@
 //! The page in the export dialogue: labels are dragged where they are printed.
 
 use super::driven::{click, open, wait};
+use app::widgets::page::PagePreview;
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Ui, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -11,7 +12,6 @@ use page::list::{Group, GroupKind, Text};
 use render::LabelChange;
 use std::sync::Arc;
 use ttf::Preset;
-use widgets::page::PagePreview;
 
 const PAGE: &str = "Page as it will be printed";
 

@@ -4,7 +4,7 @@ use super::command::{act, applied, choose, click_last};
 use super::driven::{Driven, click, document, open, state, wait};
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
-use formats::SurfaceKind;
+use files::SurfaceKind;
 use project::command::{AddScene, AddWell, Command, PickFault};
 use state::Action;
 
@@ -86,8 +86,8 @@ fn a_volume_is_renamed_and_written_from_the_window() {
     type_path(&mut harness, &out);
     click_last(&mut harness, "Export");
     wait(&mut harness, "it is written", |harness| out.exists() && state(harness).dialogue.is_none());
-    let options = segy::SegyOptions::default();
-    let info = segy::scan(&out, &options, &survey::Progress::silent()).unwrap();
+    let options = files::segy::SegyOptions::default();
+    let info = files::segy::scan(&out, &options, &survey::Progress::silent()).unwrap();
     let size = document(&harness).geometry.unwrap().size();
     assert_eq!((info.format_code, [info.inlines.count, info.crosslines.count, info.samples]), (3, size));
 }
@@ -123,7 +123,7 @@ fn a_well_is_hidden_in_the_scene() {
     let mut harness = open(folder.path());
     let deviation = folder.path().join("w.csv");
     std::fs::write(&deviation, "md_m,x_m,y_m,tvdss_m\n0,50,50,0\n30,50,50,30\n").unwrap();
-    let files = formats::well::WellFiles { deviation, ..Default::default() };
+    let files = files::well::WellFiles { deviation, ..Default::default() };
     let well = AddWell { name: "W".to_owned(), files, options: Default::default() };
     applied(&mut harness, &Command::AddWell(well));
     click(&mut harness, "Data");

@@ -6,7 +6,7 @@ use super::driven::{click, open, state, wait};
 use eframe::egui::Key;
 use eframe::egui::accesskit::Toggled;
 use egui_kittest::kittest::{NodeT, Queryable};
-use formats::ImportOptions;
+use files::ImportOptions;
 use project::command::{AddHorizon, Age, Command};
 use render::Unpicked;
 use state::{Action, Layout};

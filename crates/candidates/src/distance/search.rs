@@ -11,7 +11,7 @@ use super::index::{BRICK, Cell, CellIndex, INTERVAL};
 use super::triangle::{CellTriangle, FromColumn, LANES, greater, lesser};
 use super::{BEYOND, BlockRows, DistanceSettings};
 use std::ops::Range;
-use survey::wide::Wide;
+use system::wide::Wide;
 
 /// Samples that are searched together: one interval of the index.
 const RUN: usize = INTERVAL;

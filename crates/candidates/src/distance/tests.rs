@@ -4,7 +4,7 @@ use super::*;
 use crate::forest::tests::sheets;
 use crate::forest::{Forest, ForestSettings};
 use crate::surfaces::{Extremum, Surface, Surfaces, Vertex};
-use survey::wide::Wide;
+use system::wide::Wide;
 
 fn forest(surfaces: Surfaces, min_leaf_triangles: u32) -> Forest {
     let settings = ForestSettings { min_leaf_triangles, ..ForestSettings::default() };

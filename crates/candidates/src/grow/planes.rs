@@ -18,8 +18,8 @@ use super::evidence::{Noise, begins};
 use super::links::{Links, NEXT_X, NEXT_Y, NONE};
 use crate::extrema::Extrema;
 use rayon::prelude::*;
-use survey::wide::{Wide, widest};
 use survey::{Cancelled, Progress};
+use system::wide::{Wide, widest};
 
 /// Samples of a cell: within it the steepest scanned plane shifts by one and a half traces.
 const CELL_SAMPLES: usize = 4;

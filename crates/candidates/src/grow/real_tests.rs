@@ -3,13 +3,13 @@
 
 use super::{GrowSettings, grow_surfaces};
 use crate::surfaces::{Surface, Surfaces};
-use segy::SegyOptions;
+use files::segy::SegyOptions;
 use std::collections::HashMap;
 use std::path::Path;
 use survey::{Progress, Volume};
 
 fn grown(file: &Path) -> (Volume<f32>, Surfaces) {
-    let volume = segy::read(file, &SegyOptions::default(), &Progress::silent()).unwrap().volume;
+    let volume = files::segy::read(file, &SegyOptions::default(), &Progress::silent()).unwrap().volume;
     let surfaces = grow_surfaces(&volume, &GrowSettings::default(), &Progress::silent()).unwrap();
     (volume, surfaces)
 }

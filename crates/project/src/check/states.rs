@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
-use survey::file;
+use system::file;
 
 /// A file of a state that cannot be read.
 #[derive(Debug)]

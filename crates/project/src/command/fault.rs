@@ -5,7 +5,7 @@ use crate::content;
 use crate::document::{FaultEntry, is_zero};
 use crate::folder::Draft;
 use crate::interpretation::assembly::rebuild_all;
-use formats::{ImportOptions, ImportReport};
+use files::{ImportOptions, ImportReport};
 use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -85,7 +85,7 @@ impl AddFault {
         let geometry = draft.document.frame()?.clone();
         let name = self.options.name.clone().or_else(|| Some(self.name.clone()));
         let options = ImportOptions { name, ..self.options.clone() };
-        let mut found = formats::read_fault(&self.path, &geometry, &options)?;
+        let mut found = files::read_fault(&self.path, &geometry, &options)?;
         let (mut fault, mut report) = match found.len() {
             1 => found.remove(0),
             _ => {

@@ -6,7 +6,7 @@ use crate::document::{FaultEntry, FaultSticks, Source};
 use crate::folder::Draft;
 use crate::interpretation::assembly::rebuild_all;
 use crate::interpretation::proposals;
-use formats::fault_of_sticks;
+use files::fault_of_sticks;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;

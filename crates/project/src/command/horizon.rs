@@ -8,7 +8,7 @@ use crate::content;
 use crate::document::{HorizonEntry, Source};
 use crate::folder::Draft;
 use crate::interpretation::order;
-use formats::{Gridding, ImportOptions, ImportReport};
+use files::{Gridding, ImportOptions, ImportReport};
 use model::ContactRules;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -70,7 +70,7 @@ impl AddHorizon {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         draft.document.check_new_name(Noun::Horizon, &self.name)?;
         let geometry = draft.document.frame()?.clone();
-        let mut found = formats::read_horizons(&self.path, &geometry, &self.named())?;
+        let mut found = files::read_horizons(&self.path, &geometry, &self.named())?;
         let (mut horizon, mut report) = match found.len() {
             1 => found.remove(0),
             _ => {

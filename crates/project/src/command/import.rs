@@ -6,7 +6,7 @@ use crate::document::{Polarity, rename_volume_in};
 use crate::folder::{Draft, IMPORTING};
 use crate::memory_budget;
 use crate::placement;
-use segy::{SegyFile, SegyOptions};
+use files::segy::{SegyFile, SegyOptions};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -225,7 +225,7 @@ fn is_same_lattice(a: &SurveyGeometry, b: &SurveyGeometry) -> bool {
 }
 
 /// Byte positions and units in one line, for the record of the source.
-fn reading(info: &segy::SegyInfo) -> String {
+fn reading(info: &files::segy::SegyInfo) -> String {
     let bytes = &info.byte_positions;
     let place = match (bytes.x, bytes.y) {
         (Some(x), Some(y)) => format!("X at {x}, Y at {y}"),
@@ -249,7 +249,7 @@ fn keep_only(folder: &Path, wanted: &Path) {
 /// Turns a cancellation that the reader noticed into a cancellation, instead of a failure of the source.
 pub(super) fn cancelled_within(error: StoreError) -> ProjectError {
     match error {
-        StoreError::Source { path, source } => match source.downcast::<segy::SegyError>() {
+        StoreError::Source { path, source } => match source.downcast::<files::segy::SegyError>() {
             Ok(segy) => (*segy).into(),
             Err(source) => StoreError::Source { path, source }.into(),
         },

@@ -140,7 +140,7 @@ mod tests {
                 path: source.clone(),
                 name: Some(name.to_owned()),
                 polarity: crate::document::Polarity::Normal,
-                options: segy::SegyOptions::default(),
+                options: files::segy::SegyOptions::default(),
                 memory_bytes: None,
                 moved,
             })

@@ -5,9 +5,9 @@ use crate::content;
 use crate::document::Assembly;
 use crate::folder::Draft;
 use crate::interpretation::assembly::{self, AssemblyReport, put, rebuild, refined, report_on};
-use ::refine::SmoothSettings;
 use interp::holes::FillSettings;
 use interp::reassembly::{from_horizon, to_horizon};
+use interp::refine::SmoothSettings;
 use serde::{Deserialize, Serialize};
 use survey::Progress;
 

@@ -245,8 +245,8 @@ mod tests {
     use crate::Project;
     use crate::command::{Command, Extract, ImportVolume};
     use crate::document::Polarity;
+    use files::segy::{SegyOptions, WriteOptions};
     use interp::ExtractSettings;
-    use segy::{SegyOptions, WriteOptions};
     use survey::{SurveyGeometry, VerticalUnit};
 
     #[test]
@@ -258,7 +258,7 @@ mod tests {
         let wave = |n: usize| ((n % 32) as f32 * 0.7 + (n / 32 / 20) as f32 * 0.3).sin();
         let volume = Volume::from_samples(size, (0..size.iter().product()).map(wave).collect()).unwrap();
         let path = folder.path().join("north.sgy");
-        segy::write(&path, &geometry, &volume, &WriteOptions::default(), &quiet).unwrap();
+        files::segy::write(&path, &geometry, &volume, &WriteOptions::default(), &quiet).unwrap();
         let mut new = Project::create(&folder.path().join("north.petro"), None).unwrap();
         let (polarity, options) = (Polarity::default(), SegyOptions::default());
         let import = ImportVolume { path, name: None, polarity, options, memory_bytes: None, moved: false };

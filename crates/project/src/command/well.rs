@@ -4,7 +4,7 @@ use super::{Effect, Noun, ProjectError};
 use crate::content;
 use crate::document::{Document, WellEntry};
 use crate::folder::Draft;
-use formats::well::{self, WellFiles, WellOptions, WellReport};
+use files::well::{self, WellFiles, WellOptions, WellReport};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;

@@ -11,7 +11,8 @@ use crate::folder::at_hand;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 use store::{self, ParameterizationVolumes, StoredParameterization, StoredVolume};
-use survey::{Fault, Horizon, Progress, SurveyGeometry, Volume, Well, file};
+use survey::{Fault, Horizon, Progress, SurveyGeometry, Volume, Well};
+use system::file;
 
 /// Compares the hash of what was read with the one that was recorded; an empty one is not known.
 fn compare(path: &Path, noun: Noun, name: &str, expected: &str, found: String) -> Result<(), ProjectError> {

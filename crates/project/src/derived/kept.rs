@@ -73,7 +73,7 @@ impl Kind {
     }
 
     fn read<T>(&self, path: &Path, body: impl FnOnce(&mut dyn Read, u64) -> io::Result<T>) -> io::Result<T> {
-        let length = survey::file::ordinary(path)?.len();
+        let length = system::file::ordinary(path)?.len();
         let file = File::open(path)?;
         let mut input = Hashing { inner: BufReader::new(file), hash: blake3::Hasher::new() };
         let mut magic = [0u8; 8];
@@ -110,7 +110,7 @@ impl Kind {
 /// # Errors
 /// It cannot be read, or is not what was written.
 pub(crate) fn verify_kept(path: &Path) -> io::Result<()> {
-    let length = survey::file::ordinary(path)?.len();
+    let length = system::file::ordinary(path)?.len();
     let Some(body) = length.checked_sub(blake3::OUT_LEN as u64) else {
         return Err(io::Error::new(io::ErrorKind::InvalidData, format!("only {length} bytes are left of it")));
     };

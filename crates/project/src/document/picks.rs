@@ -6,7 +6,7 @@
 
 use interp::assembly::{Fingerprint, Operation};
 use interp::holes::FillSettings;
-use refine::{SmoothSettings, TrackSettings};
+use interp::refine::{SmoothSettings, TrackSettings};
 use serde::{Deserialize, Serialize};
 use ttf::Colour;
 

@@ -1,9 +1,9 @@
 //! What to do next about an error, where that does not depend on who shows it.
 
 use super::ProjectError;
-use formats::FormatError;
-use formats::well::WellFileError;
-use segy::SegyError;
+use files::FormatError;
+use files::segy::SegyError;
+use files::well::WellFileError;
 use survey::Remedy;
 
 impl ProjectError {

@@ -8,7 +8,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use survey::file;
+use system::file;
 
 /// Number of projects that are noted; those noted longest ago are looked through again.
 const NOTED: usize = 1000;

@@ -18,7 +18,7 @@ use crate::error::ProjectError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::path::Path;
-use survey::file;
+use system::file;
 
 /// Number of steps in the history; the oldest are dropped first. Long enough for a day's work, short enough that
 /// removed volumes do not fill the disk for ever.

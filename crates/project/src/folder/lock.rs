@@ -10,7 +10,8 @@ use std::io::{Seek, Write};
 use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
-use survey::{Progress, file};
+use survey::Progress;
+use system::file;
 
 /// How long a command waits by default for another that is changing the project.
 pub const DEFAULT_WAIT: Duration = Duration::from_secs(10);

@@ -19,7 +19,7 @@ use crate::folder::handle;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use survey::file::{create_folders, sync_folder};
+use system::file::{create_folders, sync_folder};
 
 /// The file of the state.
 pub(crate) const STATE: &str = "project.toml";
@@ -182,9 +182,9 @@ pub fn open_own(root: &Path, name: &str) -> io::Result<File> {
     handle::open(root, name)
 }
 
-/// Reads a text file of the project: an ordinary file of at most [`survey::file::MAX_DOCUMENT_BYTES`].
+/// Reads a text file of the project: an ordinary file of at most [`system::file::MAX_DOCUMENT_BYTES`].
 pub(crate) fn read_text(path: &Path) -> Result<String, ProjectError> {
-    survey::file::read_text(path, survey::file::MAX_DOCUMENT_BYTES)
+    system::file::read_text(path, system::file::MAX_DOCUMENT_BYTES)
         .map_err(|source| ProjectError::io("read", path, source))
 }
 

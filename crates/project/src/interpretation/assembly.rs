@@ -16,8 +16,8 @@ use interp::assembly::{
 };
 use interp::holes::{FillSettings, Filled, Hole, fill_holes, find_holes};
 use interp::reassembly::{Reassembled, VoxelSheet, from_horizon, reassemble, to_horizon};
+use interp::refine::{SmoothSettings, fill_along};
 use model::{ContactRules, FaultNetwork};
-use refine::{SmoothSettings, fill_along};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -369,7 +369,8 @@ pub(crate) fn refined(
         Some(settings) => Some(fill_holes(sheets, plane, blocks, settings, progress)?),
         None => None,
     };
-    let smoothed = smooth.map(|settings| refine::smooth(sheets, plane, blocks, settings, progress)).transpose()?;
+    let smoothed =
+        smooth.map(|settings| interp::refine::smooth(sheets, plane, blocks, settings, progress)).transpose()?;
     Ok((filled, smoothed))
 }
 

@@ -36,8 +36,8 @@ impl BrickedExtraction<'_> {
         let size = self.source.info().geometry.size();
         let stated = memory_bytes.saturating_sub(PROGRAM_BYTES);
         let cut = BrickSettings::within(stated, size, rayon::current_num_threads())?;
-        survey::memory::share_freed_memory(cut.workers);
-        let _keeping = survey::kept_memory::keep_freed(stated / 2);
+        system::memory::share_freed_memory(cut.workers);
+        let _keeping = system::kept_memory::keep_freed(stated / 2);
         let scratch = self.scratch(&cut)?;
         let done = self.extract(&scratch, &cut, progress);
         match &done {
@@ -54,7 +54,7 @@ impl BrickedExtraction<'_> {
         let folder = scratch.path("arrays");
         let samples = self.source.info().geometry.size().iter().map(|&n| n as u64).product::<u64>();
         let [plain, packed] = BYTES_ON_DISK.map(|bytes| bytes.saturating_mul(samples));
-        let is_short_of = |bytes: u64| survey::file::room(&folder).is_some_and(|room| room < bytes);
+        let is_short_of = |bytes: u64| system::file::room(&folder).is_some_and(|room| room < bytes);
         if !folder.exists() && is_short_of(packed) {
             let amount =
                 if packed < 10 << 30 { format!("{} MB", packed >> 20) } else { format!("{} GB", packed >> 30) };

@@ -7,8 +7,8 @@ use crate::error::ProjectError;
 use crate::folder::Draft;
 use glam::DVec3;
 use interp::reassembly::VoxelSheet;
+use interp::refine::{lay, nodes_along, snap, track};
 use model::FaultNetwork;
-use refine::{lay, nodes_along, snap, track};
 use survey::{SurveyGeometry, Volume};
 
 /// Adds everything that was drawn to sheets, first the lines, then, where there is nothing yet, what was tracked. Returns

@@ -154,7 +154,7 @@ pub(crate) fn forest_bytes(candidates: &StoredCandidates) -> Result<u64, Project
 /// They do not fit into memory, data are damaged, or the user cancelled.
 pub fn forest(candidates: &StoredCandidates, progress: &Progress) -> Result<Forest, ProjectError> {
     let bytes = usize::try_from(forest_bytes(candidates)?).unwrap_or(usize::MAX);
-    survey::memory::check("all surfaces of the horizon candidates", &[bytes], 1)?;
+    system::memory::check("all surfaces of the horizon candidates", &[bytes], 1)?;
     Ok(Forest::from_tables(candidates.read_forest(progress)?, candidates.info().size)?)
 }
 

@@ -20,7 +20,8 @@ use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
-use survey::{Progress, SurveyGeometry, file, memory};
+use survey::{Progress, SurveyGeometry};
+use system::{file, memory};
 
 /// The proposals, and the state that they were made for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -6,7 +6,8 @@ use crate::error::ProjectError;
 use model::{ModelSettings, StructuralModel};
 use param::ParamSettings;
 use std::path::Path;
-use survey::{Progress, SurveyGeometry, memory};
+use survey::{Progress, SurveyGeometry};
+use system::memory;
 
 /// Memory that the model takes at least for each horizon at each trace.
 const MODEL_BYTES: usize = 32;

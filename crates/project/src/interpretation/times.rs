@@ -14,7 +14,8 @@ use interp::reassembly::from_horizon;
 use model::FaultNetwork;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use survey::{Contact, Progress, Quality, SurveyGeometry, Volume, Well, memory, well::is_same_surface};
+use survey::{Contact, Progress, Quality, SurveyGeometry, Volume, Well, well::is_same_surface};
+use system::memory;
 
 /// What geologic time depends on: path, hash of its volume, key of the extraction, faults.
 type Key = (PathBuf, String, String, Vec<String>);

@@ -1,13 +1,13 @@
 //! A project: a folder `NAME.petro` with what was imported and interpreted, how it is drawn, and the history of both.
 //!
 //! ```text
-//! project.toml        the state (see [`crate::document`]); replaced as a whole, never changed in place
-//! history/NNNN.toml   each command with the state it led to (see [`crate::folder`])
+//! project.toml        the state (see [`project::document`]); replaced as a whole, never changed in place
+//! history/NNNN.toml   each command with the state it led to (see [`project::folder`])
 //! volumes/ horizons/ faults/ wells/ textures/   data, one new file or folder for each generation
 //! derived/            what was computed; may be deleted
 //! unfinished/         what a command under way is writing; removed by the next writer after a crash
 //! importing/          an import that was killed, to go on with
-//! damaged/            steps that a repair has set aside (see [`crate::check`])
+//! damaged/            steps that a repair has set aside (see [`project::check`])
 //! lock                held while a command runs
 //! ```
 //!
@@ -30,8 +30,8 @@ use crate::interpretation::{extraction, proposals};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use survey::file::{create_folders, sync_folder};
 use survey::{Progress, SurveyGeometry};
+use system::file::{create_folders, sync_folder};
 
 /// An open project. It is changed by [`Command`]s, each of which can be undone.
 ///

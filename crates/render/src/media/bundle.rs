@@ -29,7 +29,7 @@ use super::stretches::stretches;
 use super::table::absorbed;
 use crate::visible::{Ray, Solid};
 use glam::{Mat3, Vec3};
-use survey::wide::{Wide, widest};
+use system::wide::{Wide, widest};
 
 /// Number of rays in a bundle.
 pub const RAYS: usize = 64;

@@ -21,8 +21,8 @@ use crate::visible::{Ray, Solid};
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use survey::block::VoxelBox;
-use survey::wide::{Wide, widest};
 use survey::{Cancelled, Progress};
+use system::wide::{Wide, widest};
 
 /// λ and E at the front of every slice, in its window: row by row, slice by slice.
 pub(super) struct Carried {

@@ -1,4 +1,4 @@
-//! Draws the built-in lithology patterns: `cargo run -p petroglyph-ttf --example draw_patterns textures`.
+//! Draws the built-in lithology patterns: `cargo run -p ttf --example draw_patterns textures`.
 //!
 //! Numbers and names follow section 37 of the FGDC Digital Cartographic Standard (FGDC-STD-013-2006); the
 //! geometry is our own. Each pattern is a tile of ink ([`tile::Tile`]) that wraps around, at printed size in

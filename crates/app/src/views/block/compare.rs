@@ -1,8 +1,8 @@
 //! Compared pictures: where each lies, which part of it is visible, and what divides them.
 
 use crate::state::{Compare, Panel, Session};
+use crate::widgets::theme;
 use eframe::egui::{Align2, Color32, FontId, Rect, Stroke, Ui, Vec2, pos2, vec2};
-use widgets::theme;
 
 /// Below this ratio of width to height a view is too narrow for two blocks side by side.
 const NARROW: f32 = 1.4;

@@ -4,10 +4,10 @@
 use super::{REACH, dvec, screen};
 use crate::state::faces::{self, Face, Handle};
 use crate::state::{Action, Compare, Session, StandardView, camera};
+use crate::widgets::event_order::wheel_lines;
 use eframe::egui::{CursorIcon, Modifiers, PointerButton, Pos2, Rect, Response, Ui};
 use glam::DVec2;
 use render::Scene;
-use widgets::event_order::wheel_lines;
 
 /// Change of the natural logarithm of the zoom for each point of wheel travel.
 const WHEEL: f64 = 0.0022;

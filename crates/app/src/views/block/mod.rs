@@ -15,14 +15,14 @@ use super::pointed::{self, Pointed};
 use super::texture;
 use crate::state::faces::{self, Handle};
 use crate::state::{Action, Compare, Lasso, LassoOn, Look, Panel, PickingStep, Session, State, showing};
+use crate::widgets::theme;
 use crate::work::{Drawing, Drawn, PictureRequest, Rocks, Touch};
 use compare::fitted;
 use eframe::egui::{Color32, ColorImage, Pos2, Rect, Role, Sense, Stroke, TextureHandle, Ui, Vec2, WidgetInfo, pos2};
 use glam::DVec2;
 use hand::Hand;
-use pictures::load::Loaded;
+use project::pictures::load::Loaded;
 use render::{Background, Faces, Media, Scene};
-use widgets::theme;
 
 /// Distance within which the pointer catches a handle or the dividing line of the wipe, points.
 const REACH: f32 = 11.0;

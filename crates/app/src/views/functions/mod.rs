@@ -7,6 +7,10 @@ mod scalars;
 mod volume_rendering;
 
 use crate::state::{Action, Session};
+use crate::widgets::form;
+use crate::widgets::histogram::Histogram;
+use crate::widgets::opacity_curve::OpacityCurve;
+use crate::widgets::theme;
 use crate::work::{Rocks, Swatches};
 use eframe::egui::{Button, Color32, ComboBox, DragValue, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 use project::command::{Command, RemoveScalar, SetRaw, SetScalar};
@@ -15,10 +19,6 @@ use project::styles;
 use scalars::{intervals, ranges};
 use std::collections::HashMap;
 use ttf::{ColourMap, RawColour, ScalarInterval, ScalarTtf};
-use widgets::form;
-use widgets::histogram::Histogram;
-use widgets::opacity_curve::OpacityCurve;
-use widgets::theme;
 
 /// Distance within which the pointer catches an end of the range, points.
 const REACH: f32 = 10.0;

@@ -1,11 +1,11 @@
 //! Textures by value: which ranges of a volume's values have a texture, and which one.
 
+use crate::widgets::histogram::Histogram;
+use crate::widgets::percent;
+use crate::widgets::theme;
 use crate::work::Swatches;
 use eframe::egui::{ComboBox, DragValue, Role, Sense, Ui, WidgetInfo, vec2};
 use ttf::{ScalarInterval, ScalarTtf};
-use widgets::histogram::Histogram;
-use widgets::percent;
-use widgets::theme;
 
 /// The histogram of a volume, with the ranges that have a texture marked.
 pub(super) fn ranges(ui: &mut Ui, histogram: &Histogram, function: &ScalarTtf) {

@@ -5,15 +5,15 @@ use crate::state::volume_rendering::{self, Extent, Light};
 use crate::state::{Action, Notice, Place, Session};
 use crate::views::controls;
 use crate::views::sections::entry_colour;
+use crate::widgets::colour_well;
+use crate::widgets::form::{self, LABELS};
+use crate::widgets::histogram::Histogram;
+use crate::widgets::opacity_curve::OpacityCurve;
+use crate::widgets::percent;
 use eframe::egui::{ComboBox, DragValue, Grid, Slider, TextWrapMode, Ui};
 use render::media::{LayerOpacity, MediumColour};
 use render::{PickedHorizon, Scene, Scope, Shading};
 use ttf::Colour;
-use widgets::colour_well;
-use widgets::form::{self, LABELS};
-use widgets::histogram::Histogram;
-use widgets::opacity_curve::OpacityCurve;
-use widgets::percent;
 
 /// The volume that is rendered, or that would be.
 pub(super) fn volume(session: &Session) -> Option<String> {

@@ -5,8 +5,8 @@
 use crate::state::{Action, Session};
 use crate::work::Rocks;
 use eframe::egui::{Button, Ui};
-use pictures::figures::{NamedConfusion, confusions};
 use project::command::{Command, SetLayer};
+use project::pictures::figures::{NamedConfusion, confusions};
 use std::path::PathBuf;
 use std::sync::PoisonError;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};

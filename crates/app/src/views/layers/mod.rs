@@ -10,23 +10,23 @@ use super::notices;
 use super::sections::entry_colour;
 use super::tiles::Tiles;
 use crate::state::{Action, Choice, Dialogue, Panel, Place, Session, State};
+use crate::widgets::form::{self, LABELS};
+use crate::widgets::obstacle::{needs, unless};
+use crate::widgets::percent;
 use crate::work::{Rocks, Swatches};
 use eframe::egui::{
     Align, Button, ComboBox, Frame, Grid, Key, Label, Layout, Response, RichText, Role, ScrollArea, Sense, Stroke,
     TextEdit, Ui, WidgetInfo, vec2,
 };
 use legibility::Legibility;
-use pictures::PickedShare;
 use project::command::{Command, ResetLayer, SetContact, SetLayer};
 use project::document::Document;
 use project::document::HorizonEntry;
+use project::pictures::PickedShare;
 use render::Unpicked;
 use style::{colours, definition, frequencies, intervals};
 use survey::Contact;
 use ttf::{Colour, LayerStyle, LayerTtf, TextureLibrary};
-use widgets::form::{self, LABELS};
-use widgets::obstacle::{needs, unless};
-use widgets::percent;
 
 /// Size of a layer's swatch in the column, points.
 const SWATCH: [f32; 2] = [64.0, 40.0];

@@ -1,12 +1,12 @@
 //! The style of a layer: colours, repeats, beds, patterns by depth.
 
 use crate::state::{Action, Dialogue};
+use crate::widgets::percent;
 use eframe::egui::{ComboBox, DragValue, Ui};
 use param::KDefinition;
 use project::command::{Command, SetLayer};
 use project::document::Document;
 use ttf::{Colour, DepthInterval, Frequency, LayerStyle};
-use widgets::percent;
 
 /// Repeats that a layer starts with when it gets its own.
 const FREQUENCY: Frequency = Frequency { horizontal: 40.0, vertical: 3.0 };

@@ -1,9 +1,9 @@
 //! What goes with drawing lines of a horizon and tracking from a click: the line under way, and how far is tracked.
 
 use crate::state::{Action, PickingStep, Session, Tool};
+use crate::widgets::obstacle::{needs, unless};
 use eframe::egui::{Button, DragValue, Ui};
-use refine::TrackSettings;
-use widgets::obstacle::{needs, unless};
+use interp::refine::TrackSettings;
 
 /// Shows what the tool in hand needs; nothing with other tools.
 pub(super) fn show(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {

@@ -2,13 +2,13 @@
 
 use super::{go, palette};
 use crate::state::{Action, PickingStep, Session, Tool};
+use crate::widgets::obstacle::{needs, unless};
 use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Button, Label, TextEdit, Ui};
 use interp::faults::Proposal;
 use project::command::{AcceptFault, Command, SetFaultColour};
 use std::collections::HashMap;
 use survey::SurveyGeometry;
-use widgets::obstacle::{needs, unless};
 
 /// The texts being typed.
 #[derive(Default)]

@@ -3,19 +3,19 @@
 use super::go;
 use super::palette::palette;
 use crate::state::{Action, PickingStep, Session};
+use crate::widgets::keyboard::{Renamed, Renaming};
+use crate::widgets::obstacle::{needs, unless};
 use crate::work::{Interpreted, InterpretedHorizon};
 use eframe::egui::{Button, CollapsingHeader, DragValue, RichText, TextEdit, Ui};
 use interp::assembly::Operation;
 use interp::holes::FillSettings;
+use interp::refine::SmoothSettings;
 use project::command::{
     Command, FillHorizon, Move, MovePick, RemoveHorizon, RemovePick, RenameHorizon, ReplayPicks, SetHorizonColour,
     SmoothHorizon, Unfit,
 };
 use project::document::HorizonEntry;
-use refine::SmoothSettings;
 use survey::SurveyGeometry;
-use widgets::keyboard::{Renamed, Renaming};
-use widgets::obstacle::{needs, unless};
 
 /// Largest number of holes that are listed.
 const HOLES: usize = 5;

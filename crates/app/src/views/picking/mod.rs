@@ -12,6 +12,7 @@ use super::candidates::CandidatesPanel;
 use super::{notices, overlay::Overlay};
 use crate::state::picking::voxel_of;
 use crate::state::{Action, Look, PickingStep, Place, Session, State, Tool};
+use crate::widgets::obstacle::{needs, unless};
 use crate::work::RunningLine;
 use eframe::egui::{Align, Button, Layout, ScrollArea, Ui, vec2};
 use faults::FaultsPanel;
@@ -20,7 +21,6 @@ use project::interpretation::times::has_time;
 use render::FaceData;
 use std::sync::Arc;
 use survey::SurveyGeometry;
-use widgets::obstacle::{needs, unless};
 
 /// The panel, with the text being typed in it.
 #[derive(Default)]

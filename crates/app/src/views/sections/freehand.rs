@@ -1,9 +1,9 @@
 //! A line of a horizon drawn by dragging: the way of the hand, with no more points than its bends need.
 
 use crate::state::{Panel, Session, Tool};
+use crate::widgets::event_order::moves;
+use crate::widgets::theme;
 use eframe::egui::{Painter, PointerButton, Pos2, Response, Shape, Stroke, Ui};
-use widgets::event_order::moves;
-use widgets::theme;
 
 /// Distance of the hand from a line that is drawn through fewer points, points.
 const OFF: f32 = 0.8;

@@ -4,7 +4,7 @@ use crate::state::{Layout, SectionKind, Session};
 use eframe::egui::{Align2, Color32, FontId, Rect, Ui, Vec2, pos2, vec2};
 use figure::cut::CutLine;
 use figure::draw::section::Marks;
-use formats::SurfaceKind;
+use files::SurfaceKind;
 use glam::DVec2;
 use model::section::LineKind;
 use project::document::HorizonEntry;

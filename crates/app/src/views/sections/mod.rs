@@ -17,6 +17,8 @@ use super::texture;
 use crate::state::{
     Action, Lasso, LassoOn, Layout, Panel, PickingStep, SectionKind, SectionVolumes, Session, StickPoint, Tool,
 };
+use crate::widgets::canvas;
+use crate::widgets::event_order::wheel_lines;
 use crate::work::{CutOf, Rocks, SliceRequest, Slices};
 use eframe::egui::{
     Align2, Color32, Context, DragValue, FontId, Label, Painter, PointerButton, Pos2, Rect, Response, RichText, Role,
@@ -37,8 +39,6 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use survey::SurveyGeometry;
-use widgets::canvas;
-use widgets::event_order::wheel_lines;
 
 /// Margin for the numbers at the left and the top, points.
 const MARGIN: Vec2 = vec2(52.0, 20.0);
@@ -237,7 +237,7 @@ impl Pane {
         let (on_page, seen) = (canvas::page_rect(image), canvas::page_rect(body.intersect(image)));
         if let (Some((pixels, lines)), Some(texture)) = (&self.shown, &self.texture) {
             let lines = if is_interpreting { Cow::Borrowed(&[][..]) } else { lines::visible(session, lines) };
-            let horizons = pictures::figures::horizons(&session.document);
+            let horizons = project::pictures::figures::horizons(&session.document);
             let faults: Vec<_> = session.document.faults.iter().map(|entry| entry.colour).collect();
             let contents = contents(pixels, &lines, (&horizons, &faults), extent, session, kind);
             canvas::paint(&painter, &contents.drawn(seen, on_page), Some(texture.id()));

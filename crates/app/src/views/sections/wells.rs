@@ -4,7 +4,7 @@ use crate::state::{SectionKind, Session};
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, vec2};
 use figure::draw::section_wells::{self, runs};
 use glam::{DVec2, DVec3};
-use pictures::load::{LoadedLog, LoadedWell};
+use project::pictures::load::{LoadedLog, LoadedWell};
 
 /// Width of a log beside its path, points.
 const LOG: f32 = 34.0;

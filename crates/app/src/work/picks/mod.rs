@@ -22,7 +22,6 @@ use interp::faults::Proposal;
 use interp::holes::{Hole, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon, reassemble};
 use model::picked_share;
-use pictures::PickedShare;
 use project::Project;
 use project::command::{Command, Effect, Extract, ProposeFaults};
 use project::content;
@@ -33,6 +32,7 @@ use project::folder::DEFAULT_WAIT;
 use project::interpretation::assembly::{self, AssemblyReport, ReportedOverlap, conflicts_of, report_on, sentence};
 use project::interpretation::candidates::Candidates;
 use project::interpretation::{extraction, proposals};
+use project::pictures::PickedShare;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -98,7 +98,7 @@ pub struct Interpreted {
 
 /// A sheet in the form that figures take.
 pub fn sheet(sheet: &VoxelSheet) -> TraceSheet<'_> {
-    pictures::figures::borrowed(sheet)
+    project::pictures::figures::borrowed(sheet)
 }
 
 impl Interpreted {

@@ -1,7 +1,7 @@
 //! Fault blocks that are kept, and found again.
 
 use super::*;
-use formats::fault_of_sticks;
+use files::fault_of_sticks;
 use glam::Vec3;
 use survey::height_field::FAR;
 use survey::{Fault, SurveyGeometry, VerticalUnit};

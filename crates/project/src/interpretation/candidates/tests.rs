@@ -4,9 +4,9 @@ use super::*;
 use crate::Project;
 use crate::command::{Command, Extract, ImportVolume};
 use crate::document::Polarity;
+use files::segy::{SegyOptions, WriteOptions};
 use interp::ExtractSettings;
 use interp::assembly::Fingerprint;
-use segy::{SegyOptions, WriteOptions};
 use survey::{VerticalUnit, Volume};
 
 /// A project with a small volume.
@@ -15,7 +15,7 @@ fn imported(folder: &Path) -> PathBuf {
     let samples = (0..24 * 20 * 32).map(|n| ((n % 32) as f32 * 0.7).sin()).collect();
     let volume = Volume::from_samples([24, 20, 32], samples).unwrap();
     let path = folder.join("north.sgy");
-    segy::write(&path, &geometry, &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
+    files::segy::write(&path, &geometry, &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
     let mut new = Project::create(&folder.join("north.petro"), None).unwrap();
     let import = ImportVolume {
         path,

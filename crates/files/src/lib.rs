@@ -1,0 +1,550 @@
+//! Reads and writes files of horizons and faults, and reads files of wells ([`well`]).
+//!
+//! SEG-Y is read by the crate `segy`; the two crates share only the types of [`survey`].
+//!
+//! Deliberately absent: volumes, the store, projects.
+//!
+//! Files of every format go through the same steps:
+//!
+//! 1. The signature of the file determines its [`Format`]; the report has the evidence.
+//! 2. The reader of the format returns the numbers as they are in the file.
+//! 3. The numbers are converted, in the order that [`ImportOptions`] states.
+//! 4. They are placed on nodes and split into single-valued sheets.
+//! 5. The result is checked against the survey.
+//!
+//! The [`ImportReport`] says what was read, assumed and left out. A surface beside, above or below the
+//! survey, or one with an implausible unit or sign, is an error, and nothing is imported.
+//!
+//! ```
+//! use files::{Format, ImportOptions};
+//! use survey::{Horizon, NodeGrid, Quality, Sheet, SurveyGeometry, VerticalUnit};
+//!
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("chalk.csv");
+//! let geometry = SurveyGeometry::regular([3, 3, 101], 25.0, 4.0, VerticalUnit::Metres);
+//! let depths = vec![100.0, 110.0, 120.0, 105.0, 115.0, 125.0, 110.0, 120.0, 130.0];
+//! let sheet = Sheet::new(NodeGrid::of_survey(&geometry), depths, Quality::Picked);
+//! let chalk = Horizon::new("chalk", vec![sheet]);
+//! let written = files::write_horizon(&path, &chalk, &geometry, Format::Csv)?;
+//! assert_eq!(written.nodes, 9);
+//!
+//! let read = files::read_horizons(&path, &geometry, &ImportOptions::default())?;
+//! let (horizon, report) = &read[0];
+//! assert_eq!(horizon.sheets[0].depth, chalk.sheets[0].depth);
+//! assert_eq!(report.format.value, Format::Csv);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | format | horizon in | fault in | horizon out | fault out |
+//! |---|---|---|---|---|
+//! | CSV / XYZ with or without a header | ✓ | points, sticks | ✓ | |
+//! | Irap classic ASCII | ✓ | | ✓ | |
+//! | OpendTect ASCII | ✓ | sticks | ✓ | sticks |
+//! | GOCAD TSurf | ✓ | ✓ | ✓ | ✓ |
+//! | GOCAD VSet, PLine | ✓ | points, sticks | | |
+//! | DXF (3DFACE, polylines) | ✓ | ✓, sticks | | |
+//! | ZMAP+, CPS-3 (unrotated: others are resampled) | ✓ | | ✓ | |
+//! | Irap binary, PetroMod binary, IJXYZ, IESX, DUG | ✓ | | | |
+//! | EarthVision, Petrel points and well tops | ✓ | points | | |
+//! | Charisma | ✓ | sticks | | |
+//! | ZMAP+ points, RMS points (CSV/XYZ with 999 separators or attributes), polygons with ids | ✓ | outlines, sticks | | |
+//!
+//! To add a format: one file with a `CODEC`, one variant of [`Format`], one line in `CODECS`.
+
+mod any_shape;
+mod bounds;
+mod charisma;
+mod column;
+mod columns;
+mod cps3;
+mod csv;
+mod describe;
+mod dug;
+mod dxf;
+mod earthvision;
+mod error;
+mod export;
+mod fault;
+mod horizon;
+mod iesx;
+mod ijxyz;
+mod irap;
+mod irap_binary;
+mod lattice;
+mod mesh_sticks;
+mod opendtect;
+mod options;
+mod outline;
+mod petrel;
+mod petromod;
+mod placement;
+mod plane_fit;
+mod raster;
+mod raw;
+mod report;
+mod scatter;
+pub mod segy;
+mod sheets;
+mod sideways;
+mod sticks;
+mod table;
+mod text;
+mod tsurf;
+mod unit;
+mod unrotated;
+mod vertical;
+pub mod well;
+mod write;
+mod zmap;
+mod zmap_points;
+
+pub use bounds::{Bounds, InterpretationFile, bounds_of, survey_from_points};
+pub use column::Column;
+pub use describe::{FileDescription, SurfaceDescription, describe};
+pub use error::{FormatError, HorizontalExtent};
+pub use export::{ExportOptions, ExportReport, WhenRotated};
+pub use options::{HorizonShape, ImportOptions, PlaceBy, ValueOrder};
+pub use report::{Gridding, ImportReport, Provenance, Settled};
+pub use unit::{ZPositive, ZUnit};
+
+use glam::DVec3;
+use raw::{RawSurface, ReadContext};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use std::fmt;
+use std::io::Write;
+use std::path::Path;
+use survey::fault::Fault;
+use survey::geometry::SurveyGeometry;
+use survey::horizon::{Horizon, Sheet};
+use text::SourceFile;
+
+#[cfg(test)]
+mod tests;
+
+/// A file format of horizons or faults.
+///
+/// ```
+/// # use files::Format;
+/// assert_eq!(Format::from_name("TSurf"), Some(Format::Tsurf));
+/// assert!(Format::all().all(|format| Format::from_name(format.name()) == Some(format)));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Format {
+    /// CSV or XYZ, with or without a header line.
+    Csv,
+    /// Irap classic ASCII grid.
+    Irap,
+    /// OpendTect ASCII horizons and fault sticks.
+    OpendTect,
+    /// GOCAD TSurf.
+    Tsurf,
+    /// Irap binary grid.
+    #[serde(rename = "irapbin")]
+    IrapBinary,
+    /// ZMAP+ grid.
+    Zmap,
+    /// CPS-3 ASCII grid.
+    Cps3,
+    /// EarthVision ASCII points.
+    EarthVision,
+    /// Petrel points with attributes.
+    Petrel,
+    /// Charisma horizon lines and fault sticks.
+    Charisma,
+    /// IJXYZ of OpenWorks.
+    Ijxyz,
+    /// PetroMod binary map.
+    PetroMod,
+    /// GeoFrame IESX (3d_ci7m).
+    Iesx,
+    /// DUG Insight points.
+    Dug,
+    /// ZMAP+ points and polygons.
+    ZmapPoints,
+    /// DXF drawings.
+    Dxf,
+}
+
+/// The kind of surface that a file holds, or that is to be read from it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SurfaceKind {
+    /// A horizon.
+    Horizon,
+    /// A fault.
+    Fault,
+}
+
+impl fmt::Display for SurfaceKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Horizon => "horizon",
+            Self::Fault => "fault",
+        })
+    }
+}
+
+type Reader = fn(&SourceFile, &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError>;
+type HorizonWriter = fn(&mut dyn Write, &Horizon, &SurveyGeometry) -> Result<(), write::WriteFailure>;
+type FaultWriter = fn(&mut dyn Write, &Fault, &SurveyGeometry) -> Result<(), write::WriteFailure>;
+
+/// The capabilities of a format.
+struct Codec {
+    format: Format,
+    /// The word of the `--format` option.
+    name: &'static str,
+    /// The usual extension.
+    extension: &'static str,
+    /// The evidence that a file is of this format.
+    detect: fn(&SourceFile) -> Option<String>,
+    read_horizon: Option<Reader>,
+    read_fault: Option<Reader>,
+    write_horizon: Option<HorizonWriter>,
+    write_fault: Option<FaultWriter>,
+}
+
+/// Every format, in the order in which signatures are tried: those that cannot be mistaken first.
+const CODECS: &[Codec] = &[
+    tsurf::CODEC,
+    irap_binary::CODEC,
+    petromod::CODEC,
+    irap::CODEC,
+    cps3::CODEC,
+    zmap::CODEC,
+    zmap_points::CODEC,
+    petrel::CODEC,
+    charisma::CODEC,
+    earthvision::CODEC,
+    iesx::CODEC,
+    dug::CODEC,
+    dxf::CODEC,
+    ijxyz::CODEC,
+    opendtect::CODEC,
+    csv::CODEC,
+];
+
+impl Format {
+    fn codec(self) -> &'static Codec {
+        // Every variant has its line in the table, which a test verifies.
+        CODECS.iter().find(|c| c.format == self).unwrap_or(&csv::CODEC)
+    }
+
+    /// Every format.
+    pub fn all() -> impl Iterator<Item = Self> {
+        CODECS.iter().map(|c| c.format)
+    }
+
+    /// The word for the format, as options and reports have it.
+    pub fn name(self) -> &'static str {
+        self.codec().name
+    }
+
+    /// The usual extension of its files, without the dot.
+    pub fn extension(self) -> &'static str {
+        self.codec().extension
+    }
+
+    /// Whether surfaces of that kind can be written in it.
+    pub fn writes(self, kind: SurfaceKind) -> bool {
+        match kind {
+            SurfaceKind::Horizon => self.codec().write_horizon.is_some(),
+            SurfaceKind::Fault => self.codec().write_fault.is_some(),
+        }
+    }
+
+    /// The format of that word.
+    pub fn from_name(name: &str) -> Option<Self> {
+        CODECS.iter().find(|c| c.name.eq_ignore_ascii_case(name)).map(|c| c.format)
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+fn names(select: impl Fn(&Codec) -> bool) -> String {
+    CODECS.iter().filter(|c| select(c)).map(|c| c.name).collect::<Vec<_>>().join(", ")
+}
+
+/// Opens a file, determines its format and reads the selected surfaces without conversion.
+fn read_raw(
+    path: &Path,
+    geometry: Option<&SurveyGeometry>,
+    options: &ImportOptions,
+    kind: SurfaceKind,
+) -> Result<(SourceFile, Settled<Format>, Vec<RawSurface>), FormatError> {
+    let source = SourceFile::open(path)?;
+    let (format, surfaces) = read_source(&source, geometry, options, kind)?;
+    Ok((source, format, surfaces))
+}
+
+/// Determines the format of a file in memory and reads the selected surfaces without conversion.
+fn read_source(
+    source: &SourceFile,
+    geometry: Option<&SurveyGeometry>,
+    options: &ImportOptions,
+    kind: SurfaceKind,
+) -> Result<(Settled<Format>, Vec<RawSurface>), FormatError> {
+    let path = source.path.as_path();
+    let format = match options.format {
+        Some(format) => Settled { value: format, source: Provenance::Option },
+        None => {
+            // What is known by its first bytes is no table, even where its rows look like one.
+            let known = known_by_name(&source.bytes);
+            let mut open = CODECS.iter().filter(|c| known.is_none() || c.format != Format::Csv);
+            let found = open.find_map(|c| Some((c.format, (c.detect)(source)?)));
+            let (value, evidence) = found.ok_or_else(|| {
+                let start = String::from_utf8_lossy(&source.bytes[..source.bytes.len().min(80)]);
+                let begins = || {
+                    let first = text::lines(&start).next();
+                    first.map_or_else(|| "it is empty".into(), |l| format!("it begins with {}", text::excerpt(l.text)))
+                };
+                let found = known.map_or_else(begins, str::to_owned);
+                FormatError::UnknownFormat { file: path.to_path_buf(), found, known: names(|_| true) }
+            })?;
+            Settled { value, source: Provenance::File(evidence) }
+        }
+    };
+    let reader_of = |c: &Codec| if kind == SurfaceKind::Horizon { c.read_horizon } else { c.read_fault };
+    let Some(reader) = reader_of(format.value.codec()) else {
+        let instead = names(|c| reader_of(c).is_some());
+        return Err(FormatError::Unsupported { format: format.value, action: "read", kind, instead });
+    };
+    let mut surfaces = reader(source, &ReadContext { geometry, options, kind })?;
+    if kind == SurfaceKind::Fault {
+        surfaces = surfaces.into_iter().flat_map(outline::split).collect();
+    }
+    let surfaces = selected(source, surfaces, options, kind)?;
+    Ok((format, surfaces))
+}
+
+/// What a file is that is known but not read, and what to export instead.
+fn known_by_name(bytes: &[u8]) -> Option<&'static str> {
+    const KNOWN: [(&[u8], &str); 6] = [
+        (b"\x93NUMPY", "it is a NumPy array, which has values but no places: write x, y, z as csv"),
+        (b"AutoCAD Binary DXF", "it is a binary DXF drawing: save it as ASCII DXF"),
+        (b"#GeoProbe", "it is a GeoProbe surface, which is not read: export it as GOCAD TSurf or as x, y, z"),
+        (b"GOCAD ", "of GOCAD's objects TSurf, VSet and PLine are read: export it as one of these"),
+        (b"SQLite format 3", "it is a database such as a GeoPackage: export the layer as csv with x, y, z"),
+        (b"PK\x03\x04", "it is a ZIP archive: unpack it first"),
+    ];
+    KNOWN.iter().find(|(start, _)| bytes.starts_with(start)).map(|(_, what)| *what)
+}
+
+/// The surfaces to import: those of the selected name; of several, the one of the given name; otherwise all.
+fn selected(
+    source: &SourceFile,
+    surfaces: Vec<RawSurface>,
+    options: &ImportOptions,
+    kind: SurfaceKind,
+) -> Result<Vec<RawSurface>, FormatError> {
+    let wanted = match (&options.select, &options.name) {
+        (Some(name), _) => name,
+        (None, Some(name)) if surfaces.len() > 1 => name,
+        _ => return Ok(surfaces),
+    };
+    let available = surfaces.iter().map(|s| s.name.clone().unwrap_or_else(|| "(no name)".into())).collect::<Vec<_>>();
+    let found: Vec<_> = surfaces.into_iter().filter(|s| s.name.as_deref() == Some(wanted)).collect();
+    if found.is_empty() {
+        return Err(FormatError::NoSuchName {
+            file: source.path.clone(),
+            kind,
+            wanted: wanted.clone(),
+            available: available.join(", "),
+        });
+    }
+    Ok(found)
+}
+
+/// The name of a surface: the one given, or else its own, or else the file name without its extension.
+fn name_of(raw: &RawSurface, source: &SourceFile, options: &ImportOptions) -> String {
+    let own = raw.name.as_deref().map(str::trim).filter(|n| !n.is_empty());
+    options.name.clone().or_else(|| own.map(String::from)).unwrap_or_else(|| source.stem())
+}
+
+/// Reads the horizons of a file and places them on nodes over the survey.
+///
+/// # Errors
+/// [`FormatError`] when the file cannot be read, does not fit the survey, or is ambiguous. Its text says what
+/// to do.
+///
+/// # Cost
+/// O(n log n) in the count of points or nodes. The file is held in memory.
+pub fn read_horizons(
+    path: &Path,
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Horizon, ImportReport)>, FormatError> {
+    horizons_of(&SourceFile::open(path)?, geometry, options)
+}
+
+/// As [`read_horizons`], from bytes in memory; `path` gives the extension and is named in errors.
+///
+/// ```
+/// # use files::{ImportOptions, parse_horizons};
+/// # use survey::{SurveyGeometry, VerticalUnit};
+/// let geometry = SurveyGeometry::regular([2, 2, 101], 25.0, 4.0, VerticalUnit::Metres);
+/// let table = b"inline,crossline,z\n1,1,100\n1,2,110\n2,1,120\n2,2,130\n";
+/// let read = parse_horizons("top.csv".as_ref(), table, &geometry, &ImportOptions::default())?;
+/// assert_eq!(read[0].0.name, "top");
+/// assert_eq!(read[0].0.sheets[0].depth, [100.0, 110.0, 120.0, 130.0]);
+/// # Ok::<(), files::FormatError>(())
+/// ```
+///
+/// # Errors
+/// As [`read_horizons`].
+pub fn parse_horizons(
+    path: &Path,
+    bytes: &[u8],
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Horizon, ImportReport)>, FormatError> {
+    horizons_of(&SourceFile { path: path.to_path_buf(), bytes: bytes.to_vec() }, geometry, options)
+}
+
+fn horizons_of(
+    source: &SourceFile,
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Horizon, ImportReport)>, FormatError> {
+    let (format, surfaces) = read_source(source, Some(geometry), options, SurfaceKind::Horizon)?;
+    surfaces
+        .into_iter()
+        .map(|raw| {
+            let name = name_of(&raw, source, options);
+            horizon::build(&source.path, name, format.clone(), raw, geometry, options)
+        })
+        .collect()
+}
+
+/// Writes a horizon under a temporary name, then renames the file. A rotated grid is resampled for formats
+/// that cannot represent it.
+///
+/// # Errors
+/// [`FormatError::Unsupported`] and [`FormatError::NotRepresentable`] when the format cannot hold the
+/// surface; [`FormatError::Io`] when the file cannot be written.
+pub fn write_horizon(
+    path: &Path,
+    horizon: &Horizon,
+    geometry: &SurveyGeometry,
+    format: Format,
+) -> Result<ExportReport, FormatError> {
+    write_horizon_as(path, horizon, geometry, format, &ExportOptions::default())
+}
+
+/// As [`write_horizon`], with options.
+///
+/// # Errors
+/// As [`write_horizon`].
+pub fn write_horizon_as(
+    path: &Path,
+    horizon: &Horizon,
+    geometry: &SurveyGeometry,
+    format: Format,
+    options: &ExportOptions,
+) -> Result<ExportReport, FormatError> {
+    let Some(writer) = format.codec().write_horizon else {
+        let instead = names(|c| c.write_horizon.is_some());
+        return Err(FormatError::Unsupported { format, action: "written", kind: SurfaceKind::Horizon, instead });
+    };
+    let (horizon, mut notes) = match format {
+        Format::Zmap | Format::Cps3 => unrotated::of(horizon, format, options)?,
+        _ => (Cow::Borrowed(horizon), Vec::new()),
+    };
+    let is_map_alone = horizon.any_shape().is_some() && !matches!(format, Format::Tsurf | Format::Csv);
+    write::beside(path, &horizon.name, format, |out| {
+        if is_map_alone {
+            let why = "it is no map: it has several depths over one place".to_owned();
+            return Err(write::WriteFailure::NotRepresentable(why, "write tsurf (triangles) or csv (points)"));
+        }
+        writer(out, &horizon, geometry)
+    })?;
+    notes.extend(write::unpicked(&horizon).map(|share| match format {
+        Format::Csv => format!("{share}: the column quality says which"),
+        _ => format!("{share}: the format does not say which nodes; csv does"),
+    }));
+    let corners = horizon.any_shape().map_or(0, |surface| surface.vertices.len());
+    Ok(ExportReport { nodes: horizon.sheets.iter().map(Sheet::node_count).sum::<usize>() + corners, notes })
+}
+
+/// Reads the faults of a file as triangulated surfaces: triangles of a TSurf file are kept, sticks are joined
+/// by triangles, and a surface is fitted to points.
+///
+/// # Errors
+/// As [`read_horizons`].
+pub fn read_fault(
+    path: &Path,
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Fault, ImportReport)>, FormatError> {
+    faults_of(&SourceFile::open(path)?, geometry, options)
+}
+
+/// As [`read_fault`], from bytes in memory; `path` gives the extension and is named in errors.
+///
+/// # Errors
+/// As [`read_horizons`].
+pub fn parse_fault(
+    path: &Path,
+    bytes: &[u8],
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Fault, ImportReport)>, FormatError> {
+    faults_of(&SourceFile { path: path.to_path_buf(), bytes: bytes.to_vec() }, geometry, options)
+}
+
+fn faults_of(
+    source: &SourceFile,
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Fault, ImportReport)>, FormatError> {
+    let (format, surfaces) = read_source(source, Some(geometry), options, SurfaceKind::Fault)?;
+    surfaces
+        .into_iter()
+        .map(|raw| {
+            let name = name_of(&raw, source, options);
+            fault::build(&source.path, name, format.clone(), raw, geometry, options)
+        })
+        .collect()
+}
+
+/// The fault surface through sticks (world X, Y and vertical value). It needs two sticks of at least two
+/// nodes each; `None` when there are fewer, or when they span no area.
+///
+/// ```
+/// # use glam::DVec3;
+/// # use survey::{SurveyGeometry, VerticalUnit};
+/// let geometry = SurveyGeometry::regular([11, 11, 101], 25.0, 4.0, VerticalUnit::Metres);
+/// let stick = |y: f64| vec![DVec3::new(50.0, y, 100.0), DVec3::new(60.0, y, 300.0)];
+/// let fault = files::fault_of_sticks("F1", &[stick(0.0), stick(200.0)], &geometry).unwrap();
+/// assert_eq!((fault.mesh.vertices.len(), fault.mesh.triangles.len()), (4, 2));
+/// assert!(files::fault_of_sticks("F2", &[stick(0.0)], &geometry).is_none());
+/// ```
+pub fn fault_of_sticks(name: &str, sticks: &[Vec<DVec3>], geometry: &SurveyGeometry) -> Option<Fault> {
+    if sticks.len() < 2 || sticks.iter().any(|stick| stick.len() < 2) {
+        return None;
+    }
+    let mesh = sticks::join(sticks, geometry.metres_per_vertical_unit());
+    let has_area = |t: usize| {
+        let [a, b, c] = mesh.corners(t);
+        (b - a).cross(c - a).length() > 0.0
+    };
+    let any = (0..mesh.triangles.len()).any(has_area);
+    any.then(|| Fault::new(name, mesh))
+}
+
+/// Writes a fault under a temporary name, then renames the file.
+///
+/// # Errors
+/// As [`write_horizon`].
+pub fn write_fault(path: &Path, fault: &Fault, geometry: &SurveyGeometry, format: Format) -> Result<(), FormatError> {
+    let Some(writer) = format.codec().write_fault else {
+        let instead = names(|c| c.write_fault.is_some());
+        return Err(FormatError::Unsupported { format, action: "written", kind: SurfaceKind::Fault, instead });
+    };
+    write::beside(path, &fault.name, format, |out| writer(out, fault, geometry))
+}

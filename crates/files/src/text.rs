@@ -1,0 +1,178 @@
+//! A file in memory, its lines and its numbers.
+//!
+//! Lines may end in LF, CRLF or CR and in blanks; text that is not UTF-8 is read with replacement characters,
+//! so that a stray byte in a comment does no harm and one in a number is reported with its line.
+
+use super::FormatError;
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+use system::file;
+
+/// A file's bytes and where they come from.
+pub(crate) struct SourceFile {
+    /// The file.
+    pub path: PathBuf,
+    /// All of it.
+    pub bytes: Vec<u8>,
+}
+
+/// One line of text.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Line<'a> {
+    /// Number, from 1.
+    pub number: usize,
+    /// Text without its end and without surrounding blanks.
+    pub text: &'a str,
+}
+
+impl SourceFile {
+    /// Reads a whole file, an ordinary one of at most [`file::MAX_INTERPRETATION_BYTES`].
+    pub fn open(path: &Path) -> Result<Self, FormatError> {
+        let bytes = file::read(path, file::MAX_INTERPRETATION_BYTES).map_err(|source| FormatError::Io {
+            action: "read",
+            file: path.to_path_buf(),
+            source,
+        })?;
+        Ok(Self { path: path.to_path_buf(), bytes })
+    }
+
+    /// The file as text.
+    pub fn text(&self) -> Cow<'_, str> {
+        String::from_utf8_lossy(&self.bytes)
+    }
+
+    /// The file name without its extension.
+    pub fn stem(&self) -> String {
+        self.path.file_stem().map_or_else(|| "unnamed".into(), |s| s.to_string_lossy().into_owned())
+    }
+
+    /// An error at a line.
+    pub fn syntax(&self, line: usize, expected: impl Into<String>, found: &str) -> FormatError {
+        FormatError::Syntax { file: self.path.clone(), line, expected: expected.into(), found: excerpt(found) }
+    }
+
+    /// An error of counts.
+    pub fn length(&self, what: &'static str, expected: usize, found: usize) -> FormatError {
+        FormatError::Length { file: self.path.clone(), what, expected, found }
+    }
+
+    /// An error in a grid header.
+    pub fn bad_grid(&self, why: impl Into<String>) -> FormatError {
+        FormatError::BadGrid { file: self.path.clone(), why: why.into() }
+    }
+}
+
+/// The lines of a text, trimmed and without blank ones.
+pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
+    // A CR alone ends a line too; in a CRLF file the empty piece between the two must not count as a line.
+    let lone_cr = text.contains('\r') && !text.contains('\n');
+    text.split(if lone_cr { '\r' } else { '\n' })
+        .enumerate()
+        .map(|(n, text)| Line {
+            number: n + 1,
+            text: text.trim_matches(|c: char| c.is_whitespace() || c == '\u{feff}'),
+        })
+        .filter(|line| !line.text.is_empty())
+}
+
+/// The beginning of a text, in quotes, for an error message.
+pub(crate) fn excerpt(text: &str) -> String {
+    let text = text.trim();
+    if text.is_empty() {
+        return "nothing".into();
+    }
+    let mut short: String = text.chars().take(60).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    if text.chars().count() > 60 {
+        short.push('…');
+    }
+    format!("'{short}'")
+}
+
+/// A number as programs write them: also with a Fortran exponent (`1.5D+03`).
+pub(crate) fn number(token: &str) -> Option<f64> {
+    let token = token.trim();
+    if let Ok(value) = token.parse() {
+        return Some(value);
+    }
+    if token.bytes().any(|b| matches!(b, b'd' | b'D')) && token.bytes().all(|b| b"0123456789+-.dD".contains(&b)) {
+        return token.replace(['d', 'D'], "e").parse().ok();
+    }
+    None
+}
+
+/// Splits a line at a delimiter, or at blanks; double quotes hold a field together.
+///
+/// Quoted fields come without their quotes. Blanks around a field are left out.
+pub(crate) fn fields(text: &str, delimiter: Option<char>) -> Vec<Field<'_>> {
+    let mut fields = Vec::new();
+    let mut rest = text.trim();
+    while !rest.is_empty() {
+        if let Some(inside) = rest.strip_prefix('"') {
+            let end = inside.find('"').unwrap_or(inside.len());
+            fields.push(Field { text: inside[..end].trim(), quoted: true });
+            rest = inside.get(end + 1..).unwrap_or("").trim_start_matches([' ', '\r']);
+            rest = match delimiter {
+                Some(d) => rest.strip_prefix(d).unwrap_or(rest),
+                None => rest.trim_start(),
+            };
+            rest = rest.trim_start_matches(' ');
+            continue;
+        }
+        let end = match delimiter {
+            Some(d) => rest.find(d),
+            None => rest.find(char::is_whitespace),
+        };
+        let Some(end) = end else {
+            fields.push(Field { text: rest.trim(), quoted: false });
+            break;
+        };
+        fields.push(Field { text: rest[..end].trim(), quoted: false });
+        let step = rest[end..].chars().next().map_or(1, char::len_utf8);
+        rest = if delimiter.is_some() { rest[end + step..].trim_start_matches(' ') } else { rest[end..].trim_start() };
+    }
+    fields
+}
+
+/// One field of a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Field<'a> {
+    /// Its text, unquoted and trimmed.
+    pub text: &'a str,
+    /// Whether it was quoted.
+    pub quoted: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texts(line: &str, delimiter: Option<char>) -> Vec<&str> {
+        fields(line, delimiter).into_iter().map(|f| f.text).collect()
+    }
+
+    #[test]
+    fn fields_with_quotes_tabs_and_blanks() {
+        assert_eq!(texts("\"green event\"\t1.5\t 2\t\t3 ", Some('\t')), ["green event", "1.5", "2", "", "3"]);
+        assert_eq!(texts("\"a b\" 1   2\t3", None), ["a b", "1", "2", "3"]);
+        assert_eq!(texts("1; 2 ;3", Some(';')), ["1", "2", "3"]);
+        assert_eq!(texts("\"never closed", None), ["never closed"]);
+        assert!(fields("\"a\" 1", None)[0].quoted && !fields("\"a\" 1", None)[1].quoted);
+    }
+
+    #[test]
+    fn line_ends_of_three_systems() {
+        for text in ["a\nb\n\nc", "a\r\nb\r\n\r\nc\r\n", "a\rb\r\rc"] {
+            let found: Vec<_> = lines(text).map(|l| (l.number, l.text)).collect();
+            assert_eq!(found, [(1, "a"), (2, "b"), (4, "c")]);
+        }
+    }
+
+    #[test]
+    fn numbers_as_fortran_writes_them() {
+        assert_eq!(number("1.5D+03"), Some(1500.0));
+        assert_eq!(number(" -2e1 "), Some(-20.0));
+        assert!(number("nan").unwrap().is_nan());
+        assert_eq!(number("d"), None);
+        assert_eq!(number("12a"), None);
+    }
+}

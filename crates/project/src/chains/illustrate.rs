@@ -1,0 +1,259 @@
+//! `petroglyph illustrate`: a block diagram of a survey that nobody has interpreted.
+//!
+//! SEG-Y → import → candidates → faults where they end → geologic time → layers between its strongest, most continuous levels → patterns by the
+//! character of the reflections → a block with a legend. The project is kept, to go on from. A pattern does not claim a
+//! rock: the legend says how the reflections look, and the title says that nothing was interpreted.
+
+use crate::Project;
+use crate::command::{
+    AcceptFault, Command, ComputeTime, Extract, ImportVolume, PickByTime, ProposeFaults, SetLayer, TimeLevel,
+};
+use crate::document::Polarity;
+use crate::error::ProjectError;
+use crate::folder::refuse_inside_project;
+use crate::interpretation::proposals;
+use crate::interpretation::times::{has_time, read_time};
+use crate::pictures::Device;
+use crate::pictures::figures::{self, FigureFormat, FigureSettings, InterpreterView};
+use crate::pictures::scene;
+use figure::{Annotation, BlockPart, Figure, PageSize};
+use files::segy::SegyOptions;
+use interp::ExtractSettings;
+use serde::Serialize;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use survey::Progress;
+use time::{Character, TimeSettings, characters, strongest_levels};
+use ttf::Colour;
+
+/// How a survey is illustrated.
+#[derive(Debug, Clone)]
+pub struct IllustrateSettings {
+    /// Number of layers; fewer are drawn where fewer levels stand out.
+    pub layers: usize,
+    /// How the SEG-Y file is read.
+    pub options: SegyOptions,
+    /// Device that draws.
+    pub device: Device,
+    /// Largest memory for the samples of a volume, bytes.
+    pub volume_bytes: u64,
+}
+
+/// What was illustrated.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Illustrated {
+    /// The picture.
+    pub file: PathBuf,
+    /// The project, to go on from.
+    pub project: PathBuf,
+    /// The layers, top first.
+    pub layers: Vec<String>,
+    /// Seconds from the file to the picture.
+    pub seconds: f64,
+}
+
+impl fmt::Display for Illustrated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}: {} layers, not interpreted", self.file.display(), self.layers.len())?;
+        self.layers.iter().try_for_each(|layer| writeln!(f, "  {layer}"))?;
+        write!(f, "the project to go on from is {}; {:.1} s", self.project.display(), self.seconds)
+    }
+}
+
+/// Name of the volume of amplitudes.
+const SEISMIC: &str = "seismic";
+/// Size of the page, cm.
+const PAGE_CM: [f64; 2] = [20.0, 13.0];
+/// Its resolution, dots an inch.
+const DPI: f64 = 200.0;
+const TITLE: &str = "Uninterpreted: layers by computed geologic time";
+
+/// Colours of the layers from the top: each differs from the next, and none claims a rock.
+const COLOURS: [[u8; 3]; 8] = [
+    [0xE9, 0xDD, 0xB8],
+    [0xC9, 0xB9, 0x8F],
+    [0xD9, 0xC7, 0xC0],
+    [0xA9, 0xBC, 0xB4],
+    [0xE0, 0xC8, 0x9A],
+    [0xB7, 0xA8, 0xB0],
+    [0xCF, 0xD2, 0xB5],
+    [0xB4, 0x9C, 0x86],
+];
+
+/// Makes the picture and the project beside it.
+///
+/// # Errors
+/// There is already something at `project`, the file is no survey, no level of time stands out, a file could not be
+/// written, or the user cancelled. Without a picture there is no project either, unless drawing failed.
+pub fn run(
+    survey: &Path,
+    out: &Path,
+    project: &Path,
+    settings: &IllustrateSettings,
+    progress: &Progress,
+) -> Result<Illustrated, ProjectError> {
+    let start = Instant::now();
+    refuse_inside_project(out)?;
+    let format = FigureFormat::of(out).unwrap_or(FigureFormat::Png);
+    let mut new = Project::create(project, None)?;
+    let layers = build(new.project(), survey, settings, progress)?;
+    let project = new.publish()?;
+    let document = project.document();
+    let mut scene = scene::choose(document, None)?;
+    // The topmost layer is one of those that were asked for, not air.
+    scene.ground = None;
+    scene::prepare(document, &mut scene, progress)?;
+    let figure = Figure {
+        size: PageSize::Cm(PAGE_CM),
+        dpi: DPI,
+        parts: vec![BlockPart { scene, ..BlockPart::default() }.into()],
+        legend: true,
+        scale_bar: true,
+        annotate: vec![Annotation::Axes, Annotation::Provenance],
+        title: Some(TITLE.to_owned()),
+        caption: Some(
+            "Boundaries are level surfaces of a geologic time that was computed from the reflections alone; patterns show \
+             how strong and how continuous the reflections are, not which rock it is."
+                .to_owned(),
+        ),
+        ..Figure::default()
+    };
+    let drawing = FigureSettings {
+        device: settings.device,
+        volume_bytes: settings.volume_bytes,
+        fonts: Vec::new(),
+        picture_dpi: None,
+        rock: None,
+    };
+    let made = figures::make(&project, &figure, &InterpreterView::default(), &drawing, progress)?;
+    figures::write(&made.page, format, out, DPI, &figures::title(&project))?;
+    Ok(Illustrated {
+        file: out.to_owned(),
+        project: project.root().to_owned(),
+        layers,
+        seconds: start.elapsed().as_secs_f64(),
+    })
+}
+
+/// Everything up to the styles; returns the names of the layers.
+fn build(
+    project: &mut Project,
+    survey: &Path,
+    settings: &IllustrateSettings,
+    progress: &Progress,
+) -> Result<Vec<String>, ProjectError> {
+    let import = ImportVolume {
+        path: survey.to_owned(),
+        name: Some(SEISMIC.to_owned()),
+        polarity: Polarity::Normal,
+        options: settings.options.clone(),
+        memory_bytes: None,
+        moved: false,
+    };
+    project.apply(&Command::Import(import), progress)?;
+    layers_by_time(project, settings.layers, progress)
+}
+
+/// Number of layers where none is stated.
+pub const LAYERS: usize = 6;
+
+/// Gives a project with a volume and without horizons layers between levels of geologic time, and styles by the character
+/// of the reflections; what was extracted, the faults and geologic time are taken as they are where they exist. Returns the
+/// names of the layers. Each step can be undone.
+///
+/// # Errors
+/// No level of time stands out, data are damaged, or the user cancelled.
+pub fn layers_by_time(project: &mut Project, layers: usize, progress: &Progress) -> Result<Vec<String>, ProjectError> {
+    if project.document().extraction.is_none() {
+        project.apply(
+            &Command::Extract(Extract {
+                volume: None,
+                settings: ExtractSettings::default(),
+                memory_bytes: None,
+                just_stored: false,
+            }),
+            progress,
+        )?;
+    }
+    if project.document().faults.is_empty() {
+        accept_faults(project, progress)?;
+    }
+    if !has_time(project.document()) {
+        let time = ComputeTime { name: "time".to_owned(), settings: TimeSettings::default(), memory_bytes: None };
+        project.apply(&Command::Time(time), progress)?;
+    }
+    let (tau, volume) = read_time(project.root(), project.document(), progress)?;
+    let levels = strongest_levels(&tau, &volume, layers.saturating_sub(1));
+    if levels.is_empty() {
+        return Err(ProjectError::NoLevels);
+    }
+    let times: Vec<f32> = levels.iter().map(|level| level.time).collect();
+    let found = characters(&tau, &volume, &times);
+    for (n, level) in levels.iter().enumerate() {
+        let pick = PickByTime { level: TimeLevel::Of(level.time), horizon: format!("Level {}", n + 1) };
+        project.apply(&Command::PickByTime(pick), progress)?;
+    }
+    let mut names = Vec::new();
+    for (n, (layer, character)) in project.document().layers().into_iter().zip(&found).enumerate() {
+        let (words, pattern) = look(character);
+        let name = format!("{}: {words}", n + 1);
+        let [r, g, b] = COLOURS[n % COLOURS.len()];
+        let style = SetLayer {
+            layer,
+            name: Some(name.clone()),
+            pattern: Some(pattern.to_owned()),
+            colour: Some(Colour::new(r, g, b)),
+            ..SetLayer::default()
+        };
+        project.apply(&Command::SetLayer(style), progress)?;
+        names.push(name);
+    }
+    Ok(names)
+}
+
+/// Adds the faults that the ends of reflections tell, but for minor ones.
+fn accept_faults(project: &mut Project, progress: &Progress) -> Result<(), ProjectError> {
+    project.apply(&Command::ProposeFaults(ProposeFaults::default()), progress)?;
+    for proposal in proposals::open(project.root(), project.document()).iter().filter(|proposal| !proposal.is_minor) {
+        let accept = AcceptFault { id: proposal.id, name: proposal.name.clone() };
+        project.apply(&Command::AcceptFault(accept), progress)?;
+    }
+    Ok(())
+}
+
+/// Continuity above which reflections count as continuous, and below which as chaotic.
+const CONTINUOUS: f32 = 0.4;
+const CHAOTIC: f32 = 0.12;
+/// Strength above which reflections count as strong, and below which as weak; 1 is usual.
+const STRONG: f32 = 1.1;
+const WEAK: f32 = 0.8;
+
+/// The words and the pattern for a character of reflections.
+fn look(character: &Character) -> (&'static str, &'static str) {
+    let Character { strength, continuity } = *character;
+    let is_continuous = continuity >= CONTINUOUS;
+    match () {
+        () if continuity < CHAOTIC => ("chaotic", "breccia"),
+        () if strength >= STRONG && is_continuous => ("strong, continuous", "limestone-shale"),
+        () if strength >= STRONG => ("strong, discontinuous", "sandstone-crossbedded"),
+        () if strength < WEAK && is_continuous => ("weak, continuous", "shale"),
+        () if strength < WEAK => ("weak, discontinuous", "siltstone"),
+        () if is_continuous => ("continuous", "sandstone-shale"),
+        () => ("discontinuous", "sandstone-bedded"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_follow_strength_and_continuity() {
+        let words = |strength, continuity| look(&Character { strength, continuity }).0;
+        assert_eq!(words(1.4, 0.7), "strong, continuous");
+        assert_eq!(words(0.5, 0.2), "weak, discontinuous");
+        assert_eq!(words(2.0, 0.05), "chaotic");
+        assert_eq!(words(1.0, 0.5), "continuous");
+    }
+}

@@ -1,0 +1,235 @@
+//! Reads volumes of a project for pictures: whole, at a coarser level where that does not fit into memory, or only the
+//! cells in which faces and sections take samples.
+
+use crate::content;
+use crate::document::{Document, VolumeEntry};
+use crate::error::ProjectError;
+use crate::placement;
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+use render::touched::Places;
+use render::{NamedVolume, Samples, VoxelBox};
+use std::ops::Range;
+use std::path::Path;
+use store::{BRICK, StoredVolume};
+use survey::sparse_volume::CELL;
+use survey::{Progress, SparseVolume, SurveyGeometry, Volume};
+
+/// Volumes up to this size are read whole, bytes: that is quick, and what follows may need all of it.
+pub(crate) const SMALL_BYTES: u64 = 64 << 20;
+
+/// Bricks that are read before they are taken apart.
+const BRICKS_TOGETHER: usize = 16;
+
+/// A volume of the project and its place.
+pub struct LoadedVolume {
+    /// Its name.
+    pub name: String,
+    /// Its samples.
+    pub samples: LoadedSamples,
+    /// Voxel positions of its first and last sample.
+    pub covers: VoxelBox,
+}
+
+/// Samples of a volume.
+pub enum LoadedSamples {
+    /// All.
+    Whole(Volume<f32>),
+    /// Those on faces and sections.
+    Sparse(SparseVolume),
+}
+
+impl LoadedVolume {
+    /// In the form that renderers take.
+    pub fn named(&self) -> NamedVolume<'_> {
+        let volume = match &self.samples {
+            LoadedSamples::Whole(volume) => Samples::Whole(volume),
+            LoadedSamples::Sparse(volume) => Samples::Sparse(volume),
+        };
+        NamedVolume { name: &self.name, volume, covers: self.covers }
+    }
+
+    /// All samples, if they are there.
+    pub fn whole(&self) -> Option<&Volume<f32>> {
+        match &self.samples {
+            LoadedSamples::Whole(volume) => Some(volume),
+            LoadedSamples::Sparse(_) => None,
+        }
+    }
+
+    /// Whether samples were asked for that were not read.
+    pub(crate) fn has_missed(&self) -> bool {
+        matches!(&self.samples, LoadedSamples::Sparse(volume) if volume.has_missed())
+    }
+}
+
+/// How volumes are read.
+pub(crate) struct Reading<'a> {
+    /// Most memory for the samples of each, bytes.
+    pub bytes: u64,
+    /// Where samples are taken; `None`: anywhere.
+    pub places: Option<&'a Places<'a>>,
+    /// Volumes up to this size are read whole, bytes.
+    pub small_bytes: u64,
+    /// Volumes of which all samples are needed in any case.
+    pub whole: &'a [&'a str],
+}
+
+impl Reading<'_> {
+    /// Of every volume all samples.
+    pub fn whole(bytes: u64) -> Self {
+        Self { bytes, places: None, small_bytes: 0, whole: &[] }
+    }
+}
+
+/// Reads the volumes that are `wanted`; warns of those that are shown coarser than they are.
+///
+/// # Errors
+/// Data are damaged, or the user cancelled.
+pub(crate) fn read_volumes(
+    root: &Path,
+    document: &Document,
+    geometry: &SurveyGeometry,
+    wanted: &[&str],
+    reading: &Reading,
+    progress: &Progress,
+) -> Result<Vec<LoadedVolume>, ProjectError> {
+    let mut volumes = Vec::new();
+    for entry in document.volumes.iter().filter(|entry| wanted.contains(&entry.name.as_str())) {
+        let lattice = entry.geometry.as_ref().unwrap_or(geometry);
+        let covers = placement::covers(geometry, lattice)
+            .map_err(|source| ProjectError::Placement { name: entry.name.clone(), source })?;
+        let places = reading.places.filter(|_| !reading.whole.contains(&entry.name.as_str()));
+        let (samples, level) = read_samples(root, (entry, geometry), &covers, places, reading, progress)?;
+        if level > 0 {
+            let apart = 1 << level;
+            progress.warn(format!(
+                "volume {} is shown by one sample in {apart} along each axis, to fit into memory",
+                entry.name
+            ));
+        }
+        let size = match &samples {
+            LoadedSamples::Whole(volume) => volume.size(),
+            LoadedSamples::Sparse(volume) => volume.size(),
+        };
+        let covers = at_level(covers, lattice.size(), size, level);
+        volumes.push(LoadedVolume { name: entry.name.clone(), samples, covers });
+    }
+    Ok(volumes)
+}
+
+/// Reads a volume, or its samples at some places, at the finest level that fits into memory; returns the level too.
+fn read_samples(
+    root: &Path,
+    (entry, geometry): (&VolumeEntry, &SurveyGeometry),
+    covers: &VoxelBox,
+    places: Option<&Places>,
+    &Reading { bytes, small_bytes, .. }: &Reading,
+    progress: &Progress,
+) -> Result<(LoadedSamples, usize), ProjectError> {
+    if let Some(places) = places {
+        let stored = content::open_recorded(root, entry, geometry)?;
+        let full = stored.size(0);
+        if full.iter().map(|&count| count as u64).product::<u64>() * 4 > small_bytes {
+            for level in 0..stored.level_count() {
+                let covers = at_level(*covers, full, stored.size(level), level);
+                let wanted = wanted_cells(stored.size(level), &covers, places);
+                if SparseVolume::bytes(stored.size(level), wanted.iter().filter(|wanted| **wanted).count()) <= bytes {
+                    let sparse = read_sparse(&stored, level, &wanted, progress)?;
+                    return Ok((LoadedSamples::Sparse(sparse), level));
+                }
+            }
+        }
+    }
+    let (volume, level) = content::read_volume_within(root, entry, geometry, bytes, progress)?;
+    Ok((LoadedSamples::Whole(volume), level))
+}
+
+/// The cells of a volume, `[x][y][z]`, in which interpolation at the places takes samples.
+fn wanted_cells(size: [usize; 3], covers: &VoxelBox, places: &Places) -> Vec<bool> {
+    let counts = SparseVolume::cell_counts(size);
+    let low = covers.low().as_vec3();
+    let last = Vec3::from_array(size.map(|count| count.saturating_sub(1) as f32));
+    let step = covers.extent().as_vec3() / last.max(Vec3::ONE);
+    // Voxels between which interpolation takes samples of a cell: those up to its neighbours.
+    let between = |axis: usize, cell: usize| {
+        let ends = [(cell * CELL) as f32 - 1.0, ((cell + 1) * CELL) as f32];
+        ends.map(|at| low[axis] + at * step[axis])
+    };
+    let mut wanted = vec![false; counts.iter().product()];
+    wanted.par_chunks_mut(counts[2]).enumerate().for_each(|(column, wanted)| {
+        let [x, y] = [between(0, column / counts[1]), between(1, column % counts[1])];
+        for depths in places.depths([Vec2::new(x[0], y[0]), Vec2::new(x[1], y[1])]) {
+            let cell = |depth: f32| (depth - low.z) / step.z / CELL as f32;
+            let first = (cell(depths[0] - step.z).floor().max(0.0) as usize).min(counts[2] - 1);
+            let end = ((cell(depths[1] + step.z).floor().max(0.0)) as usize).min(counts[2] - 1);
+            wanted[first..=end].fill(true);
+        }
+    });
+    wanted
+}
+
+/// Reads the cells that are wanted of a level.
+fn read_sparse(
+    stored: &StoredVolume,
+    level: usize,
+    wanted: &[bool],
+    progress: &Progress,
+) -> Result<SparseVolume, ProjectError> {
+    let size = stored.size(level);
+    let live = stored.live_at(level);
+    let mut sparse = SparseVolume::new(size, wanted, live);
+    let boxes = boxes(size, wanted);
+    progress.begin("reading samples of faces", boxes.len() as u64);
+    for together in boxes.chunks(BRICKS_TOGETHER) {
+        let read = |&(start, part): &([usize; 3], [usize; 3])| {
+            progress.step(1)?;
+            Ok::<_, ProjectError>((start, stored.read_box_f32(level, start, part)?))
+        };
+        for (start, part) in together.par_iter().map(read).collect::<Result<Vec<_>, _>>()? {
+            sparse.fill(start, &part);
+        }
+    }
+    Ok(sparse)
+}
+
+/// The box of the wanted cells in each brick that has any: where it begins, and its size.
+fn boxes(size: [usize; 3], wanted: &[bool]) -> Vec<([usize; 3], [usize; 3])> {
+    /// Cells of a brick along each axis.
+    const CELLS: usize = BRICK / CELL;
+    let counts = SparseVolume::cell_counts(size);
+    let bricks = size.map(|count| count.div_ceil(BRICK));
+    let range = |axis: usize, brick: usize| brick * CELLS..((brick + 1) * CELLS).min(counts[axis]);
+    let wanted_in = |n: usize| {
+        let brick = [n / bricks[2] / bricks[1], n / bricks[2] % bricks[1], n % bricks[2]];
+        let own: [Range<usize>; 3] = std::array::from_fn(|axis| range(axis, brick[axis]));
+        let (mut low, mut high) = ([usize::MAX; 3], [0; 3]);
+        for x in own[0].clone() {
+            for y in own[1].clone() {
+                for z in own[2].clone().filter(|z| wanted[(x * counts[1] + y) * counts[2] + z]) {
+                    for (axis, at) in [x, y, z].into_iter().enumerate() {
+                        (low[axis], high[axis]) = (low[axis].min(at), high[axis].max(at + 1));
+                    }
+                }
+            }
+        }
+        (high[0] > 0).then(|| {
+            let start = low.map(|cell| cell * CELL);
+            (start, std::array::from_fn(|axis| (high[axis] * CELL).min(size[axis]) - start[axis]))
+        })
+    };
+    (0..bricks.iter().product()).into_par_iter().filter_map(wanted_in).collect()
+}
+
+/// Voxel positions of the first and last sample at a level of a pyramid, whose sample m lies at m·2^level of the full
+/// volume.
+fn at_level(covers: VoxelBox, full: [usize; 3], size: [usize; 3], level: usize) -> VoxelBox {
+    let max = |axis: usize| {
+        let share = ((size[axis].saturating_sub(1)) << level) as f64 / full[axis].saturating_sub(1).max(1) as f64;
+        covers.min[axis] + (covers.max[axis] - covers.min[axis]) * if level == 0 { 1.0 } else { share }
+    };
+    VoxelBox { min: covers.min, max: [max(0), max(1), max(2)] }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,72 @@
+//! Wells of a project in voxels, as pictures show them.
+
+use crate::content;
+use crate::document::Document;
+use crate::error::ProjectError;
+use glam::DVec3;
+use std::path::Path;
+use survey::{SurveyGeometry, Well};
+use ttf::Colour;
+
+/// A well of the project in voxels.
+pub struct LoadedWell {
+    /// Its name.
+    pub name: String,
+    /// Its own colour.
+    pub colour: Option<Colour>,
+    /// Its path from the head down.
+    pub path: Vec<DVec3>,
+    /// Its tops.
+    pub tops: Vec<DVec3>,
+    /// Their names.
+    pub top_names: Vec<String>,
+    /// A curve measured along it: its gamma ray, or else its first.
+    pub log: Option<LoadedLog>,
+}
+
+/// A curve measured along a well.
+pub struct LoadedLog {
+    /// Its short name.
+    pub name: String,
+    /// Its values and their places, voxels; NaN where nothing was measured.
+    pub points: Vec<(DVec3, f32)>,
+    /// Its smallest and largest value.
+    pub range: [f32; 2],
+}
+
+/// The curve that is shown beside a well.
+fn shown_log(well: &Well, geometry: &SurveyGeometry) -> Option<LoadedLog> {
+    let curves = || well.logs.iter().flat_map(|set| set.curves.iter().map(move |curve| (set, curve)));
+    let (set, curve) = curves().find(|(_, curve)| curve.name.eq_ignore_ascii_case("GR")).or_else(|| curves().next())?;
+    let values = curve.values.iter().copied().filter(|value| value.is_finite());
+    let range = values.fold([f32::MAX, f32::MIN], |[low, high], value| [low.min(value), high.max(value)]);
+    let place = |(md_m, value): (&f64, &f32)| Some((well.voxel_at_md(*md_m, geometry)?, *value));
+    let points: Vec<(DVec3, f32)> = set.md_m.iter().zip(&curve.values).filter_map(place).collect();
+    (range[0] <= range[1]).then(|| LoadedLog { name: curve.name.clone(), points, range })
+}
+
+/// Reads the wells of a project's state, in voxels of `geometry`.
+///
+/// # Errors
+/// A well cannot be read.
+pub fn read_wells(
+    root: &Path,
+    document: &Document,
+    geometry: &SurveyGeometry,
+) -> Result<Vec<LoadedWell>, ProjectError> {
+    let mut wells = Vec::new();
+    for entry in &document.wells {
+        let well = content::read_well(root, entry)?;
+        let placed = well.tops.iter().filter_map(|top| Some((well.voxel_at_md(top.md_m, geometry)?, top.name.clone())));
+        let (tops, top_names) = placed.unzip();
+        wells.push(LoadedWell {
+            name: entry.name.clone(),
+            colour: entry.colour,
+            path: well.path_in_voxels(geometry),
+            tops,
+            top_names,
+            log: shown_log(&well, geometry),
+        });
+    }
+    Ok(wells)
+}
