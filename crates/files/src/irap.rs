@@ -1,6 +1,6 @@
 //! Irap classic ASCII: a rotated regular grid.
 //!
-//! Header of 19 tokens: `-996 NROW XINC YINC / XMIN XMAX YMIN YMAX / NCOL ROTATION X0 Y0 / 0 0 0 0 0 0 0`, then
+//! IrapHeader of 19 tokens: `-996 NROW XINC YINC / XMIN XMAX YMIN YMAX / NCOL ROTATION X0 Y0 / 0 0 0 0 0 0 0`, then
 //! NCOL·NROW values, i (along XINC) fastest. Node (i, j) lies at (X0, Y0) + i·XINC·(cos, sin) + j·YINC·(−sin, cos) of
 //! the rotation in degrees anticlockwise; a negative YINC mirrors. XMAX and YMAX are those of the unrotated grid and
 //! not used. Values from 9999900 on are undefined. The format states neither unit nor sign.
@@ -36,14 +36,14 @@ fn detect(source: &SourceFile) -> Option<String> {
 }
 
 /// The numbers of an Irap header, ASCII or binary.
-pub(super) struct Header {
+pub(super) struct IrapHeader {
     pub count: [i64; 2],
     pub step: [f64; 2],
     pub rotation_deg: f64,
     pub origin: DVec2,
 }
 
-impl Header {
+impl IrapHeader {
     /// The grid, u along XINC and v along YINC.
     pub fn grid(&self, source: &SourceFile) -> Result<NodeGrid, FormatError> {
         let [nu, nv] = self.count;
@@ -85,7 +85,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     if header[0] != -996.0 {
         return Err(source.syntax(1, "-996, the mark of an Irap grid", &header[0].to_string()));
     }
-    let header = Header {
+    let header = IrapHeader {
         count: [header[8] as i64, header[1] as i64],
         step: [header[2], header[3]],
         rotation_deg: header[9],

@@ -38,9 +38,9 @@ pub enum ModelError {
     EmptyHorizon {
         /// Name of the horizon.
         name: String,
-        /// Nodes with a depth, outside the survey.
+        /// HorizonNodes with a depth, outside the survey.
         outside: usize,
-        /// Nodes without a depth.
+        /// HorizonNodes without a depth.
         holes: usize,
     },
     /// There are more horizons or faults than the model can hold.
@@ -105,7 +105,7 @@ pub enum ModelError {
         older: String,
         /// Fault block.
         block: u16,
-        /// Nodes that cross by more than the tolerance.
+        /// HorizonNodes that cross by more than the tolerance.
         nodes: usize,
         /// The largest crossing, samples.
         worst: f32,
@@ -212,14 +212,14 @@ pub enum ModelNote {
         /// Block its nodes lie in.
         used: u16,
     },
-    /// Nodes close to a fault were dropped.
+    /// HorizonNodes close to a fault were dropped.
     SetBack {
         /// Name of the horizon.
         horizon: String,
         /// How many.
         nodes: usize,
     },
-    /// Nodes were picked on the wrong side of a fault and left out.
+    /// HorizonNodes were picked on the wrong side of a fault and left out.
     Strays {
         /// Name of the horizon.
         horizon: String,

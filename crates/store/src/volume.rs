@@ -25,7 +25,7 @@ use super::layout::BRICK;
 use super::linked;
 use super::pyramid::halved;
 use super::sample::StoredSample;
-use super::verify::Findings;
+use super::verify::DamageFindings;
 use super::volume_info::{KIND, VolumeInfo};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -254,7 +254,7 @@ impl StoredVolume {
     ///
     /// Of a linked volume only what lies here is read.
     pub fn verify(&self, progress: &Progress) -> Result<(), StoreError> {
-        let mut findings = Findings::default();
+        let mut findings = DamageFindings::default();
         if self.link.is_none() {
             self.levels.iter().try_for_each(|array| array.find_damage(&mut findings, progress))?;
         }
@@ -331,7 +331,7 @@ impl BoxSource for StoredVolume {
     }
 }
 
-/// Samples as floats.
+/// SampleBox as floats.
 fn as_f32<T: StoredSample + Sample>(samples: &[T]) -> Vec<f32> {
     samples.par_iter().map(|value| value.to_f32()).collect()
 }

@@ -43,8 +43,8 @@ const SCANNED: usize = 20;
 const MOST_SUMMED: usize = 400;
 const MOST_BENT: usize = 12;
 
-/// Evidence `[line cell][sample cell][across]`.
-struct Evidence {
+/// FaultEvidence `[line cell][sample cell][across]`.
+struct FaultEvidence {
     lines: usize,
     samples: usize,
     cells: [usize; 2],
@@ -52,7 +52,7 @@ struct Evidence {
     values: Vec<f32>,
 }
 
-impl Evidence {
+impl FaultEvidence {
     fn new(hubs: &Hubs, across: Across) -> Self {
         let [nx, ny, nz] = hubs.size;
         let (width, lines) = if across == Across::Inlines { (nx, ny) } else { (ny, nx) };
@@ -258,7 +258,7 @@ pub fn find_faults(
     let links = Links::new(&hubs, &[], &[]);
     let mut found = Vec::new();
     for across in [Across::Inlines, Across::Crosslines] {
-        let mut evidence = Evidence::new(&hubs, across);
+        let mut evidence = FaultEvidence::new(&hubs, across);
         progress.begin("looking for faults", MOST as u64);
         for _ in 0..MOST {
             progress.step(1)?;
