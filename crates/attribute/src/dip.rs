@@ -190,7 +190,7 @@ fn scan_line<'a>(
     }
 }
 
-/// WindowSums over the window, `[lag][sample]`.
+/// Sums over the window, `[lag][sample]`.
 struct WindowSums {
     /// Σ u (u₊ + u₋), over the pairs that exist.
     product: Vec<f32>,

@@ -1,6 +1,6 @@
 //! Irap classic ASCII: a rotated regular grid.
 //!
-//! IrapHeader of 19 tokens: `-996 NROW XINC YINC / XMIN XMAX YMIN YMAX / NCOL ROTATION X0 Y0 / 0 0 0 0 0 0 0`, then
+//! Header of 19 tokens: `-996 NROW XINC YINC / XMIN XMAX YMIN YMAX / NCOL ROTATION X0 Y0 / 0 0 0 0 0 0 0`, then
 //! NCOL·NROW values, i (along XINC) fastest. Node (i, j) lies at (X0, Y0) + i·XINC·(cos, sin) + j·YINC·(−sin, cos) of
 //! the rotation in degrees anticlockwise; a negative YINC mirrors. XMAX and YMAX are those of the unrotated grid and
 //! not used. Values from 9999900 on are undefined. The format states neither unit nor sign.

@@ -1,6 +1,6 @@
 //! Tells few scattered points of an overturned fold from those of a map, by looking at them from every side.
 //!
-//! ViewedPoint along a direction d, points are a height field over the plane across d. How well it fits is how far each point
+//! Seen along a direction d, points are a height field over the plane across d. How well it fits is how far each point
 //! lies off the plane through its neighbours in that view, itself left out:
 //!
 //! ```text

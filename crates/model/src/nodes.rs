@@ -1,7 +1,7 @@
 //! The interpreted nodes of a horizon on the voxel lattice, each with the fault block it belongs to.
 //!
 //! Sheets on other grids are resampled by the Catmull–Rom bicubic of their own nodes; a cell takes part only
-//! when its four corners belong to one block, so that nothing is interpolated across a fault. HorizonNodes too close
+//! when its four corners belong to one block, so that nothing is interpolated across a fault. Nodes too close
 //! to a fault, or picked on the wrong side of it, are left out.
 
 use super::lattice::{InterpretedNode, MarginLattice};

@@ -38,9 +38,9 @@ pub enum ModelError {
     EmptyHorizon {
         /// Name of the horizon.
         name: String,
-        /// HorizonNodes with a depth, outside the survey.
+        /// Nodes with a depth, outside the survey.
         outside: usize,
-        /// HorizonNodes without a depth.
+        /// Nodes without a depth.
         holes: usize,
     },
     /// There are more horizons or faults than the model can hold.
@@ -105,7 +105,7 @@ pub enum ModelError {
         older: String,
         /// Fault block.
         block: u16,
-        /// HorizonNodes that cross by more than the tolerance.
+        /// Nodes that cross by more than the tolerance.
         nodes: usize,
         /// The largest crossing, samples.
         worst: f32,
@@ -212,14 +212,14 @@ pub enum ModelNote {
         /// Block its nodes lie in.
         used: u16,
     },
-    /// HorizonNodes close to a fault were dropped.
+    /// Nodes close to a fault were dropped.
     SetBack {
         /// Name of the horizon.
         horizon: String,
         /// How many.
         nodes: usize,
     },
-    /// HorizonNodes were picked on the wrong side of a fault and left out.
+    /// Nodes were picked on the wrong side of a fault and left out.
     Strays {
         /// Name of the horizon.
         horizon: String,

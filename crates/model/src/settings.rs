@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ModelSettings {
-    /// HorizonNodes added on every side of the survey lattice, so that traces which leave the volume stay on defined
+    /// Nodes added on every side of the survey lattice, so that traces which leave the volume stay on defined
     /// sheets. `None` (default): the larger of 16 and 12 % of the longer side.
     pub margin: Option<usize>,
     /// Horizon nodes closer than this to the interpreted part of a fault are dropped (horizontal distance,
@@ -20,7 +20,7 @@ pub struct ModelSettings {
     /// Radius of the neighbourhood whose slope continues a sheet beyond its data, nodes. A larger radius is
     /// steadier under picking noise, a smaller one follows curvature better. Default 10.
     pub slope_radius: f32,
-    /// HorizonNodes picked on two conformable horizons may cross by this much before it is an error, samples.
+    /// Nodes picked on two conformable horizons may cross by this much before it is an error, samples.
     /// Default 0.5.
     pub crossing_tolerance: f32,
     /// Number of nodes that may cross by more than the tolerance before it is an error. Default 8.

@@ -260,7 +260,7 @@ fn borrow(
 }
 
 /// Gives the nodes without data a quality: as their neighbours close to data, filled in enclosed holes,
-/// extrapolated elsewhere. HorizonNodes filled between close picks count as picked.
+/// extrapolated elsewhere. Nodes filled between close picks count as picked.
 fn grade(size: [usize; 2], quality: &mut [Quality]) {
     let [nx, ny] = size;
     let rank = |q: Quality| match q {

@@ -8,7 +8,7 @@ use crate::StructuralModel;
 use glam::Vec3;
 use std::collections::BTreeSet;
 
-/// HorizonNodes along each axis.
+/// Nodes along each axis.
 const NODES: usize = 40;
 /// The length, in voxels, of a line whose ends touch.
 const CLOSE: f32 = 0.02;

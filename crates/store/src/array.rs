@@ -281,7 +281,7 @@ impl<T: StoredSample> ArrayWriter<T> {
     }
 }
 
-/// FolderFiles of a group for files that are not complete, where several processes write.
+/// Folder of a group for files that are not complete, where several processes write.
 pub(super) const APART: &str = ".apart";
 
 /// A folder for such files that no other writer uses.

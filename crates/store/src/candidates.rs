@@ -65,7 +65,7 @@ pub struct CandidateWriter {
     size: [usize; 3],
     distance: ArrayWriter<u8>,
     leaf: LeafWriter,
-    /// StoredLevel 1, once there are slabs.
+    /// Level 1, once there are slabs.
     half: Option<StoredLevel>,
 }
 

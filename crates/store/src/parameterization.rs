@@ -79,7 +79,7 @@ pub struct ParameterizationWriter {
     layout: ArrayLayout,
     fields: [ArrayWriter<f32>; 3],
     ids: [IdWriter; 2],
-    /// FolderFiles for files that are not complete, where other processes write, too.
+    /// Folder for files that are not complete, where other processes write, too.
     apart: Option<PathBuf>,
 }
 
@@ -130,7 +130,7 @@ impl ParameterizationWriter {
         Ok(Self { group: group.to_owned(), size, layout, fields, ids, apart: Some(apart) })
     }
 
-    /// SampleBox along each axis.
+    /// Samples along each axis.
     pub fn size(&self) -> [usize; 3] {
         self.size
     }
@@ -141,7 +141,7 @@ impl ParameterizationWriter {
         [counts[0], counts[1], counts[2]]
     }
 
-    /// SampleBox of a file along each axis.
+    /// Samples of a file along each axis.
     pub fn file_shape(&self) -> [usize; 3] {
         let shape = self.layout.file_shape();
         [shape[0], shape[1], shape[2]]

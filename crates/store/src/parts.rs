@@ -153,7 +153,7 @@ impl VolumeParts {
     /// Writes the file at `place` of level 0 from its samples, and returns the ranges of its bricks.
     ///
     /// # Errors
-    /// SampleBox of another type or count, no such place, or the disk does not take it.
+    /// Samples of another type or count, no such place, or the disk does not take it.
     pub fn write<T: StoredSample + Sample>(
         &self,
         place: [usize; 3],

@@ -30,7 +30,7 @@ pub(super) fn halved(size: [usize; 3]) -> [usize; 3] {
     size.map(|n| n.div_ceil(2))
 }
 
-/// SampleBox of a finer level that a range of a coarser one is made from: first and count.
+/// Samples of a finer level that a range of a coarser one is made from: first and count.
 pub(super) fn needed(start: usize, count: usize, fine_count: usize) -> (usize, usize) {
     let first = (2 * start).saturating_sub(REACH);
     let last = (2 * (start + count - 1) + REACH).min(fine_count - 1);

@@ -44,7 +44,7 @@ impl<T: StoredSample + Sample> SampleBox<'_, T> {
     }
 }
 
-/// SampleBox handled side by side.
+/// Samples handled side by side.
 const LANES: usize = 16;
 
 /// A range that grows, in lanes that become vector instructions; comparisons with NaN are false.

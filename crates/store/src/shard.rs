@@ -47,7 +47,7 @@ pub(super) const PARTIAL: &str = "part";
 /// How a volume is cut into shards, and where they are.
 #[derive(Debug, Clone)]
 pub(super) struct ShardGrid {
-    /// FolderFiles of the array.
+    /// Folder of the array.
     pub folder: PathBuf,
     /// Voxels along each axis.
     pub shape: [usize; 3],

@@ -331,7 +331,7 @@ impl BoxSource for StoredVolume {
     }
 }
 
-/// SampleBox as floats.
+/// Samples as floats.
 fn as_f32<T: StoredSample + Sample>(samples: &[T]) -> Vec<f32> {
     samples.par_iter().map(|value| value.to_f32()).collect()
 }

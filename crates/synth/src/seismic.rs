@@ -37,7 +37,7 @@ pub(super) fn ricker(t: f64) -> f64 {
     (1.0 - 2.0 * square) * (-square).exp()
 }
 
-/// BandNoise of a volume up to this size is kept, bytes; of a larger one it is made twice.
+/// Noise of a volume up to this size is kept, bytes; of a larger one it is made twice.
 const KEPT_BYTES: usize = 64 << 20;
 
 /// Bytes of the lines that are made at a time, about.
@@ -49,7 +49,7 @@ pub struct SeismicLines<'a> {
     noise: Option<ScaledNoise>,
 }
 
-/// BandNoise and the factor that gives it its level.
+/// Noise and the factor that gives it its level.
 struct ScaledNoise {
     noise: BandNoise,
     scale: f32,
@@ -141,7 +141,7 @@ fn root_mean_square(line_sums: &[f64], count: usize) -> f64 {
     (line_sums.iter().sum::<f64>() / count as f64).sqrt()
 }
 
-/// BandNoise without its level: white, filtered along z and along y, line by line; smoothed across inlines when it is asked
+/// Noise without its level: white, filtered along z and along y, line by line; smoothed across inlines when it is asked
 /// for.
 struct BandNoise {
     size: [usize; 3],

@@ -43,7 +43,7 @@ const SCANNED: usize = 20;
 const MOST_SUMMED: usize = 400;
 const MOST_BENT: usize = 12;
 
-/// FaultEvidence `[line cell][sample cell][across]`.
+/// Evidence `[line cell][sample cell][across]`.
 struct FaultEvidence {
     lines: usize,
     samples: usize,

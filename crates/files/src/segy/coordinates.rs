@@ -488,7 +488,7 @@ fn other_bytes() -> Remedy {
     Remedy::all([Setting::XByte.stated(), Setting::YByte.stated()])
 }
 
-/// TraceBins that no survey has, and what would make them plausible.
+/// Bins that no survey has, and what would make them plausible.
 fn note_bins(
     coordinates: &Coordinates<'_>,
     fit: &FittedPlace,

@@ -44,7 +44,7 @@ pub struct SegyVolume {
     pub info: SegyInfo,
 }
 
-/// SampleSums over a part of the volume.
+/// Sums over a part of the volume.
 #[derive(Debug, Clone, Copy)]
 struct SampleSums {
     min: f32,

@@ -9,7 +9,7 @@ use model::FaultNetwork;
 use std::collections::BinaryHeap;
 use survey::{Cancelled, Progress, Quality, Volume};
 
-/// TraceBox by which it may leave the guide: beyond, it is another reflection.
+/// Samples by which it may leave the guide: beyond, it is another reflection.
 const REACH: f32 = 12.0;
 /// Correlation from which two traces show the same reflection. Lower follows noise, higher stops where amplitudes change.
 const ALIKE: f32 = 0.75;

@@ -8,7 +8,7 @@ use model::FaultNetwork;
 use std::collections::BTreeMap;
 use survey::{Quality, Volume};
 
-/// TraceBox within which a node finds the extremum that it is laid on.
+/// Samples within which a node finds the extremum that it is laid on.
 const SNAP: i32 = 6;
 
 /// The nodes of a line through these places, voxels: one for each trace that it crosses inside a survey of this size, at

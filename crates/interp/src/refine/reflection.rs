@@ -3,12 +3,12 @@
 use std::cmp::Ordering;
 use survey::Volume;
 
-/// TraceBox above and below the reflection that are compared between traces: some half a period each, so that the event
+/// Samples above and below the reflection that are compared between traces: some half a period each, so that the event
 /// itself decides and not its neighbours.
 pub(crate) const WINDOW: i32 = 7;
-/// TraceBox by which the reflection may leave what is expected from one trace to the next.
+/// Samples by which the reflection may leave what is expected from one trace to the next.
 pub(crate) const MOST_STEP: i32 = 2;
-/// TraceBox by which neighbours that were reached from different sides may disagree; those that do are a cycle apart.
+/// Samples by which neighbours that were reached from different sides may disagree; those that do are a cycle apart.
 pub(crate) const MOST_SEAM: f32 = 1.5;
 
 /// The samples around a place of a trace.

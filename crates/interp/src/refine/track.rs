@@ -17,9 +17,9 @@ use survey::{Quality, Volume};
 const ALIKE: f32 = 0.85;
 /// Correlation with the place that was picked, below which the reflection is no longer that one.
 const LIKE_SEED: f32 = 0.5;
-/// TraceBox from one trace to the next beyond which two nodes are no dip, but lie on different reflections.
+/// Samples from one trace to the next beyond which two nodes are no dip, but lie on different reflections.
 const STEEPEST: f32 = 6.0;
-/// TraceBox within which the place that was picked finds its extremum.
+/// Samples within which the place that was picked finds its extremum.
 const SNAP: f32 = 4.0;
 
 /// The window in which a reflection is tracked.
@@ -28,7 +28,7 @@ const SNAP: f32 = 4.0;
 pub struct TrackSettings {
     /// Traces to each side of the place.
     pub traces: u32,
-    /// TraceBox above and below it.
+    /// Samples above and below it.
     pub samples: u32,
 }
 

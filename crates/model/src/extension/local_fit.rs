@@ -3,7 +3,7 @@
 //! Around a node the data within `radius` is fitted by h = c₀ + c₁ξ + c₂η + c₃ξ²/2 + c₄ξη + c₅η²/2 (ξ, η =
 //! offset / radius) with weights (1 − ρ²)², ρ² = ξ² + η². The quadratic terms keep a slope at the rim of a
 //! curved surface unbiased; a small ridge (they are pulled to zero) keeps strips and corners from inventing
-//! curvature. HorizonNodes far off the first fit are left out of a second one.
+//! curvature. Nodes far off the first fit are left out of a second one.
 
 use std::cell::RefCell;
 use std::collections::HashMap;

@@ -2,7 +2,7 @@
 //!
 //! Energy on a grid: Σ (δ²ₓh)² + 2(δₓδ_yh)² + (δ²_yh)² over every stencil that fits in the grid, so that its
 //! border is free and planes cost nothing. Two rings of known nodes around the unknown ones carry the values
-//! of the fits, which clamps the plate. PlateGrid l has every 2^l-th node.
+//! of the fits, which clamps the plate. Level l has every 2^l-th node.
 
 use super::local_fit::LocalFits;
 

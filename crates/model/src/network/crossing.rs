@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use survey::fault::Fault;
 use survey::geometry::SurveyGeometry;
 
-/// HorizonNodes of a fault that are looked at along each side of its grid, about.
+/// Nodes of a fault that are looked at along each side of its grid, about.
 const NODES: usize = 64;
 /// A fault that ends within so many cells of another one's far side ends at it.
 const BEYOND_CELLS: f64 = 4.0;
@@ -47,7 +47,7 @@ impl FaultNetwork {
         note(&self.crossings(geometry.size()), &self.surfaces, geometry)
     }
 
-    /// HorizonNodes of a fault where it is real and inside the volume, voxels.
+    /// Nodes of a fault where it is real and inside the volume, voxels.
     fn real_places(&self, fault: usize, size: [usize; 3]) -> Vec<DVec3> {
         let surface = &self.surfaces[fault];
         let [nu, nv] = surface.surface.size;

@@ -27,7 +27,7 @@ fn a_file_cut_anywhere_is_refused_or_read_and_never_panics() {
         let traces = length.saturating_sub(3600) / trace;
         let is_whole = length >= 3600 && (length - 3600).is_multiple_of(trace);
         match outcome {
-            // LineCut between traces, what is left is a smaller volume.
+            // Cut between traces, what is left is a smaller volume.
             Ok(found) => assert!(is_whole && found.info.traces == traces, "{length}"),
             Err(error) if is_whole => assert!(traces < 4, "{length}: {error}"),
             Err(error) => match error.problem {

@@ -451,7 +451,7 @@ fn lengths_that_are_called_angles_are_lengths() {
     let metres = SegyOptions { coordinate_unit: Some(LengthUnit::Metres), ..SegyOptions::default() };
     assert!(in_degrees().scan(&metres).is_ok());
     assert!(in_degrees().refusal().1.contains("unit of X and Y m or ft"), "{}", in_degrees().refusal().1);
-    // TraceBins of five degrees are no survey: metres from a corner of the survey.
+    // Bins of five degrees are no survey: metres from a corner of the survey.
     let local = grid().each(|_, t| {
         t.i16(71, 1);
         t.i32(181, 5 * (t.inline - 90));
