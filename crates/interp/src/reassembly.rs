@@ -194,7 +194,7 @@ fn overshoots(
     })
 }
 
-/// Decides on the patches of each block, the largest first: `is_left_out` is told the patch, how many of its vertices lie
+/// Decides on the patches of each block, the largest first: `is_left_out` gets the patch, how many of its vertices lie
 /// over or under those that were kept, and whether it is the largest.
 fn left_out(
     patches: &[SheetPatch],

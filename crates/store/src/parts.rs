@@ -1,4 +1,4 @@
-//! A volume that several processes write together, each file by whoever is told to: the bytes are those of
+//! A volume that several processes write together, each file by the process that it is assigned to: the bytes are those of
 //! [`write_blocks`](super::write_blocks), whoever writes what, in whatever order and however often.
 //!
 //! ```text

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::path::Path;
 use survey::progress::Progress;
 
-/// How many places of damage are told one by one.
+/// How many places of damage are named one by one.
 const TOLD: usize = 4;
 
 /// What is damaged in the arrays of a group, in their order.

@@ -98,7 +98,7 @@ impl FaultEvidence {
         self.sum_of_every(1, terms)
     }
 
-    /// The evidence of every so manieth cell along and down.
+    /// The evidence of every n-th cell along and down.
     fn sum_of_every(&self, step: usize, terms: &[f32; 5]) -> f32 {
         let mut sum = 0.0;
         for along in (0..self.cells[0]).step_by(step) {

@@ -50,7 +50,7 @@ pub struct FaceUse {
 }
 
 impl FaceUse {
-    /// The face as a file for programs that are told which glyph stands where.
+    /// The face as a file for programs that get the glyph of each place.
     pub fn file(&self) -> Option<FontSubset> {
         subset(&self.face, &self.glyphs, &self.characters)
     }

@@ -254,7 +254,7 @@ impl FieldSearch<'_> {
         }
         let candidate = self.evaluate(bytes, NumberType::I32, NAMED, MIN_FILL);
         if !candidate.fits() {
-            // What holds several traces, or none, at a place is told by what is found elsewhere.
+            // What holds several traces, or none, at a place follows from what is found elsewhere.
             findings.warning(Note::unless(
                 format!("the text header names bytes that are not taken: {}", candidate.as_sentence()),
                 candidate.remedy(),

@@ -72,7 +72,7 @@ impl LevelSurface {
         ((value - self.at) * self.scale_m, slope * self.scale_m)
     }
 
-    /// Whether the surface may run through a box of voxel positions; where it does, it is told.
+    /// Whether the surface may run through a box of voxel positions; true wherever it does.
     pub fn may_cross(&self, low: Vec3, high: Vec3) -> bool {
         let [smallest, largest] = self.field.range(low, high);
         smallest <= self.at && largest >= self.at

@@ -332,7 +332,7 @@ mod tests {
         assert!(through(&ball(6)).map(|_| ()).unwrap_err().to_string().contains("points"));
     }
 
-    /// Inward normals are as good: the sides of a closed surface are told by what it encloses.
+    /// Inward normals are as good: what a closed surface encloses decides its sides.
     #[test]
     fn normals_that_all_point_inwards_make_the_same_body() {
         let turned: Vec<_> = ball(100).into_iter().map(|(p, n)| (p, -n)).collect();

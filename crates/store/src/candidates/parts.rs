@@ -1,4 +1,4 @@
-//! Candidates that several processes write together, each the files that it is told to: the bytes are those of
+//! Candidates that several processes write together, each the files that are assigned to it: the bytes are those of
 //! [`CandidateWriter`](super::CandidateWriter), whoever writes what, in whatever order and however often.
 //!
 //! ```text
