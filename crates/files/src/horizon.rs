@@ -1,17 +1,17 @@
 //! Makes a [`Horizon`] from a surface as read: converts it, places it on nodes, splits it into sheets and
 //! checks it against the survey.
 
-use super::any_shape::{self, MeshKind};
 use super::columns::is_inside;
 use super::lattice::{self, FittedLattice};
 use super::options::{HorizonShape, ImportOptions};
+use super::overturned_points::SeenSideways;
 use super::placement::{self, PlacedPoints, voxel_xy};
 use super::raster;
 use super::raw::{RawPoint, RawShape, RawSurface};
 use super::report::{Gridding, ImportReport, Settled};
 use super::scatter;
 use super::sheets::{self, Crowded, MAX_DEPTHS, NodeValues};
-use super::sideways::SeenSideways;
+use super::surface_kind::{self, MeshKind};
 use super::vertical::VerticalRule;
 use super::{Format, FormatError, SurfaceKind};
 use glam::{DVec2, DVec3};
@@ -189,7 +189,8 @@ fn from_points(
                 notes.push("fewer than three points: nothing lies between them".into());
             }
             let pairs: Vec<_> = placed.voxels.iter().zip(points).map(|(v, p)| (*v, p.z as f32)).collect();
-            let told = if options.shape.is_none() { any_shape::of_points(&pairs, geometry) } else { SeenSideways::Map };
+            let told =
+                if options.shape.is_none() { surface_kind::of_points(&pairs, geometry) } else { SeenSideways::Map };
             if told == SeenSideways::Overturned {
                 let fact = "its points are overturned: several limbs lie over one place on the map";
                 let note = Note::unless(fact, Setting::Shape.stated_as("map"));
@@ -264,7 +265,7 @@ fn through_normals(
     let worlds: Vec<DVec3> = worlds.collect();
     let mesh = model::surface_through(name, &worlds, &normals, geometry, &Progress::silent())
         .map_err(|source| FormatError::Normals { file: file.to_path_buf(), why: source.to_string() })?;
-    let shape = any_shape::of_mesh(&mesh);
+    let shape = surface_kind::of_mesh(&mesh);
     if shape.is_none() && options.shape != Some(HorizonShape::Any) {
         return Ok(None);
     }
@@ -315,7 +316,7 @@ fn from_mesh(
     options: &ImportOptions,
     tolerance: f32,
 ) -> Result<GriddedSheets, FormatError> {
-    let found = if options.shape == Some(HorizonShape::Map) { None } else { any_shape::of_mesh(mesh) };
+    let found = if options.shape == Some(HorizonShape::Map) { None } else { surface_kind::of_mesh(mesh) };
     if found.is_some() || options.shape == Some(HorizonShape::Any) {
         let worlds = || mesh.vertices.iter().map(|v| v.truncate());
         let outside = worlds().filter(|w| !is_inside(voxel_xy(geometry, *w), geometry)).count();

@@ -1,6 +1,5 @@
 //! The structural model: sheets, faults and contact rules together.
 
-use super::below::{Below, MOST_HORIZONS};
 use super::contacts::ContactRules;
 use super::lattice::MarginLattice;
 use super::levels::{LevelSources, LevelSurface};
@@ -10,6 +9,7 @@ use super::order::keep_order;
 use super::report::{ModelError, ModelNote, ModelReport};
 use super::settings::ModelSettings;
 use super::sheets::{ExtendedSheet, extend_all};
+use super::sides::{Below, MOST_HORIZONS};
 use glam::{DMat3, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;

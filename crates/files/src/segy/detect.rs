@@ -12,12 +12,12 @@ use std::borrow::Cow;
 use rayon::prelude::*;
 
 use super::SegyOptions;
-use super::anywhere::{MAX_LINE_NUMBER, Sweep};
 use super::bins::{self, TraceBins};
 use super::candidate::{Candidate, Verdict};
 use super::columns::{Columns, HeaderColumn, HeaderLayout};
 use super::coordinates::{HOMES, confirm, coordinate_fields, locate, varying as varying_coordinates};
 use super::error::SegyProblem;
+use super::field_sweep::{MAX_LINE_NUMBER, Sweep};
 use super::header::{Field, NO_INTEGER, at};
 use super::info::Findings;
 use super::lines::{Flaw, LineLattice};

@@ -1,7 +1,7 @@
 //! Boxes of an array, out of its shard files.
 
 use super::super::error::StoreError;
-use super::super::placed::{ArrayFiles, FolderFiles};
+use super::super::file_place::{ArrayFiles, FolderFiles};
 use super::super::sample::StoredSample;
 use super::file::{ChunkLines, Shard, Trouble};
 use super::{ShardGrid, Span};

@@ -1,6 +1,6 @@
 //! One shard file: its index, and verified parts of its chunks.
 
-use super::super::placed::{ArrayFiles, PlacedBytes};
+use super::super::file_place::{ArrayFiles, PlacedBytes};
 use super::super::sample::StoredSample;
 use super::{CROSSLINES_TOGETHER, sums_of};
 use bytemuck::cast_slice_mut;

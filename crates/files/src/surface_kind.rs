@@ -1,8 +1,8 @@
 //! Tells which horizons are no height fields: triangles with an overturned limb or around a body, scattered points whose
 //! neighbours on the map lie far from their neighbours in space, or that are a height field only as seen from aside.
 
+use super::overturned_points::{self, SeenSideways};
 use super::placement::world_xy;
-use super::sideways::{self, SeenSideways};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use survey::geometry::SurveyGeometry;
@@ -56,7 +56,7 @@ pub(super) fn of_points(points: &[(DVec2, f32)], geometry: &SurveyGeometry) -> S
     } else if is_torn(&places(MOST_POINTS)) {
         SeenSideways::Overturned
     } else {
-        sideways::told(&places(MOST_SEEN))
+        overturned_points::told(&places(MOST_SEEN))
     }
 }
 
