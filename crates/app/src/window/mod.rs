@@ -17,7 +17,6 @@ use super::views::{
 use super::work::{Event, Swatches, Wake, Work};
 use crate::widgets::event_order::EventOrder;
 use crate::widgets::keyboard::Listener;
-use crate::widgets::page::PagePreview;
 use crate::widgets::theme;
 use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};
 use frames::FrameTimes;
@@ -383,8 +382,7 @@ impl Window {
             Some(Dialogue::Share(_)) => self.share_dialogue(ctx, actions),
             Some(Dialogue::Data(form)) => data_file::dialogue(ctx, &self.state, form, actions),
             None => {
-                self.views.preview = PagePreview::default();
-                self.views.share = ShareView::default();
+                (self.views.preview, self.views.share) = Default::default();
             }
         }
     }
