@@ -1,12 +1,15 @@
 //! The report of a check, in the words of the command line.
 
 use super::report::Report;
-use project::check::{CheckReport, Cure, Damage, LeftoverKind, Part};
+use project::check::{CheckReport, Cure, Damage, LeftoverKind, Outcome, Part};
+use project::error::Noun;
 use std::path::Path;
+use system::command_line::CommandLine;
 
 /// What a check found, for people and programs. The exit code is that of a failure while something is damaged.
 pub(super) fn report(found: &CheckReport) -> Report {
     let project = found.project.display();
+    let repair = CommandLine::new("check").value(&found.project).flag("--repair");
     let state = found.step.map_or("no readable state".to_owned(), |step| format!("step {step}"));
     let mut report = Report::line(format!(
         "{project}: {state}, {} of the history, {} and {} checked",
@@ -42,7 +45,7 @@ pub(super) fn report(found: &CheckReport) -> Report {
     });
     let can_remove = found.leftovers.iter().any(|leftover| leftover.kind != LeftoverKind::Doubtful);
     if can_remove && found.repairs.is_empty() {
-        report.say(format!("`petroglyph check {project} --repair` removes what is left over"));
+        report.say(format!("`{repair}` removes what is left over"));
     }
     report.fields(found).field("ok", found.is_well());
     report.bad(!found.is_well())
@@ -62,7 +65,7 @@ fn say_damage(report: &mut Report, damage: &Damage, project: &Path) {
         report.say(format!("  depends on it: {}", damage.dependants.join(", ")));
     }
     if !damage.repaired {
-        let ways: Vec<String> = damage.cures.iter().map(|cure| words(cure, damage, project)).collect();
+        let ways: Vec<String> = damage.cures.iter().map(|cure| words(cure, project)).collect();
         report.say(format!("  what to do: {}", ways.join("; or ")));
     }
 }
@@ -90,38 +93,39 @@ fn ranges(numbers: &[u32]) -> String {
 }
 
 /// What to do about damage.
-fn words(cure: &Cure, damage: &Damage, project: &Path) -> String {
-    let project = project.display();
-    // "horizon" of `horizon "Top Chalk"` is the command, too.
-    let noun = damage.what.split(' ').next().unwrap_or_default();
-    let again = match noun {
-        "volume" => "remove it with `petroglyph volume remove`, then ".to_owned(),
-        "horizon" | "fault" | "well" => format!("remove it with `petroglyph {noun} remove`, then "),
-        _ => String::new(),
+fn words(cure: &Cure, project: &Path) -> String {
+    let line = |command| CommandLine::new(command).value(project);
+    let repair = line("check").flag("--repair");
+    let removal = |noun: &Noun, name: &str| {
+        let command = match noun {
+            Noun::Volume => "volume remove",
+            Noun::Horizon => "horizon remove",
+            Noun::Fault => "fault remove",
+            Noun::Well => "well remove",
+            Noun::Layer | Noun::Texture | Noun::Parameterization | Noun::Scene => return String::new(),
+        };
+        format!("remove it with `{}`, then ", line(command).value(name))
     };
     match cure {
-        Cure::Restore { step } => format!(
-            "`petroglyph check {project} --repair` restores it from step {step} of the history, and keeps the damaged \
-             file beside it"
-        ),
-        Cure::SetAside => format!("`petroglyph check {project} --repair` moves it to damaged/"),
-        Cure::Recompute => {
-            let again = match damage.what.as_str() {
-                "horizon candidates" => format!("`petroglyph extract {project}` makes it again"),
-                "proposed faults" => format!("`petroglyph fault propose {project}` makes it again"),
-                _ => "it is computed again when it is needed".to_owned(),
-            };
-            format!("`petroglyph check {project} --repair` removes it, and {again}")
+        Cure::Restore { step } => {
+            format!("`{repair}` restores it from step {step} of the history, and keeps the damaged file beside it")
         }
-        Cure::MakeAgain => format!("`petroglyph check {project} --repair` makes it again"),
-        Cure::Undo { step, times: 1 } => format!("go back to step {step}: `petroglyph undo {project}`"),
-        Cure::Undo { step, times } => format!("go back to step {step}: `petroglyph undo {project}`, {times} times"),
-        Cure::Import { path } => format!("{again}import {} again", path.display()),
-        Cure::Remake { from } => format!("{again}make it again ({from})"),
+        Cure::SetAside => format!("`{repair}` moves it to damaged/"),
+        Cure::Recompute { result } => {
+            let again = match result {
+                Outcome::Candidates => format!("`{}` makes it again", line("extract")),
+                Outcome::FaultProposals => format!("`{}` makes it again", line("fault propose")),
+                Outcome::Parameterization => "it is computed again when it is needed".to_owned(),
+            };
+            format!("`{repair}` removes it, and {again}")
+        }
+        Cure::MakeAgain => format!("`{repair}` makes it again"),
+        Cure::Undo { step, times: 1 } => format!("go back to step {step}: `{}`", line("undo")),
+        Cure::Undo { step, times } => format!("go back to step {step}: `{}`, {times} times", line("undo")),
+        Cure::Import { noun, name, path } => format!("{}import {} again", removal(noun, name), path.display()),
+        Cure::Remake { noun, name, from } => format!("{}make it again ({from})", removal(noun, name)),
         Cure::Prune => {
-            format!(
-                "only the history needs it: `petroglyph prune {project}` deletes the history, the present state stays"
-            )
+            format!("only the history needs it: `{}` deletes the history, the present state stays", line("prune"))
         }
         Cure::ReplaceLink => {
             "if you trust where the project comes from, replace the link by a copy of what it points to".to_owned()

@@ -13,6 +13,7 @@ use project::pictures::{load, scene};
 use render::{FaceData, Scene};
 use std::path::{Path, PathBuf};
 use survey::{Progress, VerticalUnit};
+use system::command_line::CommandLine;
 use system::memory;
 
 /// Most layers that are named where a list of them is told.
@@ -116,9 +117,9 @@ pub(super) fn advise(project: &Path, pairs: Vec<NamedConfusion>, report: &mut Re
     for pair in pairs.iter().take(TOLD) {
         let remedy = pair.change.as_ref().zip(pair.confusion.remedy.as_ref());
         let help = remedy.map_or_else(String::new, |(layer, remedy)| {
-            let pattern = remedy.pattern.as_ref().map_or_else(String::new, |name| format!(" --pattern {name}"));
-            let (project, colour) = (project.display(), remedy.colour);
-            format!("; petroglyph layer set {project} {layer:?}{pattern} --colour \"{colour}\" tells them apart")
+            let line = CommandLine::new("layer set").value(project).value(layer);
+            let line = remedy.pattern.iter().fold(line, |line, pattern| line.option("--pattern", pattern));
+            format!("; `{}` tells them apart", line.option("--colour", remedy.colour.to_string()))
         });
         report.note(format!("{pair}{help}"));
     }

@@ -1,5 +1,6 @@
 //! Failures on the terminal: an error in one sentence, and a hint.
 
+use super::asked::Asked;
 use super::plain::{plain, plain_json};
 use super::report::write_out;
 use super::run::Failure;
@@ -22,24 +23,24 @@ pub struct Refusal {
 
 impl Refusal {
     /// What is wrong with the words of a command.
-    pub(super) fn of_usage(told: &clap::Error, command: &str) -> Self {
+    pub(super) fn of_usage(told: &clap::Error, asked: &Asked) -> Self {
         let text = told.to_string();
         let reason = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
-        Self { code: u8::try_from(told.exit_code()).unwrap_or(2), reason, hint: example_of(command) }
+        Self { code: u8::try_from(told.exit_code()).unwrap_or(2), reason, hint: example_of(&asked.command) }
     }
 }
 
 /// What the program says about an error: the error with its causes in one sentence, and what to do next.
 pub fn explain(error: impl Error + Send + Sync + 'static) -> Refusal {
-    failed(&error.into())
+    failed(&error.into(), &Asked::default())
 }
 
 /// The same for a failure of a command.
-pub(super) fn refusal(failure: &Failure, command: &str) -> Refusal {
+pub(super) fn refusal(failure: &Failure, asked: &Asked) -> Refusal {
     match failure {
-        Failure::Usage(reason) => Refusal { code: 2, reason: reason.clone(), hint: example_of(command) },
-        Failure::Failed(error) => match failed(error) {
-            refusal if refusal.hint.is_empty() => Refusal { hint: example_of(command), ..refusal },
+        Failure::Usage(reason) => Refusal { code: 2, reason: reason.clone(), hint: example_of(&asked.command) },
+        Failure::Failed(error) => match failed(error, asked) {
+            refusal if refusal.hint.is_empty() => Refusal { hint: example_of(&asked.command), ..refusal },
             refusal => refusal,
         },
     }
@@ -47,9 +48,9 @@ pub(super) fn refusal(failure: &Failure, command: &str) -> Refusal {
 
 /// What is said about an error: what its kind or its remedy says, what its own sentence ends with, or what the file
 /// system's answer tells.
-fn failed(error: &anyhow::Error) -> Refusal {
+fn failed(error: &anyhow::Error, asked: &Asked) -> Refusal {
     let sentence = sentence(error);
-    let known = hint::of(error.as_ref())
+    let known = hint::of(error.as_ref(), &asked.project)
         .or_else(|| remedy_of(error.as_ref()).map(|ways| format!("state {}", option::remedy(&ways))));
     let (reason, hint) = match known {
         Some(hint) => (sentence, Some(hint)),
@@ -60,8 +61,8 @@ fn failed(error: &anyhow::Error) -> Refusal {
 }
 
 /// Prints a failure.
-pub(super) fn print(failure: &Failure, command: &str, json: bool) -> ExitCode {
-    let Refusal { code, reason, hint } = refusal(failure, command);
+pub(super) fn print(failure: &Failure, asked: &Asked, json: bool) -> ExitCode {
+    let Refusal { code, reason, hint } = refusal(failure, asked);
     if json {
         // The exit code says that it failed, whether or not this can be written.
         let _ = write_out(&plain_json(&serde_json::json!({ "error": reason, "hint": hint }).to_string()));
@@ -117,15 +118,13 @@ mod tests {
 
     #[test]
     fn without_a_remedy_the_file_system_or_the_command_itself_tells_what_to_do() {
+        let asked = Asked { command: "horizon add".to_owned(), ..Asked::default() };
         let gone = anyhow::Error::from(std::io::Error::from(std::io::ErrorKind::NotFound)).context("reading a.csv");
-        assert_eq!(
-            refusal(&Failure::Failed(gone), "horizon add").hint,
-            "check the path: there is no such file or folder"
-        );
-        let other = refusal(&Failure::Failed(anyhow::anyhow!("it is gone")), "horizon add");
+        assert_eq!(refusal(&Failure::Failed(gone), &asked).hint, "check the path: there is no such file or folder");
+        let other = refusal(&Failure::Failed(anyhow::anyhow!("it is gone")), &asked);
         assert_eq!(other.hint, "`petroglyph horizon add --help` shows an example");
         // Where there is no command, as in Python, nothing is said that does not help.
-        assert_eq!(failed(&anyhow::anyhow!("it is gone")).hint, "");
+        assert_eq!(failed(&anyhow::anyhow!("it is gone"), &Asked::default()).hint, "");
     }
 
     #[test]

@@ -5,12 +5,15 @@ use param::ParamError;
 use project::ProjectError;
 use std::error::Error;
 use std::io::ErrorKind;
+use std::path::Path;
+use system::command_line::CommandLine;
 use ttf::TtfError;
 
 /// What to do next about an error, or about what caused it; `None` where no general advice is possible.
-pub(super) fn of(error: &(dyn Error + 'static)) -> Option<String> {
-    let own = error.downcast_ref::<ProjectError>().and_then(words).map(str::to_owned);
-    own.or_else(|| of(error.source()?))
+pub(super) fn of(error: &(dyn Error + 'static), project: &Path) -> Option<String> {
+    let own = error.downcast_ref::<ProjectError>();
+    let own = own.and_then(|error| with_line(error, project).or_else(|| words(error).map(str::to_owned)));
+    own.or_else(|| of(error.source()?, project))
 }
 
 /// What to do next about an answer of the file system.
@@ -26,23 +29,77 @@ pub(super) fn of_files(error: &(dyn Error + 'static)) -> Option<&'static str> {
     })
 }
 
+/// What to do next, where that is a line to give on the project.
+fn with_line(error: &ProjectError, project: &Path) -> Option<String> {
+    let line = |command| CommandLine::new(command).value(project);
+    Some(match error {
+        ProjectError::Malformed { .. } => format!(
+            "undo the last edit by hand, or ask `{}`: it says what is damaged and what can be restored",
+            line("check")
+        ),
+        ProjectError::Unsound { .. } => {
+            format!("`{}` says all that is wrong with it; after that it can be changed as it is", line("check"))
+        }
+        ProjectError::DiskFull { .. } => format!(
+            "free some space (derived/ may be deleted, `{}` deletes the history), then try again; nothing was changed",
+            line("prune")
+        ),
+        ProjectError::Unknown { .. } => {
+            format!("check the spelling; names are listed by `{}`", line("info"))
+        }
+        ProjectError::NotClimbable { pick } => {
+            let unpick = line("horizon unpick").value(pick.to_string());
+            format!("take it out with `{unpick}`, and draw or track it again")
+        }
+        ProjectError::NothingLeft { horizon } => format!("`{}` removes it", line("horizon remove").value(horizon)),
+        ProjectError::NotPicked { horizon, .. } => {
+            format!("`{}` lists the picks and their places", line("horizon show").value(horizon))
+        }
+        ProjectError::UnknownPick { .. } => {
+            format!("`{}` lists the picks with their numbers", line("horizon show").value("NAME"))
+        }
+        ProjectError::OutdatedPicks { horizon, .. } => {
+            let replay = line("horizon replay").value(horizon);
+            format!("make them again with `{replay}`, or extract with the former settings")
+        }
+        ProjectError::UnfitPicks { horizon, .. } => {
+            let replay = line("horizon replay").value(horizon).flag("--drop-unfit");
+            format!("remove them with `{replay}`, then pick again")
+        }
+        ProjectError::NoPickFits { horizon } => {
+            let (show, remove) = (line("horizon show").value(horizon), line("horizon remove").value(horizon));
+            format!(
+                "note its picks (`{show}`), remove it (`{remove}`) and pick it again, or extract with the former \
+                 settings; the others are made again by naming them"
+            )
+        }
+        ProjectError::NoProposals | ProjectError::OutdatedProposals => format!("run `{}`", line("fault propose")),
+        ProjectError::UnknownProposal { .. } => format!("`{}` lists them", line("fault propose")),
+        ProjectError::NothingToUndo | ProjectError::NothingToRedo => format!("`{}` shows the history", line("info")),
+        ProjectError::NoTime => format!("run `{}` first", line("time")),
+        ProjectError::NotExtracted => format!("run `{}` first", line("extract")),
+        ProjectError::NoVolume => {
+            let import = CommandLine::new("import").value("SURVEY.sgy").value(project);
+            format!("import one with `{import}`")
+        }
+        ProjectError::Param(ParamError::OtherLayers { .. } | ParamError::NoValues { .. }) => {
+            format!("`{}` computes them here", line("parameterize").flag("--computed"))
+        }
+        ProjectError::Figure(_) => format!(
+            "`petroglyph render --help` lists what a figure can show; `{}` its lines and horizons",
+            line("info")
+        ),
+        _ => return None,
+    })
+}
+
 /// What to do next on the command line, where general advice is possible.
 fn words(error: &ProjectError) -> Option<&'static str> {
     Some(match error {
         ProjectError::NotFound { .. } => {
             "check the path, or make a project with `petroglyph import SURVEY.sgy PROJECT` or `petroglyph create`"
         }
-        ProjectError::Malformed { .. } => {
-            "undo the last edit by hand, or ask `petroglyph check PROJECT`: it says what is damaged and what can be restored"
-        }
-        ProjectError::Unsound { .. } => {
-            "`petroglyph check PROJECT` says all that is wrong with it; after that it can be changed as it is"
-        }
-        ProjectError::DiskFull { .. } => {
-            "free some space (derived/ may be deleted, `petroglyph prune` deletes the history), then try again; nothing was changed"
-        }
         ProjectError::Duplicate { .. } => "choose another --name, or rename or remove the present one first",
-        ProjectError::Unknown { .. } => "check the spelling; names are listed by `petroglyph info PROJECT`",
         ProjectError::PickOutside { .. } => {
             "give INLINE,CROSSLINE,Z as line numbers and in the project's vertical unit"
         }
@@ -50,34 +107,17 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         ProjectError::NotAssembled { .. } => {
             "choose another --horizon: only horizons that were made from picks take picks"
         }
-        ProjectError::NotClimbable { .. } => "take it out with `petroglyph horizon unpick`, and draw or track it again",
         ProjectError::ShortLine => "write a line as --line IL,XL,Z IL,XL,Z …",
         ProjectError::NothingTracked { .. } => {
             "start on a strong peak or trough, or draw lines with `petroglyph horizon draw`"
         }
-        ProjectError::NothingLeft { .. } => "`petroglyph horizon remove` removes a horizon",
         ProjectError::AlreadyPicked { .. } => "pick elsewhere, or climb higher with --up",
-        ProjectError::NotPicked { .. } => "`petroglyph horizon show` lists the picks and their places",
-        ProjectError::UnknownPick { .. } => "`petroglyph horizon show PROJECT NAME` lists the picks with their numbers",
         ProjectError::AtLeaf { .. } => {
             "remove the leaf with `petroglyph pick --remove`, or extract with smaller leaves"
         }
-        ProjectError::OutdatedPicks { .. } => {
-            "make them again with `petroglyph horizon replay`, or extract with the former settings"
-        }
-        ProjectError::UnfitPicks { .. } => "remove them with `petroglyph horizon replay --drop-unfit`, then pick again",
-        ProjectError::NoPickFits { .. } => {
-            "note its picks (`petroglyph horizon show PROJECT NAME`), remove it (`petroglyph horizon remove PROJECT NAME`) and pick it again, or extract with the former settings; the others are made again by naming them"
-        }
         ProjectError::ShortStick { .. } => "write a stick as --stick IL,XL,Z IL,XL,Z …",
         ProjectError::NotDrawn { .. } => "choose another --name",
-        ProjectError::NoProposals | ProjectError::OutdatedProposals => "run `petroglyph fault propose PROJECT`",
-        ProjectError::UnknownProposal { .. } => "`petroglyph fault propose PROJECT` lists them",
         ProjectError::NoGeometry => "import a volume, or create the project with --bounds and --size",
-        ProjectError::NothingToUndo | ProjectError::NothingToRedo => "`petroglyph info PROJECT` shows the history",
-        ProjectError::NoTime => "run `petroglyph time PROJECT` first",
-        ProjectError::NotExtracted => "run `petroglyph extract PROJECT` first",
-        ProjectError::NoVolume => "import one with `petroglyph import SURVEY.sgy PROJECT`",
         ProjectError::Style(TtfError::UnknownRock { .. } | TtfError::UnknownAge { .. }) => return error.advice(),
         ProjectError::Style(_) => "`petroglyph patterns OUT.png` draws every pattern with its name",
         ProjectError::Scene(_) => {
@@ -91,13 +131,7 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         ProjectError::Crossing { .. } => {
             "check unit, sign and picks there, put it elsewhere with --above or --below, or state --contact erosional, onlap or intrusive"
         }
-        ProjectError::Param(ParamError::OtherLayers { .. } | ParamError::NoValues { .. }) => {
-            "`petroglyph parameterize PROJECT --computed` computes them here"
-        }
         ProjectError::NotATruth { .. } => "give the folder that `petroglyph synth` wrote",
-        ProjectError::Figure(_) => {
-            "`petroglyph render --help` lists what a figure can show; `petroglyph info PROJECT` its lines and horizons"
-        }
         _ => return error.advice(),
     })
 }

@@ -6,6 +6,7 @@
 
 mod animate;
 mod args;
+mod asked;
 mod assembly;
 mod check;
 mod cut;
@@ -35,7 +36,8 @@ mod words;
 pub use failure::{Refusal, explain};
 pub use words::{CommandWords, OptionWords, commands};
 
-use clap::{CommandFactory, Parser};
+use asked::Asked;
+use clap::Parser;
 use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
@@ -54,7 +56,10 @@ pub fn main() -> ExitCode {
         .and_then(|(request, wait)| run::run(request, wait));
     match outcome {
         Ok(report) => report.print(json),
-        Err(failure) => failure::print(&failure, &command_of(std::env::args_os().skip(1)), json),
+        Err(failure) => {
+            let words: Vec<OsString> = std::env::args_os().skip(1).collect();
+            failure::print(&failure, &Asked::of(&words), json)
+        }
     }
 }
 
@@ -64,32 +69,14 @@ pub fn main() -> ExitCode {
 /// # Errors
 /// The words are no command, or it could not be carried out.
 pub fn answer(typed: &[OsString], progress: &Progress) -> Result<serde_json::Value, Refusal> {
-    let command = command_of(typed.iter().cloned());
+    let asked = Asked::of(typed);
     let line = [OsString::from("petroglyph")].into_iter().chain(typed.iter().cloned());
-    let typed = args::Arguments::try_parse_from(line).map_err(|told| Refusal::of_usage(&told, &command))?;
+    let typed = args::Arguments::try_parse_from(line).map_err(|told| Refusal::of_usage(&told, &asked))?;
     let outcome = request::seconds("--wait", typed.wait)
         .and_then(|wait| Ok((request::Request::try_from(typed.action)?, wait)))
         .map_err(run::Failure::Usage)
         .and_then(|(request, wait)| run::carry_out(request, wait, progress));
-    Ok(outcome.map_err(|failure| failure::refusal(&failure, &command))?.into_object())
-}
-
-/// The command that these words name: `horizon add` of `horizon add north.petro top.irap`.
-fn command_of(words: impl Iterator<Item = OsString>) -> String {
-    let (mut command, mut named) = (args::Arguments::command(), Vec::new());
-    for word in words {
-        let found = word.to_str().and_then(|word| command.find_subcommand(word)).cloned();
-        match found {
-            Some(next) => {
-                named.push(next.get_name().to_owned());
-                command = next;
-            }
-            // Options of all commands may stand in front.
-            None if named.is_empty() => {}
-            None => break,
-        }
-    }
-    named.join(" ")
+    Ok(outcome.map_err(|failure| failure::refusal(&failure, &asked))?.into_object())
 }
 
 /// Prints the help, the version, or what is wrong with the usage.

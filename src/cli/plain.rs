@@ -5,6 +5,7 @@
 //! could make a name look like another, and are shown so too.
 
 use std::borrow::Cow;
+use system::command_line::misleads;
 
 /// The text with control characters shown, but for line ends and tabs.
 pub(super) fn plain(text: &str) -> Cow<'_, str> {
@@ -25,7 +26,7 @@ pub(super) fn plain_json(json: &str) -> Cow<'_, str> {
 }
 
 fn is_unsafe(c: char) -> bool {
-    (c.is_control() && !matches!(c, '\n' | '\t')) || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    misleads(c) && !matches!(c, '\n' | '\t')
 }
 
 #[cfg(test)]

@@ -45,10 +45,9 @@ fn layers_that_look_alike_are_said_and_the_advice_helps() {
     assert_eq!(all.stderr.matches("note: ").count(), 1, "once for all figures: {}", all.stderr);
     assert!(all.stderr.contains("Alpha - Bravo and Bravo - Unconformity are neighbours"), "{}", all.stderr);
     fs::write(&state, plain).unwrap();
-    let command = told[0].split("; petroglyph ").nth(1).unwrap().trim_end_matches(" tells them apart");
-    let command = command.replace('"', "'");
-    assert_eq!(words(&command)[..2], ["layer", "set"]);
-    run_in(at, &command).done();
+    let command = told[0].split("`petroglyph ").nth(1).unwrap().trim_end_matches("` tells them apart");
+    assert_eq!(words(command)[..2], ["layer", "set"]);
+    run_in(at, command).done();
     assert_eq!(notes(at, ""), Vec::<String>::new());
     // Raw data have no patterns to be told apart.
     for layer in ["Alpha - Bravo", "Bravo - Unconformity"] {

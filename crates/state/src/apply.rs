@@ -1,6 +1,7 @@
 //! What each action does to the state.
 
-use super::{Action, Compare, Notice, Panel, PickingTask, Place, Session, State, Task, ViewState, camera};
+use super::{Action, Compare, Notice, Panel, PickingTask, Place, Session, Snapshot, State, Task, ViewState, camera};
+use project::document::Document;
 use project::pictures::scene;
 
 impl State {
@@ -33,23 +34,12 @@ impl State {
                 self.quieten(Place::Start);
                 return vec![Task::Demo(folder)];
             }
-            Action::Illustrate => {
-                self.quieten(Place::Interpret);
-                return vec![Task::Illustrate];
-            }
+            Action::Illustrate => return self.task_at(Place::Interpret, Task::Illustrate),
             Action::Close => return self.close(),
             Action::Opened(snapshot) => return self.opened(*snapshot),
-            Action::Changed(snapshot) => {
-                if let Some(session) = self.session.as_mut().filter(|session| session.root == snapshot.root) {
-                    session.renew(*snapshot);
-                }
-            }
+            Action::Changed(snapshot) => self.changed(*snapshot),
             Action::Tell(notice) => self.tell(notice),
-            Action::Dismiss(index) => {
-                if index < self.notices.len() {
-                    self.notices.remove(index);
-                }
-            }
+            Action::Dismiss(index) => self.dismiss(index),
             Action::Ask(dialogue) => {
                 self.quieten(Place::Dialogue);
                 self.dialogue = Some(*dialogue);
@@ -68,25 +58,18 @@ impl State {
                     None => Task::Apply(Box::new(project::Command::Import(*command))),
                 }];
             }
-            Action::Export(form) => {
-                self.quieten(Place::Foot);
-                return self.task(Task::Export(form));
-            }
+            Action::Export(form) => return self.task_at(Place::Foot, Task::Export(form)),
             Action::ExportData(form) => return self.writing(Task::ExportData(form)),
             Action::Share(form) => return self.writing(Task::Share(form)),
             Action::Copy => return self.task(Task::Copy),
             Action::Picking(step) => return self.pick(step),
             Action::Extract(volume, settings) => {
-                self.quieten(Place::Interpret);
-                return self.task(Task::Picking(PickingTask::Extract(volume, settings)));
+                return self.task_at(Place::Interpret, Task::Picking(PickingTask::Extract(volume, settings)));
             }
             Action::ProposeFaults => {
-                self.quieten(Place::Interpret);
                 // The numbers of former proposals mean nothing in the new list.
-                if let Some(session) = &mut self.session {
-                    session.view.picking.dismissed.clear();
-                }
-                return self.task(Task::Picking(PickingTask::ProposeFaults));
+                self.look(|view, _| view.picking.dismissed.clear());
+                return self.task_at(Place::Interpret, Task::Picking(PickingTask::ProposeFaults));
             }
             Action::Appear(appearance) => {
                 self.remembered.appearance = appearance;
@@ -96,9 +79,37 @@ impl State {
                 self.remembered.scale = Some(scale.clamp(0.6, 3.0));
                 return vec![Task::Remember];
             }
-            other => self.look(other),
+            Action::Present(at) => self.present(at),
+            Action::Show(scene) => self.look(|view, document| view.show(*scene, document)),
+            Action::ShowNamed(name) => self.show_named(&name),
+            Action::Stand(place) => self.look(|view, _| camera::stand(&mut view.scene, place)),
+            Action::Volumes(volumes) => self.look(|view, _| view.volumes = volumes),
+            Action::Proportions(factor) => self.look(|view, _| view.proportions = factor),
+            Action::Arrange(layout) => self.look(|view, _| view.layout = layout),
+            Action::Compare(compare) => self.look(|view, _| view.compare = compare),
+            Action::Wipe(at) => self.look(|view, _| view.wipe = at.clamp(0.02, 0.98)),
+            Action::Slices(at) => self.look(|view, document| {
+                view.slices = at;
+                view.fit(document);
+            }),
+            Action::Fence(corners) => self.look(|view, document| {
+                view.fence = corners;
+                view.fit(document);
+            }),
+            Action::Panel(panel) => self.look(|view, _| view.panel = panel),
+            Action::Layer(layer) => self.look(|view, _| view.layer = layer),
+            Action::Horizon(horizon) => self.look(|view, _| view.horizon = horizon),
+            Action::Hide { kind, name, hidden } => self.look(|view, _| view.hidden.set(kind, name, hidden)),
+            Action::Handles(shown) => self.look(|view, _| view.handles = shown),
         }
         Vec::new()
+    }
+
+    /// Takes over a change of the open project; one of a project that was closed meanwhile is nobody's.
+    fn changed(&mut self, snapshot: Snapshot) {
+        if let Some(session) = self.session.as_mut().filter(|session| session.root == snapshot.root) {
+            session.renew(snapshot);
+        }
     }
 
     /// Shows a notice, once.
@@ -110,41 +121,24 @@ impl State {
         self.notices.push(notice);
     }
 
-    /// Actions on the view of the open project; they are ignored while no project is open.
-    fn look(&mut self, action: Action) {
-        if let Action::Present(at) = action {
-            return self.present(at);
+    fn dismiss(&mut self, index: usize) {
+        if index < self.notices.len() {
+            self.notices.remove(index);
         }
+    }
+
+    /// Changes the view of the open project; nothing while none is open.
+    fn look(&mut self, change: impl FnOnce(&mut ViewState, &Document)) {
+        if let Some(session) = &mut self.session {
+            change(&mut session.view, &session.document);
+        }
+    }
+
+    fn show_named(&mut self, name: &str) {
         let Some(session) = &mut self.session else { return };
-        let view = &mut session.view;
-        match action {
-            Action::Show(scene) if session.document.geometry.as_ref().is_some_and(|f| scene.validate(f).is_ok()) => {
-                view.scene = *scene;
-            }
-            Action::ShowNamed(name) => match scene::choose(&session.document, Some(&name)) {
-                Ok(scene) => view.scene = scene,
-                Err(error) => self.notices.push(Notice::failure(Place::Scenes, &error)),
-            },
-            Action::Stand(place) => camera::stand(&mut view.scene, place),
-            Action::Volumes(volumes) => view.volumes = volumes,
-            Action::Proportions(factor) => view.proportions = factor,
-            Action::Arrange(layout) => view.layout = layout,
-            Action::Compare(compare) => view.compare = compare,
-            Action::Wipe(at) => view.wipe = at.clamp(0.02, 0.98),
-            Action::Slices(at) => {
-                view.slices = at;
-                view.fit(&session.document);
-            }
-            Action::Fence(corners) => {
-                view.fence = corners;
-                view.fit(&session.document);
-            }
-            Action::Panel(panel) => view.panel = panel,
-            Action::Layer(layer) => view.layer = layer,
-            Action::Horizon(horizon) => view.horizon = horizon,
-            Action::Hide { kind, name, hidden } => view.hidden.set(kind, name, hidden),
-            Action::Handles(shown) => view.handles = shown,
-            _ => {}
+        match scene::choose(&session.document, Some(name)) {
+            Ok(scene) => session.view.scene = scene,
+            Err(error) => self.notices.push(Notice::failure(Place::Scenes, &error)),
         }
     }
 
@@ -176,7 +170,7 @@ impl State {
         vec![Task::Release, Task::Remember]
     }
 
-    fn opened(&mut self, snapshot: super::Snapshot) -> Vec<Task> {
+    fn opened(&mut self, snapshot: Snapshot) -> Vec<Task> {
         let left = self.remembered.left.take().filter(|left| left.root == snapshot.root);
         self.put_by();
         let closed = || self.remembered.closed.iter().find(|left| left.root == snapshot.root).cloned();
@@ -209,11 +203,16 @@ impl State {
         if self.session.is_some() { vec![task] } else { Vec::new() }
     }
 
-    /// A task that writes a file from a dialogue: what was said of earlier ones is removed.
-    fn writing(&mut self, task: Task) -> Vec<Task> {
-        self.quieten(Place::Foot);
-        self.quieten(Place::Dialogue);
+    /// The same; what was said at a place of earlier ones is removed.
+    fn task_at(&mut self, place: Place, task: Task) -> Vec<Task> {
+        self.quieten(place);
         self.task(task)
+    }
+
+    /// A task that writes a file from a dialogue.
+    fn writing(&mut self, task: Task) -> Vec<Task> {
+        self.quieten(Place::Dialogue);
+        self.task_at(Place::Foot, task)
     }
 
     /// Removes the messages of one place, because something new begins there.

@@ -6,6 +6,7 @@ use project::ProjectError;
 use project::check::CheckReport;
 use project::error::remedy_of;
 use std::path::{Path, PathBuf};
+use system::command_line::CommandLine;
 
 /// The part of the window where a message is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -80,12 +81,11 @@ impl Notice {
             damage.iter().take(TOLD).map(|damage| format!("{}: {}", damage.what, damage.reason)).collect();
         let more = damage.len().saturating_sub(TOLD);
         let rest = if more == 0 { String::new() } else { format!("; and {more} more") };
+        let line = CommandLine::new("check").value(&found.project);
         let project = found.project.display();
         Self {
             failed: true,
-            hint: Some(format!(
-                "`petroglyph check {project}` says what depends on it and what to do, and repairs with --repair"
-            )),
+            hint: Some(format!("`{line}` says what depends on it and what to do, and repairs with --repair")),
             ..Self::note(place, format!("{} damaged in {project}: {}{rest}", damage.len(), told.join("; ")))
         }
     }

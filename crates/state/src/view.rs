@@ -234,6 +234,13 @@ impl ViewState {
         }
     }
 
+    /// Shows a scene, if it fits the survey.
+    pub(crate) fn show(&mut self, scene: Scene, document: &Document) {
+        if document.geometry.as_ref().is_some_and(|geometry| scene.validate(geometry).is_ok()) {
+            self.scene = scene;
+        }
+    }
+
     /// Drops references to what the project no longer has.
     pub fn fit(&mut self, document: &Document) {
         let Some(geometry) = &document.geometry else { return };

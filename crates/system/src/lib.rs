@@ -1,14 +1,16 @@
-//! What the operating system and the processor give to computations on volumes larger than caches, pages and sometimes
-//! memory.
+//! What the operating system, its shells and the processor give: to computations on volumes larger than caches, pages
+//! and sometimes memory, and to people.
 //!
 //! - files that may be anything: [`mod@file`] reads ordinary ones of a stated size and makes sure that what was written is
 //!   on the disk, [`positional`] reads bytes at a place;
 //! - memory: how much there is and whether something fits ([`memory`]), volumes in huge pages ([`huge_pages`]), freed blocks
 //!   that are kept for what comes next ([`kept_memory`]);
-//! - loops compiled for wide registers too: [`wide`].
+//! - loops compiled for wide registers too: [`wide`];
+//! - lines that people paste into a shell: [`command_line`].
 //!
 //! Deliberately absent: anything about surveys.
 
+pub mod command_line;
 pub mod file;
 pub mod huge_pages;
 pub mod kept_memory;

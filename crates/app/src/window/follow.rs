@@ -1,5 +1,6 @@
 //! The window's requests to the workers, and what it does with their results.
 
+use super::project_views::ProjectViews;
 use super::{Window, lettering};
 use crate::hold::{Hold, Taken};
 use crate::state::{Action, Dialogue, Look, Notice, Panel, Picking, Place, Session};
@@ -31,12 +32,12 @@ impl Window {
         while let Some(event) = self.work.next_event() {
             match event {
                 Event::Opened(snapshot) => {
-                    self.forget();
+                    self.views = ProjectViews::default();
                     ctx.set_fonts(lettering::fonts(&snapshot));
                     let taken = Hold::take(&snapshot.root);
                     self.act(Action::Opened(snapshot));
                     match taken {
-                        Taken::Here(hold) => self.hold = hold,
+                        Taken::Here(hold) => self.views.hold = hold,
                         Taken::Elsewhere(process) => {
                             let process = process.map_or_else(String::new, |id| format!(" (process {id})"));
                             let text = format!(
@@ -65,22 +66,22 @@ impl Window {
                 }
                 Event::Ready { root, rocks } => {
                     if self.has_open(&root) {
-                        let number = self.rocks.as_ref().map_or(1, |(_, number)| number + 1);
-                        self.rocks = Some((rocks, number));
+                        let number = self.views.rocks.as_ref().map_or(1, |(_, number)| number + 1);
+                        self.views.rocks = Some((rocks, number));
                     }
                 }
-                Event::Drawn(drawn) => self.block.receive(ctx, drawn),
-                Event::Sliced { cut, of } => self.sections.receive(ctx, cut, of),
-                Event::Fenced(picture) => self.fence.receive(ctx, picture),
-                Event::Mapped(picture) => self.map.receive(ctx, picture),
+                Event::Drawn(drawn) => self.views.block.receive(ctx, drawn),
+                Event::Sliced { cut, of } => self.views.sections.receive(ctx, cut, of),
+                Event::Fenced(picture) => self.views.fence.receive(ctx, picture),
+                Event::Mapped(picture) => self.views.map.receive(ctx, picture),
                 Event::Interpreted(shown) => {
                     if let Some(session) = self.state.session.as_ref().filter(|session| session.root == shown.root) {
-                        self.overlay.receive(session, shown);
+                        self.views.overlay.receive(session, shown);
                     }
                 }
                 Event::Selected(shown) => {
                     if let Some(session) = &self.state.session {
-                        self.overlay.select(session, shown);
+                        self.views.overlay.select(session, shown);
                     }
                 }
                 Event::Picking { root, step } if self.has_open(&root) => self.act(Action::Picking(step)),
@@ -95,11 +96,11 @@ impl Window {
                 }
                 Event::Thumbnail { root, name, image } => {
                     if self.has_open(&root) {
-                        self.presentation.receive(ctx, name, &image);
+                        self.views.presentation.receive(ctx, name, &image);
                     }
                 }
-                Event::Previewed(page, preset) => self.preview.set(page, preset),
-                Event::ShareSeen(seen) => self.share.receive(seen),
+                Event::Previewed(page, preset) => self.views.preview.set(page, preset),
+                Event::ShareSeen(seen) => self.views.share.receive(seen),
                 Event::Told(notice) => self.act(Action::Tell(notice)),
             }
         }
@@ -113,15 +114,15 @@ impl Window {
     pub(super) fn keep_loaded(&mut self) {
         let Some(session) = self.state.session.as_ref().filter(|session| session.is_drawable()) else { return };
         let needs = self.needs_of(session);
-        if self.needs.as_ref() == Some(&needs) {
+        if self.views.needs.as_ref() == Some(&needs) {
             return;
         }
         self.swatches.follow(&session.root, &session.document);
         // Neither named scenes nor notes nor the history change what is drawn.
         let mut document = session.document.clone();
         (document.scenes, document.notes, document.step) = (Vec::new(), Vec::new(), 0);
-        self.layers.draft_of(&mut document);
-        self.functions.draft_of(&mut document);
+        self.views.layers.draft_of(&mut document);
+        self.views.functions.draft_of(&mut document);
         let root = session.root.clone();
         let wanted = if let Some(extraction) = needs.interpreting.clone() {
             // Picks change horizons and faults, but not the volume that they are made on.
@@ -134,10 +135,10 @@ impl Window {
         } else {
             Wanted { root, document, preset: needs.preset, purpose: Purpose::Illustrate(needs.seen.clone()) }
         };
-        self.needs = Some(needs);
-        if self.wanted.as_ref() != Some(&wanted) {
+        self.views.needs = Some(needs);
+        if self.views.wanted.as_ref() != Some(&wanted) {
             self.work.load(wanted.clone());
-            self.wanted = Some(wanted);
+            self.views.wanted = Some(wanted);
         }
     }
 
@@ -145,11 +146,11 @@ impl Window {
     fn needs_of(&self, session: &Session) -> Needs {
         let picking = &session.view.picking;
         let shows = picking.look == Look::VolumeRendering || picking.show != render::FaceData::Rock;
-        let extraction = || self.overlay.interpreted().and_then(|shown| shown.key.clone()).filter(|_| shows);
+        let extraction = || self.views.overlay.interpreted().and_then(|shown| shown.key.clone()).filter(|_| shows);
         Needs {
             revision: session.revision,
-            layer: self.layers.draft().cloned(),
-            raw: self.functions.draft().cloned(),
+            layer: self.views.layers.draft().cloned(),
+            raw: self.views.functions.draft().cloned(),
             preset: session.view.scene.preset,
             seen: Seen::of(&session.view.scene),
             interpreting: (session.view.panel == Panel::Interpret).then(extraction),
@@ -168,20 +169,20 @@ impl Window {
         if session.document.geometry.is_none() {
             return;
         }
-        if self.followed != Some(session.revision) {
+        if self.views.followed != Some(session.revision) {
             self.work.picks.follow(session.root.clone(), session.document.clone());
-            self.followed = Some(session.revision);
+            self.views.followed = Some(session.revision);
         }
         let Picking { pick, horizon, accepted, .. } = &session.view.picking;
         // The node accepted last is shown until the project contains it.
         let requested = pick.clone().or_else(|| accepted.clone()).map(|pick| (pick, horizon.clone()));
-        let number = self.overlay.interpreted().map_or(0, |shown| shown.number);
+        let number = self.views.overlay.interpreted().map_or(0, |shown| shown.number);
         let selected = Some((requested, number));
-        if self.selected != selected && number > 0 {
+        if self.views.selected != selected && number > 0 {
             if let Some((requested, _)) = &selected {
                 self.work.picks.draw(requested.clone());
             }
-            self.selected = selected;
+            self.views.selected = selected;
         }
     }
 }

@@ -5,28 +5,24 @@ mod frames;
 mod lettering;
 mod page;
 mod present;
+mod project_views;
 mod share;
 
 use super::error::WindowError;
 use super::hold::Hold;
 use super::views::dropped::{self, Dropped};
 use super::views::{
-    block::BlockView, chooser::Chooser, controls::Controls, data::Data, data_file, export, fence::FenceView,
-    functions::Functions, import::Import, interpretation::Interpretation, layers::Layers, map::MapView,
-    overlay::Overlay, patterns::Patterns, picking::PickingPanel, pointed::Pointed, present::Presentation, print::Page,
-    sections::Sections, share::ShareView, shortcuts, start::StartPage, status, tiles::Tiles, well::WellDialogue,
+    chooser::Chooser, data_file, export, import::Import, print::Page, shortcuts, start::StartPage, status,
 };
-use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
+use super::work::{Event, Swatches, Wake, Work};
 use crate::widgets::event_order::EventOrder;
 use crate::widgets::keyboard::Listener;
-use crate::widgets::page::PagePreview;
 use crate::widgets::theme;
 use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};
-use follow::Needs;
 use frames::FrameTimes;
 use project::Project;
 use project::command::Command;
-use state::picking::Pick;
+use project_views::ProjectViews;
 use state::{Action, Appearance, DataForm, Dialogue, ExportForm, Notice, Place, Remembered, State, Task, Written};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -72,57 +68,25 @@ pub fn run(project: Option<PathBuf>, frame_times: Option<&Path>) -> Result<(), W
     Ok(())
 }
 
-/// A selection and the horizon that it is for, with the number of the interpretation that it was requested for.
-type Inbox = (Option<(Pick, Option<String>)>, u64);
-
 /// The window's content.
 pub struct Window {
     ctx: Context,
     state: State,
     work: Work,
     settings: Option<PathBuf>,
-    /// The lock that shows other windows that this one has the project open.
-    hold: Option<Hold>,
+    /// The views of the open project.
+    views: ProjectViews,
     start: StartPage,
-    block: BlockView,
-    sections: Sections,
-    fence: FenceView,
-    map: MapView,
-    layers: Layers,
-    data: Data,
-    functions: Functions,
-    patterns: Patterns,
     import: Import,
-    interpretation: Interpretation,
-    well: WellDialogue,
-    picking: PickingPanel,
-    overlay: Overlay,
-    /// The revision of the project whose interpretation was requested last.
-    followed: Option<u64>,
-    /// The selection that was requested last, and the interpretation that it was requested for.
-    selected: Option<Inbox>,
-    tiles: Tiles,
     swatches: Swatches,
     chooser: Chooser,
     dropped: Dropped,
     listener: Listener,
     /// The project that the window's title names.
     titled: Option<String>,
-    controls: Controls,
-    preview: PagePreview,
-    share: ShareView,
-    presentation: Presentation,
     /// Whether the window was asked to fill the screen.
     is_full: bool,
-    /// What the page that is shown was laid out for.
-    previewed: Option<ExportForm>,
-    pointed: Option<Pointed>,
-    rocks: Option<(Rocks, u64)>,
-    needs: Option<Needs>,
-    wanted: Option<Wanted>,
     marked: Instant,
-    /// The selection and the sticks when the view was last saved.
-    unsaved: Option<(Option<Pick>, usize, usize)>,
     /// The table of frame times, if it is wanted.
     frames: Option<FrameTimes>,
 }
@@ -142,41 +106,16 @@ impl Window {
             state: State::new(remembered),
             work: Work::start(wake.clone()),
             settings,
-            hold: None,
+            views: ProjectViews::default(),
             start: StartPage::default(),
-            block: BlockView::default(),
-            sections: Sections::default(),
-            fence: FenceView::default(),
-            map: MapView::default(),
-            layers: Layers::default(),
-            data: Data::default(),
-            functions: Functions::default(),
-            patterns: Patterns::default(),
             import: Import::default(),
-            interpretation: Interpretation::default(),
-            well: WellDialogue::default(),
-            picking: PickingPanel::default(),
-            overlay: Overlay::default(),
-            followed: None,
-            selected: None,
-            tiles: Tiles::default(),
             swatches: Swatches::start(wake),
             chooser: Chooser::default(),
             dropped: Dropped::default(),
             listener: Listener::default(),
             titled: None,
-            controls: Controls::default(),
-            preview: PagePreview::default(),
-            share: ShareView::default(),
-            presentation: Presentation::default(),
             is_full: false,
-            previewed: None,
-            pointed: None,
-            rocks: None,
-            needs: None,
-            wanted: None,
             marked: Instant::now(),
-            unsaved: None,
             frames: None,
         };
         window.appear(ctx);
@@ -194,12 +133,12 @@ impl Window {
     /// Whether nothing is under way and the picture is final.
     pub fn is_settled(&self) -> bool {
         let drawable = self.state.session.as_ref().is_some_and(state::Session::is_drawable);
-        self.work.running.is_idle() && (!drawable || self.block.is_settled())
+        self.work.running.is_idle() && (!drawable || self.views.block.is_settled())
     }
 
     /// The number of the picture of the block that is on the screen: later pictures have larger ones.
     pub fn picture_number(&self) -> u64 {
-        self.block.picture_number()
+        self.views.block.picture_number()
     }
 
     /// Applies an action and has its tasks carried out.
@@ -210,10 +149,10 @@ impl Window {
                 self.remember();
             }
             if matches!(task, Task::Copy) {
-                self.block.copy(&self.ctx);
+                self.views.block.copy(&self.ctx);
             }
             if matches!(task, Task::Release) {
-                self.forget();
+                self.views = ProjectViews::default();
             }
             if let Task::Export(form) = &task {
                 self.export(form.as_ref().clone());
@@ -269,7 +208,7 @@ impl Window {
     /// Lays the page out to be looked at.
     fn look_at(&mut self, form: ExportForm) {
         let Some(page) = self.page(&form) else { return };
-        self.previewed = Some(form);
+        self.views.previewed = Some(form);
         self.work.background("Laying out the page", Place::Dialogue, move |progress, outbox| {
             let (page, preset) = page.preview(progress).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
             outbox.send(Event::Previewed(Arc::new(page), preset));
@@ -280,22 +219,8 @@ impl Window {
     /// What is on the screen as a page.
     fn page(&self, form: &ExportForm) -> Option<Page> {
         let session = self.state.session.as_ref()?;
-        let rocks = self.rocks.as_ref().map(|(rocks, _)| rocks.clone());
-        Page::of(session, &self.overlay, &self.sections, self.map.mapped(session), form, rocks)
-    }
-
-    /// Drops everything that was made for a project.
-    fn forget(&mut self) {
-        (self.rocks, self.needs, self.wanted, self.pointed) = (None, None, None, None);
-        (self.followed, self.selected, self.hold) = (None, None, None);
-        self.block = BlockView::default();
-        self.sections = Sections::default();
-        (self.fence, self.map) = (FenceView::default(), MapView::default());
-        self.overlay = Overlay::default();
-        self.picking = PickingPanel::default();
-        self.preview = PagePreview::default();
-        self.share = ShareView::default();
-        self.presentation = Presentation::default();
+        let rocks = self.views.rocks.as_ref().map(|(rocks, _)| rocks.clone());
+        Page::of(session, &self.views.overlay, &self.views.sections, self.views.map.mapped(session), form, rocks)
     }
 
     /// Where a failure of the task is shown.
@@ -380,9 +305,9 @@ impl Window {
         self.dropped.receive(&ctx, &self.state, !running.is_empty(), &mut actions);
         Panel::bottom("status").exact_size(32.0).show(ui, |ui| {
             let drawable = self.state.session.as_ref().is_some_and(state::Session::is_drawable);
-            let device = (drawable && !self.block.is_settled(), self.block.device());
-            let interpreted = self.overlay.interpreted().filter(|_| self.is_interpreting()).map(AsRef::as_ref);
-            let pointed = (self.pointed.as_ref(), interpreted);
+            let device = (drawable && !self.views.block.is_settled(), self.views.block.device());
+            let interpreted = self.views.overlay.interpreted().filter(|_| self.is_interpreting()).map(AsRef::as_ref);
+            let pointed = (self.views.pointed.as_ref(), interpreted);
             status::show(ui, &self.state, pointed, &running, device, &mut actions);
         });
         if self.state.session.is_some() {
@@ -401,8 +326,8 @@ impl Window {
             let picking = &session.view.picking;
             (picking.pick.clone(), picking.stick.len(), picking.sticks.len())
         });
-        let is_work = unsaved != self.unsaved;
-        self.unsaved = unsaved;
+        let is_work = unsaved != self.views.unsaved;
+        self.views.unsaved = unsaved;
         if self.state.session.is_some() && (is_work || self.marked.elapsed() > MARK_EVERY) {
             self.marked = Instant::now();
             let before = self.state.remembered.left.clone();
@@ -426,27 +351,28 @@ impl Window {
             }
             Some(Dialogue::Interpretation { path, kind }) => {
                 if let Some(session) = &self.state.session {
-                    self.interpretation.show(ctx, &self.state, session, &self.work, path, *kind, actions);
+                    self.views.interpretation.show(ctx, &self.state, session, &self.work, path, *kind, actions);
                 }
             }
             Some(Dialogue::Dropped { path }) => dropped::dialogue(ctx, path, actions),
-            Some(Dialogue::Well { path }) => self.well.show(ctx, &self.state, &self.work, path, actions),
+            Some(Dialogue::Well { path }) => self.views.well.show(ctx, &self.state, &self.work, path, actions),
             Some(Dialogue::Patterns { layer, interval }) => {
                 if let Some(session) = &self.state.session {
-                    let (swatches, tiles) = (&self.swatches, &mut self.tiles);
-                    self.patterns.show(ctx, &self.state, session, layer, *interval, swatches, tiles, actions);
+                    let (swatches, tiles) = (&self.swatches, &mut self.views.tiles);
+                    self.views.patterns.show(ctx, &self.state, session, layer, *interval, swatches, tiles, actions);
                 }
             }
             Some(Dialogue::Export(form)) => {
                 if let Some(session) = &self.state.session {
                     let is_drawing = self.work.running.lines().iter().any(|line| line.place == Place::Dialogue);
-                    let loaded = self.rocks.as_ref().and_then(|(rocks, _)| rocks.try_read().ok());
+                    let loaded = self.views.rocks.as_ref().and_then(|(rocks, _)| rocks.try_read().ok());
                     let sparse = loaded.as_ref().map_or_else(Vec::new, |loaded| loaded.sparse());
                     let shows = export::Shows { form, is_drawing, sparse: &sparse };
-                    let asks = export::show(ctx, &self.state, session, shows, &mut self.preview, actions);
+                    let asks = export::show(ctx, &self.state, session, shows, &mut self.views.preview, actions);
                     // Where the file lies changes nothing on the page.
                     let form = ExportForm { path: String::new(), ..form.clone() };
-                    let is_outdated = self.preview.has_page() && !is_drawing && self.previewed.as_ref() != Some(&form);
+                    let is_outdated =
+                        self.views.preview.has_page() && !is_drawing && self.views.previewed.as_ref() != Some(&form);
                     drop(loaded);
                     if asks || is_outdated {
                         self.look_at(form);
@@ -456,8 +382,7 @@ impl Window {
             Some(Dialogue::Share(_)) => self.share_dialogue(ctx, actions),
             Some(Dialogue::Data(form)) => data_file::dialogue(ctx, &self.state, form, actions),
             None => {
-                self.preview = PagePreview::default();
-                self.share = ShareView::default();
+                (self.views.preview, self.views.share) = Default::default();
             }
         }
     }
@@ -477,7 +402,7 @@ impl eframe::App for Window {
         self.state.put_by();
         // The window is closed properly, so there is nothing to recover.
         self.state.remembered.left = None;
-        self.hold = None;
+        self.views.hold = None;
         self.remember();
     }
 }

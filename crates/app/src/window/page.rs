@@ -21,7 +21,7 @@ impl Window {
             .show(ui, |ui| within(ui, |ui| self.side(ui, running, actions)));
         let Some(session) = &self.state.session else { return };
         Panel::right("controls").default_size(300.0).min_size(240.0).show(ui, |ui| {
-            within(ui, |ui| self.controls.show(ui, &self.state, session, actions));
+            within(ui, |ui| self.views.controls.show(ui, &self.state, session, actions));
         });
         let frame = Frame::new().fill(ui.visuals().panel_fill);
         CentralPanel::no_frame().frame(frame).show(ui, |ui| {
@@ -33,28 +33,28 @@ impl Window {
                 });
                 return;
             }
-            let rocks = self.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
+            let rocks = self.views.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
             let whole = ui.available_rect_before_wrap();
-            self.pointed = None;
+            self.views.pointed = None;
             for (part, rect) in parts(session.view.layout, whole) {
                 let found = ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| match part {
                     LayoutPane::Block => {
-                        self.block.show(ui, session, rocks, &self.work.drawing, &self.overlay, actions)
+                        self.views.block.show(ui, session, rocks, &self.work.drawing, &self.views.overlay, actions)
                     }
                     LayoutPane::Section(kind) => {
-                        let (slices, overlay) = (&self.work.slices, &mut self.overlay);
-                        self.sections.show(ui, session, kind, rocks, slices, overlay, actions)
+                        let (slices, overlay) = (&self.work.slices, &mut self.views.overlay);
+                        self.views.sections.show(ui, session, kind, rocks, slices, overlay, actions)
                     }
                     LayoutPane::Map => {
-                        let source = map_source(session, rocks, &self.overlay);
-                        self.map.show(ui, session, source, &self.work.maps, actions);
+                        let source = map_source(session, rocks, &self.views.overlay);
+                        self.views.map.show(ui, session, source, &self.work.maps, actions);
                         None
                     }
                     LayoutPane::Fence => {
-                        self.fence.show(ui, session, rocks, &self.work.slices, &mut self.overlay, actions)
+                        self.views.fence.show(ui, session, rocks, &self.work.slices, &mut self.views.overlay, actions)
                     }
                 });
-                self.pointed = self.pointed.take().or(found.inner);
+                self.views.pointed = self.views.pointed.take().or(found.inner);
             }
             ui.advance_cursor_after_rect(whole);
         });
@@ -81,18 +81,25 @@ impl Window {
         ui.separator();
         match session.view.panel {
             Side::Layers => {
-                let rocks = self.rocks.as_ref().map(|(rocks, version)| (rocks, *version));
-                self.layers.show(ui, &self.state, session, (&self.swatches, rocks), &mut self.tiles, actions);
+                let rocks = self.views.rocks.as_ref().map(|(rocks, version)| (rocks, *version));
+                self.views.layers.show(
+                    ui,
+                    &self.state,
+                    session,
+                    (&self.swatches, rocks),
+                    &mut self.views.tiles,
+                    actions,
+                );
             }
-            Side::Data => self.data.show(ui, &self.state, session, actions),
+            Side::Data => self.views.data.show(ui, &self.state, session, actions),
             Side::Interpret => {
-                self.picking.show(ui, &self.state, session, &self.overlay, running, actions);
+                self.views.picking.show(ui, &self.state, session, &self.views.overlay, running, actions);
             }
             Side::Values => {
                 notices::show(ui, &self.state, Place::Data, actions);
-                let rocks = self.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
+                let rocks = self.views.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
                 egui::ScrollArea::vertical().show(ui, |ui| {
-                    self.functions.show(ui, session, rocks, &self.swatches, actions);
+                    self.views.functions.show(ui, session, rocks, &self.swatches, actions);
                 });
             }
         }

@@ -18,11 +18,11 @@ impl Window {
             ui.ctx().send_viewport_cmd(ViewportCommand::Fullscreen(self.is_full));
         }
         let (Some(at), Some(session)) = (at, &self.state.session) else { return false };
-        let rocks = self.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
-        let (views, data) = ((&mut self.block, &self.overlay), (rocks, &self.work.drawing));
-        self.presentation.show(ui, session, at, views, data, actions);
-        if let Some(rocks) = self.rocks.as_ref().map(|(rocks, _)| rocks.clone())
-            && self.presentation.asks(session)
+        let rocks = self.views.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
+        let (views, data) = ((&mut self.views.block, &self.views.overlay), (rocks, &self.work.drawing));
+        self.views.presentation.show(ui, session, at, views, data, actions);
+        if let Some(rocks) = self.views.rocks.as_ref().map(|(rocks, _)| rocks.clone())
+            && self.views.presentation.asks(session)
         {
             self.draw_thumbnails(rocks);
         }

@@ -24,7 +24,7 @@ impl Window {
     /// Makes what is shared, to be looked at.
     fn look_at_share(&mut self, form: ShareForm) {
         let Some(root) = self.state.session.as_ref().map(|session| session.root.clone()) else { return };
-        self.share.ask(&form);
+        self.views.share.ask(&form);
         self.work.background("Making the preview", Place::Dialogue, move |progress, outbox| {
             let seen = share::preview(&root, &form, progress);
             let seen = seen.map_err(|error| Notice::failure_with(Place::Dialogue, &error, &root))?;
@@ -37,10 +37,10 @@ impl Window {
     pub(super) fn share_dialogue(&mut self, ctx: &Context, actions: &mut Vec<Action>) {
         let (Some(Dialogue::Share(form)), Some(session)) = (&self.state.dialogue, &self.state.session) else { return };
         let running = self.work.running.lines().into_iter().find(|line| line.place == Place::Dialogue);
-        let loaded = self.rocks.as_ref().and_then(|(rocks, _)| rocks.try_read().ok());
+        let loaded = self.views.rocks.as_ref().and_then(|(rocks, _)| rocks.try_read().ok());
         let sparse = loaded.map_or_else(Vec::new, |loaded| loaded.sparse());
-        let asks = self.share.show(ctx, &self.state, session, (form, &sparse), running.as_ref(), actions);
-        if asks || (running.is_none() && self.share.is_outdated(form)) {
+        let asks = self.views.share.show(ctx, &self.state, session, (form, &sparse), running.as_ref(), actions);
+        if asks || (running.is_none() && self.views.share.is_outdated(form)) {
             self.look_at_share(form.clone());
         }
     }

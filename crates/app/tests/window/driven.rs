@@ -171,6 +171,24 @@ fn a_project_that_is_not_there_is_said_so_on_the_start_page() {
 }
 
 #[test]
+fn a_project_that_is_opened_has_nothing_of_the_one_before() {
+    let (folder, beside) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let mut harness = open(folder.path());
+    let shown = |harness: &Driven| harness.get_by_label("Scene name").accesskit_node().value().unwrap_or_default();
+    harness.get_by_label("Scene name").focus();
+    harness.step();
+    harness.get_by_label("Scene name").type_text("plan");
+    harness.run_steps(3);
+    assert_eq!(shown(&harness), "plan");
+    let other = project(beside.path());
+    harness.state_mut().as_mut().unwrap().act(state::Action::Open(other.clone()));
+    wait(&mut harness, "the other project is open", |harness| {
+        state(harness).session.as_ref().is_some_and(|session| session.root == other)
+    });
+    assert_eq!(shown(&harness), "");
+}
+
+#[test]
 fn a_survey_becomes_a_project_through_the_import_dialogue() {
     let folder = tempfile::tempdir().unwrap();
     let path = survey(folder.path());

@@ -2,7 +2,7 @@
 //! own.
 
 use super::newest;
-use super::report::{CheckReport, Cure, Damage, Part};
+use super::report::{CheckReport, Cure, Damage, Outcome, Part};
 use super::states::States;
 use super::verify::{is_there, outcome};
 use crate::derived;
@@ -41,11 +41,11 @@ impl<'a> Computed<'a> {
         }
     }
 
-    fn what(&self) -> &'static str {
+    fn result(&self) -> Outcome {
         match self {
-            Self::Hashed | Self::Parameterization => "a part of the parameterization",
-            Self::Candidates(_) => "horizon candidates",
-            Self::Proposals => "proposed faults",
+            Self::Hashed | Self::Parameterization => Outcome::Parameterization,
+            Self::Candidates(_) => Outcome::Candidates,
+            Self::Proposals => Outcome::FaultProposals,
         }
     }
 
@@ -94,9 +94,9 @@ pub(super) fn check(
         if let Err(reason) = found {
             report.damage.push(Damage {
                 part: Part::Derived,
-                what: computed.what().to_owned(),
+                what: computed.result().to_string(),
                 dependants: document.map(|document| dependants(&computed, document)).unwrap_or_default(),
-                cures: vec![Cure::Recompute],
+                cures: vec![Cure::Recompute { result: computed.result() }],
                 ..Damage::of(file, reason)
             });
         }

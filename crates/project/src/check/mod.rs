@@ -34,7 +34,7 @@ mod states;
 mod verify;
 
 pub use repair::repair;
-pub use report::{CheckReport, Cure, Damage, Leftover, LeftoverKind, Part, Repair};
+pub use report::{CheckReport, Cure, Damage, Leftover, LeftoverKind, Outcome, Part, Repair};
 
 use crate::document::Document;
 use crate::error::ProjectError;

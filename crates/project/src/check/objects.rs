@@ -84,9 +84,10 @@ impl<'a> Entry<'a> {
         let is_made_here = is_assembled
             || ["picks", "proposal"].iter().any(|made| source.path == Path::new(made))
             || document.volumes.iter().any(|volume| source.path == Path::new(&volume.file));
+        let (noun, name) = (self.noun(), self.name().to_owned());
         match is_made_here {
-            true => Cure::Remake { from: source.reading.clone() },
-            false => Cure::Import { path: source.path.clone() },
+            true => Cure::Remake { noun, name, from: source.reading.clone() },
+            false => Cure::Import { noun, name, path: source.path.clone() },
         }
     }
 }

@@ -118,7 +118,7 @@ fn remove_derived(root: &Path, report: &mut CheckReport, repairs: &mut Vec<Repai
 }
 
 fn is_derived(damage: &Damage) -> bool {
-    damage.part == Part::Derived && damage.cures.contains(&Cure::Recompute)
+    damage.part == Part::Derived && damage.cures.iter().any(|cure| matches!(cure, Cure::Recompute { .. }))
 }
 
 /// Removes what no state names, but for what a damaged step may name.

@@ -1,6 +1,7 @@
 //! What a check found, and what can be done about it. The words of a command line are absent: a [`Cure`] says what
 //! helps, and whoever shows it knows how it is asked for.
 
+use crate::error::Noun;
 use serde::Serialize;
 use std::fmt;
 use std::path::PathBuf;
@@ -82,6 +83,28 @@ impl Damage {
     }
 }
 
+/// A result of a computation, which can be computed again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Outcome {
+    /// i, j, k, whole or in blocks or grids. They are computed again when they are needed.
+    Parameterization,
+    /// Horizon candidates.
+    Candidates,
+    /// Proposed faults.
+    FaultProposals,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Parameterization => "a part of the parameterization",
+            Self::Candidates => "horizon candidates",
+            Self::FaultProposals => "proposed faults",
+        })
+    }
+}
+
 /// What helps against damage.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(tag = "do", rename_all = "kebab-case")]
@@ -93,8 +116,11 @@ pub enum Cure {
     },
     /// A repair moves it to `damaged/`.
     SetAside,
-    /// A repair removes it, and it is computed again when it is needed.
-    Recompute,
+    /// A repair removes it, and it is computed again: by itself when it is needed, or by a command.
+    Recompute {
+        /// What was computed.
+        result: Outcome,
+    },
     /// A repair makes it again.
     MakeAgain,
     /// The present state can be undone to one that does not need it.
@@ -106,11 +132,19 @@ pub enum Cure {
     },
     /// It is removed from the project and read again from the file that it came from.
     Import {
+        /// What it is.
+        noun: Noun,
+        /// Its name.
+        name: String,
         /// The file.
         path: PathBuf,
     },
     /// It is removed from the project and made again.
     Remake {
+        /// What it is.
+        noun: Noun,
+        /// Its name.
+        name: String,
         /// How it was made.
         from: String,
     },

@@ -1,7 +1,10 @@
 //! What a project has several of, each with a name.
 
+use serde::Serialize;
+
 /// Kinds of named things in a project.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Noun {
     /// A seismic or attribute volume.
     Volume,

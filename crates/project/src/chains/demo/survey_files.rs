@@ -23,6 +23,7 @@ use std::path::{Path, PathBuf};
 use store::{StoreError, replace_file};
 use survey::{Contact, Fault, Horizon, Progress};
 use synth::{Overturned, SynthDesign, SynthSettings, SynthTruth};
+use system::command_line::CommandLine;
 use system::{file, memory};
 
 /// Files of a synthetic survey.
@@ -214,7 +215,8 @@ impl fmt::Display for OutcropFiles {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.horizons.iter().chain(&self.faults).try_for_each(|file| writeln!(f, "{}", file.display()))?;
         writeln!(f, "{}: the truth", self.truth.display())?;
-        write!(f, "petroglyph create OUTCROP.petro --bounds {} --size {}", self.bounds, self.size)
+        let line = CommandLine::new("create").value("OUTCROP.petro");
+        write!(f, "{}", line.option("--bounds", &self.bounds).option("--size", &self.size))
     }
 }
 
