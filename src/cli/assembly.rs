@@ -10,9 +10,6 @@ use super::request::{Request, Usage};
 use ::time::TimeSettings;
 use anyhow::bail;
 use interp::assembly::Operation;
-use interp::evaluate::{
-    EvaluateSettings, HorizonScore, PickScore, PickSettings, TruthIndex, count_picks, evaluate_with,
-};
 use interp::faults::ProposeSettings;
 use interp::holes::FillSettings;
 use interp::refine::{SmoothSettings, TrackSettings};
@@ -24,6 +21,9 @@ use project::command::{
 };
 use project::document::Drawn;
 use project::interpretation::candidates::Candidates;
+use reference::evaluation::{
+    EvaluateSettings, HorizonScore, PickScore, PickSettings, TruthIndex, count_picks, evaluate_with,
+};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use survey::Progress;
@@ -156,7 +156,7 @@ pub(super) fn evaluate(project: &Path, truth: &Path, progress: &Progress) -> any
     let mut report = Report::text(found.to_string().trim_end());
     report.say("").say(format!("{:<16} {:>6} {:>8} {:>8}", "picks", "parts", "oracle", "replay"));
     for count in &counts {
-        let shown = |count: interp::evaluate::PickCount| {
+        let shown = |count: reference::evaluation::PickCount| {
             if count.reached { count.picks.to_string() } else { format!("({})", count.picks) }
         };
         report.say(format!(

@@ -11,7 +11,8 @@ use crate::distance::{DistanceSettings, LeafDistances};
 use crate::error::InterpError;
 use crate::extrema::ExtremaError;
 use crate::forest::{Forest, ForestSettings};
-use crate::grow::{GrowError, GrowSettings, grow_slabs};
+use crate::grow::{Grow, GrowError, GrowSettings, grow_slabs, grow_slabs_by};
+use crate::surfaces::Surfaces;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::time::Instant;
@@ -157,7 +158,8 @@ where
     GrowError<S::Error>: std::error::Error + Send + Sync + 'static,
 {
     let start = Instant::now();
-    let (forest, mut report, mut seconds) = grow_forest(source, settings, progress)?;
+    let grown = || grow_slabs(source, &settings.grow, progress);
+    let (forest, mut report, mut seconds) = build_forest(grown, settings, progress)?;
     let measuring = Instant::now();
     let [nx, ny, _] = source.size();
     let distances = LeafDistances::new(&forest, &settings.distance)?;
@@ -174,7 +176,7 @@ where
 }
 
 /// Extracts the candidates of a volume slab by slab into a sink, which `begin` makes for a size and a count of leaves;
-/// `key` identifies source and settings.
+/// `key` identifies source and settings, and `grow` is the method that the settings name.
 ///
 /// # Errors
 /// As [`extract`], and [`InterpError::Sink`]; the sink is then dropped before its end.
@@ -183,6 +185,7 @@ pub fn extract_into<S, K>(
     key: &str,
     source: &S,
     settings: &ExtractSettings,
+    grow: Grow,
     progress: &Progress,
 ) -> Result<ExtractReport, InterpError>
 where
@@ -191,7 +194,8 @@ where
     K: CandidateSink,
 {
     let start = Instant::now();
-    let (forest, mut report, mut seconds) = grow_forest(source, settings, progress)?;
+    let grown = || grow_slabs_by(grow, source, &settings.grow, progress);
+    let (forest, mut report, mut seconds) = build_forest(grown, settings, progress)?;
     let size = source.size();
     let mut sink = begin(size, forest.leaf_count()).map_err(InterpError::Sink)?;
     let measuring = Instant::now();
@@ -225,17 +229,16 @@ where
 }
 
 /// Grows the surfaces and builds their trees.
-fn grow_forest<S>(
-    source: &S,
+fn build_forest<E>(
+    grown: impl FnOnce() -> Result<Surfaces, GrowError<E>>,
     settings: &ExtractSettings,
     progress: &Progress,
 ) -> Result<(Forest, ExtractReport, StageSeconds), InterpError>
 where
-    S: SlabSource,
-    GrowError<S::Error>: std::error::Error + Send + Sync + 'static,
+    GrowError<E>: std::error::Error + Send + Sync + 'static,
 {
     let start = Instant::now();
-    let surfaces = grow_slabs(source, &settings.grow, progress).map_err(|error| match error {
+    let surfaces = grown().map_err(|error| match error {
         GrowError::Cancelled(cancelled) | GrowError::Extrema(ExtremaError::Cancelled(cancelled)) => cancelled.into(),
         other => InterpError::Growing(Box::new(other)),
     })?;

@@ -54,7 +54,7 @@ mod nearest;
 mod occupancy;
 mod selection;
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;
 
 pub use climb::{ClimbSettings, Climbed, highest_valid, node_above};
 pub use conflicts::{Conflict, ConflictSettings, NamedSheets, conflicts};

@@ -11,8 +11,6 @@
 //!    survey's lattice, and [`holes`] fills holes on request.
 //! 3. [`faults`] proposes faults from the assembled horizons.
 //!
-//! [`evaluate()`] measures candidates against a synthetic survey's truth.
-//!
 //! # Space and units
 //! All positions are voxels: x = inline index, y = crossline index, z = sample index, z down. Distances are
 //! in voxels.
@@ -20,7 +18,6 @@
 //! Deliberately absent: files, the store, projects, pictures.
 
 pub mod assembly;
-pub mod evaluate;
 pub mod faults;
 pub mod holes;
 pub mod reassembly;
@@ -34,4 +31,3 @@ pub use candidates::{
     ForestSettings, GrowError, GrowSettings, InterpError, LeafDistances, Method, Node, StageSeconds, Subtree, Surface,
     Surfaces, UnionFind, Vertex, extract, extract_into, grow_slabs, grow_surfaces,
 };
-pub use evaluate::{EvaluateSettings, Evaluation, evaluate};

@@ -1,6 +1,7 @@
 //! The whole extraction: in memory and slab by slab, and where there is nothing to find.
 
 use super::*;
+use crate::grow::as_set;
 use serde_json::Value;
 use survey::Volume;
 use survey::candidates::{BEYOND, ForestTables};
@@ -88,7 +89,7 @@ fn slabs_give_what_memory_holds() {
     let silent = Progress::silent();
     let settings = ExtractSettings::default();
     let mut done = None;
-    let report = extract_into(kept(&mut done), "key", &volume, &settings, &silent).unwrap();
+    let report = extract_into(kept(&mut done), "key", &volume, &settings, as_set, &silent).unwrap();
     let (candidates, info, tables) = done.take().unwrap();
     assert_eq!((info.key.as_str(), info.leaves), ("key", report.leaves));
     assert_eq!(candidates, wanted.candidates);
@@ -97,7 +98,7 @@ fn slabs_give_what_memory_holds() {
     assert_eq!((told.surfaces, told.within_reach), (wanted.report.surfaces, wanted.report.within_reach));
     let cancelled = Progress::silent();
     cancelled.cancel();
-    let again = extract_into(kept(&mut done), "other", &volume, &settings, &cancelled);
+    let again = extract_into(kept(&mut done), "other", &volume, &settings, as_set, &cancelled);
     assert!(matches!(again, Err(InterpError::Cancelled(_))));
     assert_eq!(done, None, "a sink is not ended by a cancel");
 }
@@ -106,7 +107,7 @@ fn slabs_give_what_memory_holds() {
 fn a_sink_that_fails_is_said() {
     let full = |_: [usize; 3], _: usize| -> Result<Kept<'static>, SourceError> { Err("the disk is full".into()) };
     let settings = ExtractSettings::default();
-    let error = extract_into(full, "", &layered([8, 8, 40]), &settings, &Progress::silent()).unwrap_err();
+    let error = extract_into(full, "", &layered([8, 8, 40]), &settings, as_set, &Progress::silent()).unwrap_err();
     assert!(matches!(error, InterpError::Sink(_)) && error.to_string() == "the disk is full");
 }
 
@@ -121,7 +122,7 @@ fn nothing_is_found_where_nothing_is() {
         assert!(found.report.nothing_found().unwrap().contains("no surface at least 4 traces wide"));
         assert!(found.candidates.distance.iter().all(|&code| code == BEYOND));
         let mut done = None;
-        extract_into(kept(&mut done), "", &volume, &ExtractSettings::default(), &Progress::silent()).unwrap();
+        extract_into(kept(&mut done), "", &volume, &ExtractSettings::default(), as_set, &Progress::silent()).unwrap();
         assert_eq!(done.unwrap().1.leaves, 0);
     }
 }

@@ -280,39 +280,3 @@ impl CellTriangles {
         &self.triangles[..self.count]
     }
 }
-
-/// The surfaces of several kinds in one list, ordered by their first vertex (ties: in the order given).
-pub(crate) fn joined(size: [usize; 3], parts: &[Surfaces]) -> Surfaces {
-    let mut order: Vec<(usize, usize)> =
-        parts.iter().enumerate().flat_map(|(kind, part)| (0..part.surfaces.len()).map(move |s| (kind, s))).collect();
-    let first = |&(kind, surface): &(usize, usize)| {
-        let part: &Surfaces = &parts[kind];
-        let v = part.vertices[part.surfaces[surface].vertices.start as usize];
-        (v.x, v.y, v.z)
-    };
-    order.sort_by(|a, b| {
-        let (a, b) = (first(a), first(b));
-        (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2))
-    });
-    let mut all = Surfaces {
-        size,
-        vertices: Vec::with_capacity(parts.iter().map(|p| p.vertices.len()).sum()),
-        triangles: Vec::with_capacity(parts.iter().map(|p| p.triangles.len()).sum()),
-        surfaces: Vec::with_capacity(order.len()),
-    };
-    for (kind, surface) in order {
-        let part = &parts[kind];
-        let surface = &part.surfaces[surface];
-        let (vertices, triangles) = (all.vertices.len() as u32, all.triangles.len() as u32);
-        let range = |r: &std::ops::Range<u32>| r.start as usize..r.end as usize;
-        all.vertices.extend_from_slice(&part.vertices[range(&surface.vertices)]);
-        let moved = |corner: u32| corner - surface.vertices.start + vertices;
-        all.triangles.extend(part.triangles[range(&surface.triangles)].iter().map(|t| t.map(moved)));
-        all.surfaces.push(Surface {
-            extremum: surface.extremum,
-            vertices: vertices..all.vertices.len() as u32,
-            triangles: triangles..all.triangles.len() as u32,
-        });
-    }
-    all
-}

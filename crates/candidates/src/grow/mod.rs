@@ -1,4 +1,4 @@
-//! Growing surfaces over extrema (P-horiz 4), by the paper's method and by ours.
+//! Growing surfaces over extrema (P-horiz 4).
 //!
 //! The paper grows from every voxel in turn, so its result depends on the order of the seeds. Our method
 //! defines the surfaces as a *set*: which extrema are linked, which links are cut, which cells are complete
@@ -31,7 +31,6 @@ pub(crate) mod links;
 pub(crate) mod lobes;
 pub(crate) mod merge;
 pub(crate) mod ours;
-mod paper;
 pub(crate) mod planes;
 #[cfg(test)]
 mod real_tests;
@@ -41,14 +40,14 @@ pub(crate) mod surroundings;
 mod tests;
 mod union_find;
 
-use crate::extrema::{ExtremaError, find_extrema};
+use crate::extrema::{Extrema, ExtremaError, find_extrema};
+pub use ours::grow as as_set;
 pub use union_find::UnionFind;
 
 use crate::surfaces::{Extremum, Surfaces};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use survey::source::SlabSource;
-use survey::{Progress, Volume};
+use survey::{Cancelled, Progress, Volume};
 
 /// The method of growing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
@@ -57,9 +56,13 @@ pub enum Method {
     /// As a set: the result is independent of order, threads and tiles.
     #[default]
     Ours,
-    /// Fronts from every voxel in turn; each voxel is visited once (P-horiz 4).
+    /// Fronts from every voxel in turn; each voxel is visited once (P-horiz 4). A baseline, which the crate `reference`
+    /// has.
     Paper,
 }
+
+/// What a method does: surfaces from the extrema of each kind, of which there is at least one, all of one volume.
+pub type Grow = fn(&[Extrema], &GrowSettings, &Progress) -> Result<Surfaces, Cancelled>;
 
 /// Settings of growing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -166,12 +169,15 @@ pub enum GrowError<E = std::convert::Infallible> {
         /// Count of inlines or crosslines.
         lines: usize,
     },
+    /// The method is none of this crate.
+    #[error("the published method of growing is a baseline and no part of this library; grow by `ours`")]
+    Published,
     /// The extrema could not be found.
     #[error(transparent)]
     Extrema(#[from] ExtremaError<E>),
     /// The user cancelled.
     #[error(transparent)]
-    Cancelled(#[from] survey::Cancelled),
+    Cancelled(#[from] Cancelled),
 }
 
 /// Grows all surfaces of a volume in memory; see [`grow_slabs`].
@@ -183,7 +189,7 @@ pub enum GrowError<E = std::convert::Infallible> {
 ///
 /// ```
 /// use candidates::{GrowSettings, grow_surfaces};
-/// use survey::{Progress, Volume};
+/// use survey::{Cancelled, Progress, Volume};
 ///
 /// // One flat reflector, a peak at sample 10, on 20 × 20 traces.
 /// let mut volume = Volume::filled([20, 20, 21], 0.0f32);
@@ -209,8 +215,24 @@ pub fn grow_surfaces(
 /// dead, a single trace, narrower than the front width) has no surfaces.
 ///
 /// # Errors
-/// [`GrowError`] when a setting is out of range, the source fails or the user cancels.
+/// [`GrowError`] when a setting is out of range, the method is the published one, the source fails or the user cancels.
 pub fn grow_slabs<S: SlabSource>(
+    source: &S,
+    settings: &GrowSettings,
+    progress: &Progress,
+) -> Result<Surfaces, GrowError<S::Error>> {
+    match settings.method {
+        Method::Ours => grow_slabs_by(as_set, source, settings, progress),
+        Method::Paper => Err(GrowError::Published),
+    }
+}
+
+/// [`grow_slabs`] by a method that is given, whatever the settings name.
+///
+/// # Errors
+/// [`GrowError`] when a setting is out of range, the source fails or the user cancels.
+pub fn grow_slabs_by<S: SlabSource>(
+    grow: Grow,
     source: &S,
     settings: &GrowSettings,
     progress: &Progress,
@@ -221,13 +243,5 @@ pub fn grow_slabs<S: SlabSource>(
         return Ok(Surfaces { size, ..Surfaces::default() });
     }
     let extrema = find_extrema(source, &kinds, settings.slab_inlines, progress)?;
-    if settings.method == Method::Ours {
-        return Ok(ours::grow(&extrema, settings, progress)?);
-    }
-    let grown: Vec<Surfaces> = extrema
-        .par_iter()
-        .map(|extrema| paper::grow(extrema, settings.min_front_width, progress))
-        .collect::<Result<_, _>>()?;
-    progress.check()?;
-    Ok(assemble::joined(size, &grown))
+    Ok(grow(&extrema, settings, progress)?)
 }

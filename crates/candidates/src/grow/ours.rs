@@ -41,7 +41,7 @@ struct Linked<'e> {
 ///
 /// # Errors
 /// [`Cancelled`] by the user.
-pub(crate) fn grow(extrema: &[Extrema], settings: &GrowSettings, progress: &Progress) -> Result<Surfaces, Cancelled> {
+pub fn grow(extrema: &[Extrema], settings: &GrowSettings, progress: &Progress) -> Result<Surfaces, Cancelled> {
     let size = extrema.first().expect("growing checks that there is a kind of extremum").size;
     let lines = size[0];
     progress.begin(

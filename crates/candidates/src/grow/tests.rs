@@ -1,4 +1,4 @@
-//! Both methods of growing on layered, faulted and degenerate volumes, and independence of order, slabs and
+//! Growing on layered, faulted and degenerate volumes, and independence of order, slabs and
 //! threads.
 
 use super::*;
@@ -20,10 +20,6 @@ fn layered(size: [usize; 3], spacing: f32, depth: impl Fn(usize, usize) -> f32) 
 
 fn grown(volume: &Volume<f32>, settings: &GrowSettings) -> Surfaces {
     grow_surfaces(volume, settings, &Progress::silent()).unwrap()
-}
-
-fn both() -> [GrowSettings; 2] {
-    [Method::Ours, Method::Paper].map(|method| GrowSettings { method, ..GrowSettings::default() })
 }
 
 /// Properties of every result.
@@ -53,18 +49,15 @@ fn check(surfaces: &Surfaces) {
 
 #[test]
 fn dipping_layers_make_surfaces_of_every_trace() {
-    // 0.4 samples a trace: both methods follow it.
     let volume = layered([24, 20, 64], 10.0, |x, y| 15.0 + 0.4 * x as f32 - 0.2 * y as f32);
-    for settings in both() {
-        let surfaces = grown(&volume, &settings);
-        check(&surfaces);
-        let whole: Vec<_> = surfaces.surfaces.iter().filter(|s| s.vertices.len() == 24 * 20).collect();
-        assert!(whole.len() >= 3, "{:?}: {}", settings.method, whole.len());
-        assert!(whole.iter().all(|s| s.triangles.len() == 2 * 23 * 19));
-        for v in &surfaces.vertices {
-            let layers = (v.z - (15.0 + 0.4 * f32::from(v.x) - 0.2 * f32::from(v.y))) / 10.0;
-            assert!((layers - layers.round()).abs() < 2e-3);
-        }
+    let surfaces = grown(&volume, &GrowSettings::default());
+    check(&surfaces);
+    let whole: Vec<_> = surfaces.surfaces.iter().filter(|s| s.vertices.len() == 24 * 20).collect();
+    assert!(whole.len() >= 3, "{}", whole.len());
+    assert!(whole.iter().all(|s| s.triangles.len() == 2 * 23 * 19));
+    for v in &surfaces.vertices {
+        let layers = (v.z - (15.0 + 0.4 * f32::from(v.x) - 0.2 * f32::from(v.y))) / 10.0;
+        assert!((layers - layers.round()).abs() < 2e-3);
     }
 }
 
@@ -174,13 +167,14 @@ fn bad_volumes_have_defined_results() {
     spike.trace_mut(6, 6)[15] = 3e38;
     for volume in [nan, constant, trace, line, thin, flat, empty, dead, spike] {
         assert_eq!(grown(&volume, &GrowSettings::default()).surfaces, [], "{:?}", volume.size());
-        check(&grown(&volume, &GrowSettings { method: Method::Paper, ..GrowSettings::default() }));
     }
     let nothing = GrowSettings { extrema: vec![], ..GrowSettings::default() };
     let narrow = GrowSettings { min_front_width: 1, ..GrowSettings::default() };
     let volume = Volume::filled([4, 4, 4], 0.0f32);
     assert!(matches!(grow_surfaces(&volume, &nothing, &Progress::silent()), Err(GrowError::NoExtrema)));
     assert!(matches!(grow_surfaces(&volume, &narrow, &Progress::silent()), Err(GrowError::FrontWidth { found: 1 })));
+    let published = GrowSettings { method: Method::Paper, ..GrowSettings::default() };
+    assert!(matches!(grow_surfaces(&volume, &published, &Progress::silent()), Err(GrowError::Published)));
     let unlike = GrowSettings { join_share: -0.1, ..GrowSettings::default() };
     assert!(matches!(grow_surfaces(&volume, &unlike, &Progress::silent()), Err(GrowError::JoinShare { .. })));
     let cancelled = Progress::silent();

@@ -11,11 +11,11 @@ use survey::{Progress, Quality, SurveyGeometry, VerticalUnit};
 use synth::closed_form::ClosedForm;
 
 /// One surface: z over traces; a cell has two triangles where its four corners have a vertex.
-pub(crate) type Height<'a> = &'a dyn Fn(usize, usize) -> Option<f32>;
+type Height<'a> = &'a dyn Fn(usize, usize) -> Option<f32>;
 
 /// A forest of surfaces that may hold several vertices a trace: each surface is a list of branches, joined
 /// along the traces at which their heights agree.
-pub(crate) fn forest_of(size: [usize; 3], surfaces: &[&[Height]], leaf_triangles: u32) -> Forest {
+fn forest_of(size: [usize; 3], surfaces: &[&[Height]], leaf_triangles: u32) -> Forest {
     let mut all = Surfaces { size, ..Surfaces::default() };
     for branches in surfaces {
         add_surface(&mut all, branches);

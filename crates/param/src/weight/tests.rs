@@ -1,3 +1,5 @@
+//! Weights keep both surfaces, and the slope that comes with k is its derivative.
+
 use super::*;
 
 #[test]

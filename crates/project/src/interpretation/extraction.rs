@@ -15,6 +15,7 @@ use crate::error::ProjectError;
 use crate::folder::{history, storage};
 use crate::memory_budget;
 use interp::{ExtractReport, ExtractSettings, Forest, Method, extract_into};
+use reference::growing;
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -329,7 +330,7 @@ pub(crate) fn compute(
         remove_resumable(root);
         let scratch = Scratch::begin(root)?;
         let begin = |size, leaves| Ok(CandidateWriter::create(&scratch.path(&file), size, leaves)?);
-        let report = extract_into(begin, &key, &source, &settings, progress)?;
+        let report = extract_into(begin, &key, &source, &settings, growing::method(settings.grow.method), progress)?;
         scratch.publish(&file)?;
         report
     };

@@ -25,7 +25,7 @@ pub use parts::{HorizonPart, Parts};
 pub use picks::{PickCount, PickScore, PickSettings, count_picks};
 pub use truth::{TruthEvent, TruthIndex};
 
-use crate::surfaces::Surfaces;
+use candidates::Surfaces;
 use rayon::prelude::*;
 use serde::Serialize;
 use synth::SynthTruth;
@@ -129,7 +129,8 @@ pub struct Evaluation {
 /// vertex.
 ///
 /// ```
-/// use interp::{EvaluateSettings, Surfaces, evaluate};
+/// use candidates::Surfaces;
+/// use reference::{EvaluateSettings, evaluate};
 /// use survey::Progress;
 /// use synth::{SynthSettings, Synthetic};
 ///

@@ -13,9 +13,9 @@
 //! Space: voxels.
 
 use super::{EvaluateSettings, Parts, TruthIndex, share};
-use crate::assembly::{ClimbSettings, Selection, highest_valid, leaf_at};
-use crate::forest::Forest;
+use candidates::Forest;
 use glam::Vec3;
+use interp::assembly::{ClimbSettings, Selection, highest_valid, leaf_at};
 use model::FaultNetwork;
 use rayon::prelude::*;
 use serde::Serialize;

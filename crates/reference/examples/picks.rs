@@ -1,15 +1,17 @@
 //! Prints docs/picks.md: how many picks the horizons of synthetic surveys take, for several noise levels and
 //! seeds.
 //!
-//! `cargo run -p interp --example picks [SIZE] [SEEDS]`
+//! `cargo run -p reference --example picks [SIZE] [SEEDS]`
 
+use candidates::{Forest, ForestSettings, GrowSettings, grow_surfaces};
 use glam::DVec3;
 use interp::assembly::{ClimbSettings, Selection, highest_valid, leaf_at};
-use interp::evaluate::{EvaluateSettings, HorizonScore, Parts, PickSettings, TruthIndex, count_picks, evaluate_with};
 use interp::faults::{Evidence, ProposeSettings, propose_faults};
 use interp::reassembly::{VoxelSheet, reassemble};
-use interp::{Forest, ForestSettings, GrowSettings, grow_surfaces};
 use model::FaultNetwork;
+use reference::evaluation::{
+    EvaluateSettings, HorizonScore, Parts, PickSettings, TruthIndex, count_picks, evaluate_with,
+};
 use std::error::Error;
 use survey::Progress;
 use synth::{SynthSettings, Synthetic};
@@ -60,12 +62,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     println!("# Picks\n");
     println!(
-        "Written by `cargo run -p interp --example picks`, from synthetic surveys of {size}³ samples;\n\
+        "Written by `cargo run -p reference --example picks`, from synthetic surveys of {size}³ samples;\n\
          no fault is interpreted.\n"
     );
     println!("## Extraction and picks\n");
     println!(
-        "Coverage, precision and purity of the surfaces as in `interp::evaluate`, with one sample of tolerance. A\n\
+        "Coverage, precision and purity of the surfaces as in `reference::evaluation`, with one sample of tolerance. A\n\
          pick is one seed and one climb. Picks are counted until 95 % of the horizon is covered and at least 98 %\n\
          of what was picked lies on it. The oracle knows the truth and takes the best node of any level; the\n\
          replay puts its seed into the middle of the largest gap and climbs to the highest valid node. Counts in\n\

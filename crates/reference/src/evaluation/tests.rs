@@ -1,8 +1,8 @@
 //! Scores of surfaces and picks on surfaces made by hand from a truth, where every figure is known.
 
 use super::*;
-use crate::surfaces::{Extremum, Surface, Vertex};
-use crate::{GrowSettings, Method, grow_surfaces};
+use candidates::grow::grow_slabs_by;
+use candidates::{Extremum, Forest, ForestSettings, GrowSettings, Method, Surface, Vertex};
 use model::FaultNetwork;
 use survey::Progress;
 use synth::{SynthSettings, Synthetic};
@@ -138,6 +138,30 @@ fn named_horizons_are_reflectors_of_the_index() {
     }
 }
 
+/// A sheet with two triangles in each cell whose corners all have a height.
+fn add_sheet(all: &mut Surfaces, height: impl Fn(usize, usize) -> Option<f32>) {
+    let [nx, ny, _] = all.size;
+    let (first, start) = (all.vertices.len() as u32, all.triangles.len() as u32);
+    let traces = || (0..nx).flat_map(|x| (0..ny).map(move |y| (x, y)));
+    let is_whole = |x: usize, y: usize| {
+        x + 1 < nx && y + 1 < ny && [(0, 0), (1, 0), (0, 1), (1, 1)].iter().all(|(a, b)| height(x + a, y + b).is_some())
+    };
+    let mut places = vec![None; nx * ny];
+    for (x, y) in traces() {
+        let near = |a: usize, b: usize| x >= a && y >= b && is_whole(x - a, y - b);
+        if let Some(z) = height(x, y).filter(|_| near(0, 0) || near(1, 0) || near(0, 1) || near(1, 1)) {
+            places[x * ny + y] = Some(all.vertices.len() as u32);
+            all.vertices.push(Vertex { x: x as u16, y: y as u16, z });
+        }
+    }
+    for (x, y) in traces().filter(|&(x, y)| is_whole(x, y)) {
+        let [a, b, c, d] = [0, ny, 1, ny + 1].map(|step| places[x * ny + y + step].unwrap());
+        all.triangles.extend([[a, b, c], [b, d, c]]);
+    }
+    let (vertices, triangles) = (first..all.vertices.len() as u32, start..all.triangles.len() as u32);
+    all.surfaces.push(Surface { extremum: Extremum::Peak, vertices, triangles });
+}
+
 /// Whole true sheets as surfaces: each part takes one pick, and only the overlap of the reverse fault stops a
 /// climb.
 #[test]
@@ -150,10 +174,10 @@ fn true_sheets_take_a_pick_a_part() {
     };
     // Blocks 1 and 2 are one part around the tip of the fault between them: two picks here, since the sheets
     // are not joined.
-    let sheets: Vec<_> = (0..4u16).map(|block| move |x: usize, y: usize| height(0, block, x, y)).collect();
-    let sheets: Vec<[crate::assembly::tests::Height; 1]> = sheets.iter().map(|sheet| [sheet as _]).collect();
-    let sheets: Vec<&[crate::assembly::tests::Height]> = sheets.iter().map(|sheet| sheet.as_slice()).collect();
-    let forest = crate::assembly::tests::forest_of(truth.size, &sheets, 50);
+    let mut surfaces = Surfaces { size: truth.size, ..Surfaces::default() };
+    (0..4).for_each(|block| add_sheet(&mut surfaces, |x, y| height(0, block, x, y)));
+    let settings = ForestSettings { min_leaf_triangles: 50, ..ForestSettings::default() };
+    let forest = Forest::build(surfaces, &settings, &Progress::silent()).unwrap();
     let play = |blocks: &FaultNetwork| {
         let (evaluate, settings) = (EvaluateSettings::default(), PickSettings::default());
         count_picks(&forest, &truth, &index, blocks, &evaluate, &settings, &Progress::silent()).unwrap()
@@ -172,7 +196,8 @@ fn ours_is_purer_than_the_papers_on_a_faulted_survey() {
     let survey = Synthetic::generate(&settings, &Progress::silent()).unwrap();
     let [ours, papers] = [Method::Ours, Method::Paper].map(|method| {
         let settings = GrowSettings { method, ..GrowSettings::default() };
-        let surfaces = grow_surfaces(&survey.seismic, &settings, &Progress::silent()).unwrap();
+        let surfaces =
+            grow_slabs_by(crate::growing::method(method), &survey.seismic, &settings, &Progress::silent()).unwrap();
         let found = evaluate(&surfaces, &survey.truth, &EvaluateSettings::default());
         // Over all surfaces, so that merged ones count whatever else they run along.
         let [on_one, on_any] = found.surfaces.iter().fold([0, 0], |sum, s| [sum[0] + s.on_majority, sum[1] + s.on_any]);

@@ -13,10 +13,16 @@
 //! that a reflector that rises by one sample and a little more is not torn.) Steeper reflectors fall apart,
 //! as they do in the paper.
 
-use super::links::NONE;
-use crate::extrema::Extrema;
-use crate::surfaces::{Surface, Surfaces, Vertex};
+#[cfg(test)]
+mod tests;
+
+use candidates::grow::{Grow, as_set};
+use candidates::{Extrema, GrowSettings, Method, Surface, Surfaces, Vertex};
+use rayon::prelude::*;
 use survey::{Cancelled, Progress};
+
+/// No place among the members of a surface.
+const NONE: u32 = u32::MAX;
 
 /// Greatest difference in depth of extrema that touch, samples.
 const TOUCH: f32 = 1.5;
@@ -63,11 +69,27 @@ impl Fronts<'_> {
     }
 }
 
-/// Grows the surfaces of one kind.
+/// The function of a method, the published one or ours.
+pub fn method(method: Method) -> Grow {
+    match method {
+        Method::Ours => as_set,
+        Method::Paper => grow,
+    }
+}
+
+/// Grows the surfaces of all kinds, each by itself.
 ///
 /// # Errors
 /// [`Cancelled`] by the user.
-pub(crate) fn grow(extrema: &Extrema, min_front_width: usize, progress: &Progress) -> Result<Surfaces, Cancelled> {
+pub fn grow(extrema: &[Extrema], settings: &GrowSettings, progress: &Progress) -> Result<Surfaces, Cancelled> {
+    let of_kind = |extrema: &Extrema| grow_kind(extrema, settings.min_front_width, progress);
+    let grown: Vec<Surfaces> = extrema.par_iter().map(of_kind).collect::<Result<_, _>>()?;
+    progress.check()?;
+    Ok(joined(&grown))
+}
+
+/// Grows the surfaces of one kind.
+fn grow_kind(extrema: &Extrema, min_front_width: usize, progress: &Progress) -> Result<Surfaces, Cancelled> {
     let [nx, ny, _] = extrema.size;
     let mut fronts = Fronts { extrema, trace: Vec::with_capacity(extrema.len()), border: vec![0; extrema.len()] };
     for x in 0..nx {
@@ -205,4 +227,40 @@ fn triangulate(fronts: &Fronts, mut members: Vec<u32>, found: &mut Surfaces) {
         vertices: first_vertex..found.vertices.len() as u32,
         triangles: first_triangle..found.triangles.len() as u32,
     });
+}
+
+/// The surfaces of several kinds in one list, ordered by their first vertex (ties: in the order given).
+fn joined(parts: &[Surfaces]) -> Surfaces {
+    let mut order: Vec<(usize, usize)> =
+        parts.iter().enumerate().flat_map(|(kind, part)| (0..part.surfaces.len()).map(move |s| (kind, s))).collect();
+    let first = |&(kind, surface): &(usize, usize)| {
+        let part: &Surfaces = &parts[kind];
+        let v = part.vertices[part.surfaces[surface].vertices.start as usize];
+        (v.x, v.y, v.z)
+    };
+    order.sort_by(|a, b| {
+        let (a, b) = (first(a), first(b));
+        (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2))
+    });
+    let mut all = Surfaces {
+        size: parts.first().map_or([0; 3], |part| part.size),
+        vertices: Vec::with_capacity(parts.iter().map(|p| p.vertices.len()).sum()),
+        triangles: Vec::with_capacity(parts.iter().map(|p| p.triangles.len()).sum()),
+        surfaces: Vec::with_capacity(order.len()),
+    };
+    for (kind, surface) in order {
+        let part = &parts[kind];
+        let surface = &part.surfaces[surface];
+        let (vertices, triangles) = (all.vertices.len() as u32, all.triangles.len() as u32);
+        let range = |r: &std::ops::Range<u32>| r.start as usize..r.end as usize;
+        all.vertices.extend_from_slice(&part.vertices[range(&surface.vertices)]);
+        let moved = |corner: u32| corner - surface.vertices.start + vertices;
+        all.triangles.extend(part.triangles[range(&surface.triangles)].iter().map(|t| t.map(moved)));
+        all.surfaces.push(Surface {
+            extremum: surface.extremum,
+            vertices: vertices..all.vertices.len() as u32,
+            triangles: triangles..all.triangles.len() as u32,
+        });
+    }
+    all
 }

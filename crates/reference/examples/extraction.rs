@@ -1,13 +1,15 @@
-//! Measures the quality of extraction for `docs/extraction.md`: `cargo run -p interp --example
+//! Measures the quality of extraction for `docs/extraction.md`: `cargo run -p reference --example
 //! extraction [SIDE]`.
 //!
 //! Synthetic surveys of SIDE³ voxels (default 256) at three signal-to-noise ratios with three seeds. It
 //! measures the paper's method of growing, ours, and ours without some of its steps, and prints the scores of
-//! `interp::evaluate` and the coverage that the extrema allow.
+//! `reference::evaluation` and the coverage that the extrema allow.
 
-use interp::evaluate::{EvaluateSettings, Evaluation, TruthIndex, evaluate_with};
-use interp::extrema::find_extrema;
-use interp::{Extremum, GrowSettings, Method, Surface, Surfaces, Vertex, grow_surfaces};
+use candidates::extrema::find_extrema;
+use candidates::grow::grow_slabs_by;
+use candidates::{Extremum, GrowSettings, Method, Surface, Surfaces, Vertex};
+use reference::evaluation::{EvaluateSettings, Evaluation, TruthIndex, evaluate_with};
+use reference::growing::method;
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::time::Instant;
@@ -70,7 +72,7 @@ impl Case {
 
     fn grown(&self, settings: &GrowSettings) -> Result<(Surfaces, Evaluation, f64), Box<dyn Error>> {
         let start = Instant::now();
-        let surfaces = grow_surfaces(&self.survey.seismic, settings, &Progress::silent())?;
+        let surfaces = grow_slabs_by(method(settings.method), &self.survey.seismic, settings, &Progress::silent())?;
         let seconds = start.elapsed().as_secs_f64();
         let evaluation = evaluate_with(&surfaces, &self.survey.truth, &self.index, &EvaluateSettings::default());
         Ok((surfaces, evaluation, seconds))
