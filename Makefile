@@ -106,8 +106,8 @@ speed: setup
 wheel test-python: export NEEDS_PYTHON = 1
 
 wheel: setup
-	[ -x target/python/maturin/bin/maturin ] || { $(PYTHON) -m venv target/python/maturin && target/python/maturin/bin/pip install --quiet 'maturin>=1.9,<2'; }
-	target/python/maturin/bin/maturin build --release --locked --out target/wheels
+	[ -x target/python/builder/bin/pip ] || $(PYTHON) -m venv target/python/builder
+	target/python/builder/bin/pip wheel --disable-pip-version-check --no-deps --wheel-dir target/wheels .
 
 test-python: setup
 	crates/python/test.sh
