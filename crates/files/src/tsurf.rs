@@ -38,19 +38,19 @@ fn detect(source: &SourceFile) -> Option<String> {
     let first = text::lines(&start).find(|l| !l.text.starts_with('#'))?;
     let mut words = first.text.split_whitespace();
     let kind = (words.next()? == "GOCAD").then(|| words.next())??;
-    ObjectKind::of(kind).map(|_| format!("it begins with GOCAD {kind}"))
+    Kind::of(kind).map(|_| format!("it begins with GOCAD {kind}"))
 }
 
 /// The kinds of objects that are read.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-enum ObjectKind {
+enum Kind {
     #[default]
     Surface,
     Points,
     Lines,
 }
 
-impl ObjectKind {
+impl Kind {
     fn of(word: &str) -> Option<Self> {
         let named = [("TSurf", Self::Surface), ("VSet", Self::Points), ("PLine", Self::Lines)];
         named.into_iter().find(|(name, _)| name.eq_ignore_ascii_case(word)).map(|(_, kind)| kind)
@@ -59,8 +59,8 @@ impl ObjectKind {
 
 /// The state of the object being read.
 #[derive(Default)]
-struct GocadObject {
-    kind: ObjectKind,
+struct Object {
+    kind: Kind,
     /// The line of each vertex, of a PLine.
     lines: Vec<f64>,
     line: f64,
@@ -72,12 +72,12 @@ struct GocadObject {
     axis_name: Option<String>,
 }
 
-impl GocadObject {
+impl Object {
     fn surface(self) -> RawSurface {
-        let shape = if self.kind == ObjectKind::Surface {
+        let shape = if self.kind == Kind::Surface {
             RawShape::Mesh(self.mesh)
         } else {
-            let stick = |n: usize| (self.kind == ObjectKind::Lines).then(|| self.lines[n]);
+            let stick = |n: usize| (self.kind == Kind::Lines).then(|| self.lines[n]);
             let point = |(n, at): (usize, &DVec3)| RawPoint {
                 xy: Some(at.truncate()),
                 z: at.z,
@@ -161,16 +161,16 @@ impl GocadObject {
 fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
     let text = source.text();
     let mut surfaces = Vec::new();
-    let mut object: Option<GocadObject> = None;
+    let mut object: Option<Object> = None;
     let mut other = None;
     for line in text::lines(&text) {
         let (keyword, rest) = line.text.split_once(char::is_whitespace).unwrap_or((line.text, ""));
         if keyword == "GOCAD" {
             // A file may end an object with the next one instead of END.
-            surfaces.extend(object.take().map(GocadObject::surface));
+            surfaces.extend(object.take().map(Object::surface));
             if let Some(word) = rest.split_whitespace().next() {
-                match ObjectKind::of(word) {
-                    Some(kind) => object = Some(GocadObject { kind, ..GocadObject::default() }),
+                match Kind::of(word) {
+                    Some(kind) => object = Some(Object { kind, ..Object::default() }),
                     None => other = Some(word.to_string()),
                 }
             }
@@ -178,7 +178,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         }
         let Some(o) = &mut object else { continue };
         match keyword {
-            "END" => surfaces.extend(object.take().map(GocadObject::surface)),
+            "END" => surfaces.extend(object.take().map(Object::surface)),
             "GOCAD_ORIGINAL_COORDINATE_SYSTEM" => o.in_coordinates = true,
             "END_ORIGINAL_COORDINATE_SYSTEM" => o.in_coordinates = false,
             _ if o.in_coordinates => o.read_coordinates(keyword, rest),
@@ -199,7 +199,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
             _ => o.read_name(line.text),
         }
     }
-    surfaces.extend(object.take().map(GocadObject::surface));
+    surfaces.extend(object.take().map(Object::surface));
     let empty = |why: String| FormatError::Empty { file: source.path.clone(), kind: context.kind, why };
     if surfaces.is_empty() {
         return Err(empty(other.map_or_else(

@@ -39,7 +39,7 @@ pub(super) fn needed(start: usize, count: usize, fine_count: usize) -> (usize, u
 
 /// What a row of samples holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum RowContent {
+enum Row {
     /// Numbers throughout.
     Whole,
     /// Nothing; its values are not defined.
@@ -48,7 +48,7 @@ enum RowContent {
     Mixed,
 }
 
-impl RowContent {
+impl Row {
     fn of(values: &[f32]) -> Self {
         match values.iter().map(|value| u32::from(value.is_nan())).sum::<u32>() as usize {
             0 => Self::Whole,
@@ -63,17 +63,17 @@ impl RowContent {
 struct Rows {
     length: usize,
     values: Vec<f32>,
-    kinds: Vec<RowContent>,
+    kinds: Vec<Row>,
 }
 
 impl Rows {
     fn reset(&mut self, count: usize, length: usize) {
         self.length = length;
         self.values.resize(count * length, 0.0);
-        self.kinds.resize(count, RowContent::Missing);
+        self.kinds.resize(count, Row::Missing);
     }
 
-    fn get(&self, row: usize) -> (&[f32], RowContent) {
+    fn get(&self, row: usize) -> (&[f32], Row) {
         (&self.values[row * self.length..(row + 1) * self.length], self.kinds[row])
     }
 }
@@ -120,10 +120,9 @@ impl Halving {
         let mut done = 0;
         for x in 0..nx {
             for y in 0..ny {
-                let kind =
-                    if supply(x, y, &mut self.trace) { RowContent::of(&self.trace) } else { RowContent::Missing };
+                let kind = if supply(x, y, &mut self.trace) { Row::of(&self.trace) } else { Row::Missing };
                 self.along_z.kinds[y] = kind;
-                if kind != RowContent::Missing {
+                if kind != Row::Missing {
                     self.halve_trace(y, middle(2, 0), kind);
                 }
             }
@@ -147,7 +146,7 @@ impl Halving {
     }
 
     /// Halves the trace into row `y`; `first` is its sample at which the first one of the result lies.
-    fn halve_trace(&mut self, y: usize, first: usize, kind: RowContent) {
+    fn halve_trace(&mut self, y: usize, first: usize, kind: Row) {
         let length = self.along_z.length;
         let out = &mut self.along_z.values[y * length..(y + 1) * length];
         let trace = &self.trace;
@@ -155,7 +154,7 @@ impl Halving {
         // Results whose samples are all there.
         let low = REACH.saturating_sub(first).div_ceil(2).min(length);
         let high = match trace.len().checked_sub(REACH + first) {
-            Some(reached @ 1..) if kind == RowContent::Whole => ((reached - 1) / 2 + 1).clamp(low, length),
+            Some(reached @ 1..) if kind == Row::Whole => ((reached - 1) / 2 + 1).clamp(low, length),
             _ => low,
         };
         out[..low].iter_mut().enumerate().for_each(|(n, out)| *out = single(n));
@@ -174,7 +173,7 @@ impl Halving {
                 *out = whole([*a, *b, *middle, *d, *e]);
             }
         }
-        self.along_z.kinds[y] = if kind == RowContent::Whole { RowContent::Whole } else { RowContent::of(out) };
+        self.along_z.kinds[y] = if kind == Row::Whole { Row::Whole } else { Row::of(out) };
     }
 }
 
@@ -205,24 +204,24 @@ fn weighted(samples: [Option<f32>; 5]) -> f32 {
 }
 
 /// The filter across rows, those that there are; what the result holds.
-fn filter(out: &mut [f32], rows: [Option<(&[f32], RowContent)>; 5]) -> RowContent {
-    let rows = rows.map(|row| row.filter(|(_, kind)| *kind != RowContent::Missing));
+fn filter(out: &mut [f32], rows: [Option<(&[f32], Row)>; 5]) -> Row {
+    let rows = rows.map(|row| row.filter(|(_, kind)| *kind != Row::Missing));
     if rows[MIDDLE].is_none() {
         out.fill(f32::NAN);
-        return RowContent::Missing;
+        return Row::Missing;
     }
-    if rows.iter().flatten().any(|(_, kind)| *kind == RowContent::Mixed) {
+    if rows.iter().flatten().any(|(_, kind)| *kind == Row::Mixed) {
         for (n, out) in out.iter_mut().enumerate() {
             *out = weighted(rows.map(|row| row.map(|(values, _)| values[n])));
         }
-        return RowContent::of(out);
+        return Row::of(out);
     }
     if let [Some((a, _)), Some((b, _)), Some((c, _)), Some((d, _)), Some((e, _))] = rows {
         let sides = a.iter().zip(b).zip(d.iter().zip(e));
         for ((out, middle), ((a, b), (d, e))) in out.iter_mut().zip(c).zip(sides) {
             *out = whole([*a, *b, *middle, *d, *e]);
         }
-        return RowContent::Whole;
+        return Row::Whole;
     }
     out.fill(0.0);
     let mut weights = 0.0;
@@ -231,7 +230,7 @@ fn filter(out: &mut [f32], rows: [Option<(&[f32], RowContent)>; 5]) -> RowConten
         weights += weight;
     }
     out.iter_mut().for_each(|out| *out /= weights);
-    RowContent::Whole
+    Row::Whole
 }
 
 #[cfg(test)]

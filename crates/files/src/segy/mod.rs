@@ -35,6 +35,7 @@
 //! ```
 
 mod angles;
+mod anywhere;
 mod bins;
 mod block;
 mod bytes;
@@ -43,7 +44,6 @@ mod columns;
 mod coordinates;
 mod detect;
 mod error;
-mod field_sweep;
 mod file;
 mod frame;
 mod header;

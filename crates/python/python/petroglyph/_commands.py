@@ -6,13 +6,14 @@ Each method makes the object that :meth:`Commands.apply` takes; nothing else cha
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal
 
-from petroglyph._types import Options, Path, Progress
-
+Path = str | os.PathLike[str]
+Progress = Callable[[str, int, int], object]
 Effect = dict[str, Any]
 Place = tuple[float, float, float]
+Options = Mapping[str, Any]
 Contact = Literal["conformable", "erosional", "onlap", "intrusive"]
 
 
