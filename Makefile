@@ -19,6 +19,7 @@
 #   make picks      counts the picks that horizons take, for docs/picks.md
 #   make wheel      a wheel of the Python package, in target/wheels
 #   make test-python   pytest, mypy and the notebooks, in a virtual environment below target/ (PETROGLYPH_SKIP_PYTHON=1 skips it)
+#   make rebuilds   which crates a change of each crate compiles again
 #   make scale      measures tasks of Dask graphs, for docs/scale.md
 
 OUT ?= out/demo
@@ -40,7 +41,7 @@ SIZES ?= 1280x800 2560x1440
 APPEARANCES ?= light dark
 PYTHON ?= python3
 
-.PHONY: demo gallery screenshots test check bench accuracy extraction picks time speed check-peers check-review viewer scenario attack fuzz fuzz-long setup build wheel test-python scale
+.PHONY: demo gallery screenshots test check bench accuracy extraction picks time speed check-peers check-review viewer scenario attack fuzz fuzz-long setup build wheel test-python scale rebuilds
 
 build: setup
 	$(BUILD) --bin petroglyph
@@ -105,11 +106,14 @@ speed: setup
 wheel test-python: export NEEDS_PYTHON = 1
 
 wheel: setup
-	[ -x target/python/maturin/bin/maturin ] || { $(PYTHON) -m venv target/python/maturin && target/python/maturin/bin/pip install --quiet 'maturin>=1.9,<2'; }
-	target/python/maturin/bin/maturin build --release --locked --out target/wheels
+	[ -x target/python/builder/bin/pip ] || $(PYTHON) -m venv target/python/builder
+	target/python/builder/bin/pip wheel --disable-pip-version-check --no-deps --wheel-dir target/wheels .
 
 test-python: setup
 	crates/python/test.sh
+
+rebuilds:
+	@$(PYTHON) bench/rebuilds.py
 
 # In the environment that `make test-python` has made.
 scale:

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Tests the Python package: the extension that `cargo test --workspace` has built goes into a wheel, the wheel into a virtual
-# environment under target/, and there run pytest, mypy --strict and the notebooks.
+# Tests the Python package: its sources and the extension that `cargo test --workspace` has built go into a virtual environment
+# under target/, and there run pytest, mypy --strict and the notebooks.
 #
 #   crates/python/test.sh [PYTEST_ARGUMENTS]
 #
@@ -25,9 +25,11 @@ fi
 cargo test --workspace --locked --no-run --quiet
 [ -x "$environment/bin/python" ] || "$python" -m venv "$environment"
 "$environment/bin/python" -m pip install --quiet --disable-pip-version-check -r crates/python/requirements-test.txt
-rm -rf target/python/wheel
-wheel=$("$environment/bin/python" crates/python/assemble_wheel.py target/debug/deps/libpetroglyph_native.so target/python/wheel)
-"$environment/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps --force-reinstall "$wheel"
+installed=$("$environment/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
+rm -rf "$installed/petroglyph"
+cp -r crates/python/python/petroglyph "$installed"
+cp target/debug/deps/libpetroglyph_native.so "$installed/petroglyph/_native.abi3.so"
+"$environment/bin/python" crates/python/stub.py "$installed"
 
 # From elsewhere, so that the installed package is tested and not its sources.
 root="$PWD"

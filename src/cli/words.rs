@@ -24,10 +24,12 @@ pub struct OptionWords {
     pub positional: bool,
     /// Whether it must be there.
     pub required: bool,
-    /// Whether it has a value.
-    pub takes_value: bool,
-    /// Whether it has several values.
-    pub several: bool,
+    /// How many values it takes each time it is given: the least, and the most unless any number.
+    pub values: (usize, Option<usize>),
+    /// Whether it may be given more than once, with further values.
+    pub repeats: bool,
+    /// What its values are, as `--help` shows them.
+    pub value_names: Vec<String>,
     /// What it says.
     pub help: String,
 }
@@ -35,7 +37,10 @@ pub struct OptionWords {
 /// Every command that does something, in the order of `--help`.
 pub fn commands() -> Vec<CommandWords> {
     let mut found = Vec::new();
-    collect(&Arguments::command(), &[], &mut found);
+    let mut program = Arguments::command();
+    // What is not stated of an option, such as how many values a flag takes, is known then.
+    program.build();
+    collect(&program, &[], &mut found);
     found
 }
 
@@ -46,23 +51,27 @@ fn collect(command: &clap::Command, before: &[String], found: &mut Vec<CommandWo
             collect(child, &words, found);
         } else {
             let about = child.get_about().map(ToString::to_string).unwrap_or_default();
-            let options = child.get_arguments().filter(|arg| arg.get_id() != "help").map(option).collect();
+            let options = child.get_arguments().filter(|arg| !is_of_every_command(arg)).map(option).collect();
             found.push(CommandWords { words, about, options });
         }
     }
 }
 
+/// Whether an option says how any command is carried out or answered.
+fn is_of_every_command(arg: &Arg) -> bool {
+    arg.is_global_set() || arg.get_id() == "help" || arg.get_id() == "version"
+}
+
 fn option(arg: &Arg) -> OptionWords {
-    let positional = arg.get_long().is_none();
-    let name = arg.get_long().map_or_else(|| arg.get_id().to_string().replace('_', "-"), str::to_owned);
-    let most = arg.get_num_args().map_or(1, |count| count.max_values());
-    let takes_value = arg.get_action().takes_values();
+    let values = arg.get_num_args().unwrap_or_default();
+    let most = values.max_values();
     OptionWords {
-        name,
-        positional,
+        name: arg.get_long().map_or_else(|| arg.get_id().to_string().replace('_', "-"), str::to_owned),
+        positional: arg.is_positional(),
         required: arg.is_required_set(),
-        takes_value,
-        several: takes_value && (matches!(arg.get_action(), ArgAction::Append) || most > 1),
+        values: (values.min_values(), (most < usize::MAX).then_some(most)),
+        repeats: matches!(arg.get_action(), ArgAction::Append),
+        value_names: arg.get_value_names().unwrap_or_default().iter().map(ToString::to_string).collect(),
         help: arg.get_help().map(ToString::to_string).unwrap_or_default(),
     }
 }
@@ -78,9 +87,13 @@ mod tests {
         let add = of(&["horizon", "add"]);
         let option = |name: &str| add.options.iter().find(|option| option.name == name).expect("an option");
         assert!(option("project").positional && option("project").required);
-        assert!(option("name").takes_value && !option("name").several);
+        assert_eq!((option("name").values, option("name").repeats), ((1, Some(1)), false));
         let remove = of(&["pick"]).options.iter().find(|option| option.name == "remove").expect("a flag");
-        assert!(!remove.takes_value && !remove.several && !remove.positional);
+        assert_eq!((remove.values, remove.repeats, remove.positional), ((0, Some(0)), false, false));
+        let stick = of(&["fault", "pick"]).options.iter().find(|option| option.name == "stick").expect("sticks");
+        assert_eq!((stick.values, stick.repeats, stick.required), ((1, None), true, true));
+        assert_eq!(stick.value_names, ["INLINE,CROSSLINE,Z"]);
+        assert!(all.iter().flat_map(|command| &command.options).all(|option| option.name != "json"));
         assert!(of(&["pick"]).about.starts_with("Pick a candidate"));
         assert!(all.iter().all(|command| command.words != ["help"] && command.words != ["horizon"]));
     }

@@ -22,6 +22,9 @@ fn a_fault_ends_where_it_was_drawn_unless_it_is_said_to_grow() {
     run_in(at, "fault remove p.petro 'Dying fault'").done();
     run_in(at, "fault add p.petro 's/faults/Dying fault.ts' --name 'Dying fault' --extent grow 75.5").done();
     assert_eq!(grown("check p.petro").1, 75.5);
+    // Options that follow are none of its values.
+    assert!(run_in(at, "fault extent p.petro 'Dying fault' drawn --json").done().json().is_object());
+    run_in(at, "fault add p.petro 's/faults/Dying fault.ts' --extent drawn --name Second").done();
 }
 
 #[test]

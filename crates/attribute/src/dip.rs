@@ -169,9 +169,9 @@ fn scan_line<'a>(
 ) {
     let samples = out.len() / along_count;
     let half_width = settings.half_width;
-    let mut scan = Scan::new(settings, samples);
-    let mut rows: Vec<Sums> = (0..=2 * half_width).map(|_| Sums::new(scan.lags * samples)).collect();
-    let mut total = Sums::new(scan.lags * samples);
+    let mut scan = LagScan::new(settings, samples);
+    let mut rows: Vec<WindowSums> = (0..=2 * half_width).map(|_| WindowSums::new(scan.lags * samples)).collect();
+    let mut total = WindowSums::new(scan.lags * samples);
     let mut ready = 0;
     for along in 0..along_count {
         let last = (along + half_width).min(along_count - 1);
@@ -191,7 +191,7 @@ fn scan_line<'a>(
 }
 
 /// Sums over the window, `[lag][sample]`.
-struct Sums {
+struct WindowSums {
     /// Σ u (u₊ + u₋), over the pairs that exist.
     product: Vec<f32>,
     /// Σ u² for each of those pairs.
@@ -200,7 +200,7 @@ struct Sums {
     neighbours: Vec<f32>,
 }
 
-impl Sums {
+impl WindowSums {
     fn new(length: usize) -> Self {
         Self { product: vec![0.0; length], centre: vec![0.0; length], neighbours: vec![0.0; length] }
     }
@@ -247,7 +247,7 @@ impl Padded {
 const TIE: f32 = 1e-6;
 
 /// The comparison of three traces over all lags.
-struct Scan {
+struct LagScan {
     samples: usize,
     half_window: usize,
     /// Greatest lag of which the coherence is needed: one more than the steepest dip.
@@ -260,7 +260,7 @@ struct Scan {
     best_lag: Vec<i32>,
 }
 
-impl Scan {
+impl LagScan {
     fn new(settings: &DipSettings, samples: usize) -> Self {
         let reach = settings.max_dip + 1;
         let length = samples + 2 * settings.half_window;
@@ -278,7 +278,7 @@ impl Scan {
     }
 
     /// Windowed sums of the trace before, here and after, for every lag.
-    fn compare(&mut self, traces: [Option<&[f32]>; 3], out: &mut Sums) {
+    fn compare(&mut self, traces: [Option<&[f32]>; 3], out: &mut WindowSums) {
         if traces[1].is_none() {
             out.clear();
             return;
@@ -311,7 +311,7 @@ impl Scan {
     }
 
     /// The dip of greatest coherence at each sample.
-    fn pick(&mut self, sums: &Sums, centre: &[f32], out: &mut [f32]) {
+    fn pick(&mut self, sums: &WindowSums, centre: &[f32], out: &mut [f32]) {
         let (samples, reach) = (self.samples, self.reach as i32);
         self.best.fill(TIE);
         self.best_lag.fill(0);

@@ -65,7 +65,7 @@ struct Hilbert {
 }
 
 /// Room for one trace.
-struct Work {
+struct TraceRoom {
     signal: Vec<Complex32>,
     scratch: Vec<Complex32>,
 }
@@ -78,12 +78,12 @@ impl Hilbert {
         Self { forward: planner.plan_fft_forward(length), inverse: planner.plan_fft_inverse(length), length }
     }
 
-    fn work(&self) -> Work {
+    fn work(&self) -> TraceRoom {
         let scratch = self.forward.get_inplace_scratch_len().max(self.inverse.get_inplace_scratch_len());
-        Work { signal: vec![Complex32::default(); self.length], scratch: vec![Complex32::default(); scratch] }
+        TraceRoom { signal: vec![Complex32::default(); self.length], scratch: vec![Complex32::default(); scratch] }
     }
 
-    fn envelope(&self, trace: &[f32], work: &mut Work, out: &mut [f32]) {
+    fn envelope(&self, trace: &[f32], work: &mut TraceRoom, out: &mut [f32]) {
         let samples = trace.len();
         let at = |n: usize| if trace[n].is_finite() { trace[n] } else { 0.0 };
         // The tail is split between both mirrors, which meet in the middle of it.

@@ -79,7 +79,7 @@ pub fn semblance(
     progress.begin("semblance", nx as u64);
     if !out.is_empty() {
         out.par_chunks_mut(ny * nz).enumerate().try_for_each(|(x, line)| {
-            let mut stack = Stack::new(nz, settings.half_window);
+            let mut stack = TraceStack::new(nz, settings.half_window);
             for (y, out) in line.chunks_mut(nz).enumerate().filter(|&(y, _)| volume.is_live(x, y)) {
                 stack.clear();
                 let (p, q) = (dips.inline.trace(x, y), dips.crossline.trace(x, y));
@@ -104,7 +104,7 @@ pub fn semblance(
 }
 
 /// Sums over traces at each sample of one trace, with room for the window at both ends.
-struct Stack {
+struct TraceStack {
     half_window: usize,
     sum: Vec<f32>,
     squares: Vec<f32>,
@@ -114,7 +114,7 @@ struct Stack {
     window: WindowSum,
 }
 
-impl Stack {
+impl TraceStack {
     fn new(samples: usize, half_window: usize) -> Self {
         let zeros = || vec![0.0f32; samples];
         let padded = || vec![0.0f32; samples + 2 * half_window];

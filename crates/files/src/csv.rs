@@ -10,7 +10,7 @@
 use super::column::{Column, of_name};
 use super::columns::{self, ColumnLayout};
 use super::raw::{RawSurface, ReadContext};
-use super::table::{self, Cut};
+use super::table::{self, LineCut};
 use super::text::{self, Line, SourceFile};
 use super::write::{self, TableNode};
 use super::{Codec, Format, FormatError};
@@ -43,15 +43,15 @@ fn detect(source: &SourceFile) -> Option<String> {
 }
 
 /// The delimiter of a table, from its first line, and the decimal comma, from its numbers.
-fn cut_of(first: &str, second: &str) -> Cut {
-    let cut = Cut::of(first);
-    let comma = cut.delimiter != Some(',') && Cut { delimiter: cut.delimiter, ..Cut::of(second) }.decimal_comma;
-    Cut { decimal_comma: cut.decimal_comma || comma, ..cut }
+fn cut_of(first: &str, second: &str) -> LineCut {
+    let cut = LineCut::of(first);
+    let comma = cut.delimiter != Some(',') && LineCut { delimiter: cut.delimiter, ..LineCut::of(second) }.decimal_comma;
+    LineCut { decimal_comma: cut.decimal_comma || comma, ..cut }
 }
 
 /// Whether a line is a header: it has at least two fields that are not numbers. (A row may have a name and words for
 /// "nothing".)
-fn is_header(line: &str, cut: Cut) -> bool {
+fn is_header(line: &str, cut: LineCut) -> bool {
     let fields = cut.fields(line);
     let words = fields.iter().filter(|f| cut.number(f.text).is_none() && f.text.chars().any(char::is_alphabetic));
     let known = words.clone().filter(|f| of_name(f.text).column != Column::Other).count();
@@ -59,7 +59,7 @@ fn is_header(line: &str, cut: Cut) -> bool {
 }
 
 /// The header line, or the last comment if its words name columns.
-fn header_of(all: &[Line<'_>], rows: &[Line<'_>], cut: Cut, context: &ReadContext<'_>) -> Option<ColumnLayout> {
+fn header_of(all: &[Line<'_>], rows: &[Line<'_>], cut: LineCut, context: &ReadContext<'_>) -> Option<ColumnLayout> {
     let first = rows.first()?;
     if is_header(first.text, cut) {
         let names = cut.fields(first.text);
@@ -67,7 +67,7 @@ fn header_of(all: &[Line<'_>], rows: &[Line<'_>], cut: Cut, context: &ReadContex
     }
     let comment = all.iter().take_while(|l| l.number < first.number).last()?;
     let words = comment.text.trim_start_matches(['#', '!', '%', '@', '/', ' ']);
-    let names = Cut::of(words).fields(words);
+    let names = LineCut::of(words).fields(words);
     let layout = columns::from_header(&names.iter().map(|f| f.text).collect::<Vec<_>>(), context.domain());
     (layout.is_complete() && names.len() <= cut.fields(first.text).len()).then_some(layout)
 }
@@ -126,7 +126,7 @@ mod tests {
             ("\"green event\"\t1\t2\t3", false),
             ("1,2,nan", false),
         ] {
-            assert_eq!(is_header(line, Cut::of(line)), header, "{line}");
+            assert_eq!(is_header(line, LineCut::of(line)), header, "{line}");
         }
     }
 }

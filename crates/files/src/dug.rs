@@ -8,7 +8,7 @@
 use super::column::Column;
 use super::columns::ColumnLayout;
 use super::raw::{RawSurface, ReadContext};
-use super::table::{self, Cut};
+use super::table::{self, LineCut};
 use super::text::{self, Line, SourceFile};
 use super::unit::Domain;
 use super::{Codec, Format, FormatError};
@@ -50,7 +50,7 @@ fn detect(source: &SourceFile) -> Option<String> {
 }
 
 /// Whether there is a subgrid of lines and the first two numbers of every row are whole and within it.
-fn on_subgrid(text: &str, rows: &[Line<'_>], cut: Cut) -> bool {
+fn on_subgrid(text: &str, rows: &[Line<'_>], cut: LineCut) -> bool {
     let Some(subgrid) = text::lines(text)
         .find_map(|l| l.text.trim_start_matches(['#', ' ']).strip_prefix("subgrid=").map(str::to_string))
     else {
@@ -73,7 +73,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     let text = source.text();
     let rows: Vec<_> = text::lines(&text).filter(|l| !table::is_comment(l.text)).collect();
     let named = of_extension(source);
-    let cut = Cut::of(rows.first().map_or("", |l| l.text));
+    let cut = LineCut::of(rows.first().map_or("", |l| l.text));
     let lines = || [Column::Inline, Column::Crossline, Column::Z];
     let columns = named.map(|(columns, _)| columns).or_else(|| on_subgrid(&text, &rows, cut).then(lines));
     let header = columns.map(|columns| ColumnLayout::plain(columns.to_vec()));

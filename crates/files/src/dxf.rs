@@ -65,13 +65,13 @@ struct Entity<'a> {
 
 /// A layer of the drawing.
 #[derive(Default)]
-struct Layer {
+struct DxfLayer {
     mesh: TriangleMesh,
     index: HashMap<[u64; 3], u32>,
     points: Vec<RawPoint>,
 }
 
-impl Layer {
+impl DxfLayer {
     fn vertex(&mut self, at: DVec3) -> u32 {
         let mesh = &mut self.mesh;
         *self.index.entry(at.to_array().map(f64::to_bits)).or_insert_with(|| {
@@ -92,17 +92,17 @@ impl Layer {
 
 /// The layers in order of appearance, and the lines so far.
 #[derive(Default)]
-struct Drawing {
+struct DxfDrawing {
     names: Vec<String>,
-    layers: Vec<Layer>,
+    layers: Vec<DxfLayer>,
     /// Number of the line that places belong to.
     line: f64,
     /// The POLYLINE that is open.
-    polyline: Option<Polyline>,
+    polyline: Option<DxfPolyline>,
 }
 
 /// A POLYLINE whose places are being read.
-struct Polyline {
+struct DxfPolyline {
     layer: String,
     flags: u32,
     /// Rows and columns of a mesh.
@@ -111,7 +111,7 @@ struct Polyline {
     places: Vec<DVec3>,
 }
 
-impl Polyline {
+impl DxfPolyline {
     /// Corners of the faces of a mesh of rows and columns; none if it has another count of places.
     fn faces(&self) -> Option<Vec<[DVec3; 4]>> {
         let [rows, columns] = self.counts;
@@ -139,11 +139,11 @@ impl Polyline {
     }
 }
 
-impl Drawing {
-    fn layer(&mut self, name: &str) -> &mut Layer {
+impl DxfDrawing {
+    fn layer(&mut self, name: &str) -> &mut DxfLayer {
         let index = self.names.iter().position(|known| known == name).unwrap_or_else(|| {
             self.names.push(name.to_owned());
-            self.layers.push(Layer::default());
+            self.layers.push(DxfLayer::default());
             self.layers.len() - 1
         });
         &mut self.layers[index]
@@ -167,7 +167,7 @@ impl Drawing {
             },
             "POLYLINE" => {
                 self.line += 1.0;
-                self.polyline = Some(Polyline {
+                self.polyline = Some(DxfPolyline {
                     layer: entity.layer.to_owned(),
                     flags: entity.flags,
                     counts: [0, 1].map(|n| usize::try_from(entity.numbers[n]).unwrap_or(0)),
@@ -202,7 +202,7 @@ impl Drawing {
     }
 }
 
-impl Drawing {
+impl DxfDrawing {
     /// A place of a line or mesh, or a face of a mesh.
     fn add_vertex(&mut self, source: &SourceFile, entity: &Entity<'_>, at: Option<DVec3>) -> Result<(), FormatError> {
         let wrong = |expected: &str| Err(source.syntax(entity.line, expected, entity.kind));
@@ -232,7 +232,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     let text = source.text();
     // A value may be empty, so lines are not skipped here.
     let mut lines = text.lines().map(str::trim).enumerate();
-    let mut drawing = Drawing::default();
+    let mut drawing = DxfDrawing::default();
     let mut entity = Entity::default();
     while let (Some((number, code)), Some((_, value))) = (lines.next(), lines.next()) {
         let code: u32 = match code.parse() {

@@ -6,7 +6,7 @@
 use super::column::{self, Column};
 use super::columns::ColumnLayout;
 use super::raw::{RawSurface, ReadContext};
-use super::table::{self, Cut};
+use super::table::{self, LineCut};
 use super::text::{self, SourceFile};
 use super::unit::ZUnit;
 use super::{Codec, Format, FormatError};
@@ -54,7 +54,8 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     }
     layout.columns = if names.is_empty() { vec![Column::X, Column::Y, Column::Z] } else { names };
     let rows: Vec<_> = text::lines(&text).filter(|l| !table::is_comment(l.text)).collect();
-    let mut surfaces = table::surfaces(source, &rows, Cut::of(rows.first().map_or("", |l| l.text)), layout, context)?;
+    let mut surfaces =
+        table::surfaces(source, &rows, LineCut::of(rows.first().map_or("", |l| l.text)), layout, context)?;
     for surface in &mut surfaces {
         surface.name = surface.name.take().or_else(|| title.clone());
         if let Some(null) = null {

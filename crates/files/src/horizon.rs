@@ -1,17 +1,17 @@
 //! Makes a [`Horizon`] from a surface as read: converts it, places it on nodes, splits it into sheets and
 //! checks it against the survey.
 
-use super::any_shape::{self, Shape};
 use super::columns::is_inside;
 use super::lattice::{self, FittedLattice};
 use super::options::{HorizonShape, ImportOptions};
-use super::placement::{self, Placed, voxel_xy};
+use super::overturned_points::SeenSideways;
+use super::placement::{self, PlacedPoints, voxel_xy};
 use super::raster;
 use super::raw::{RawPoint, RawShape, RawSurface};
 use super::report::{Gridding, ImportReport, Settled};
 use super::scatter;
 use super::sheets::{self, Crowded, MAX_DEPTHS, NodeValues};
-use super::sideways::Told;
+use super::surface_kind::{self, MeshKind};
 use super::vertical::VerticalRule;
 use super::{Format, FormatError, SurfaceKind};
 use glam::{DVec2, DVec3};
@@ -40,7 +40,7 @@ fn crowded(file: &Path, name: &str) -> FormatError {
 }
 
 /// Sheets, and how they were made.
-struct Nodes {
+struct GriddedSheets {
     sheets: Vec<Sheet>,
     gridding: Gridding,
     outside: usize,
@@ -53,7 +53,7 @@ struct Nodes {
     off_map: Option<(usize, Note)>,
 }
 
-impl Nodes {
+impl GriddedSheets {
     /// A surface that is no height field, as it was given.
     fn any_shape(surface: TriangleMesh, outside: usize, note: Option<&str>) -> Self {
         Self {
@@ -133,7 +133,7 @@ fn from_grid(
     grid: NodeGrid,
     z: &[f64],
     geometry: &SurveyGeometry,
-) -> Result<Nodes, FormatError> {
+) -> Result<GriddedSheets, FormatError> {
     let nv = grid.count[1];
     let known = z.iter().enumerate().filter(|(_, z)| z.is_finite());
     let worlds: Vec<DVec2> = known.map(|(n, _)| grid.world_at(DVec2::new((n / nv) as f64, (n % nv) as f64))).collect();
@@ -142,7 +142,7 @@ fn from_grid(
         return Err(placement::outside_by_world(file, name, worlds.into_iter(), geometry));
     }
     let depth = z.iter().map(|&z| z as f32).collect();
-    Ok(Nodes {
+    Ok(GriddedSheets {
         sheets: vec![Sheet::new(grid, depth, Quality::Picked)],
         gridding: Gridding::NativeGrid { count: grid.count },
         outside,
@@ -161,12 +161,12 @@ fn from_points(
     geometry: &SurveyGeometry,
     options: &ImportOptions,
     tolerance: f32,
-) -> Result<Nodes, FormatError> {
+) -> Result<GriddedSheets, FormatError> {
     let mut placed = placement::place(file, name, points, geometry, options.place_by)?;
     let mut notes: Vec<String> = placed.note.take().into_iter().collect();
     if points.iter().all(|p| p.normal.is_some()) && options.shape != Some(HorizonShape::Map) {
         if let Some(found) = through_normals(file, name, points, &placed, geometry, options)? {
-            return Ok(Nodes { notes: notes.into_iter().chain(found.notes).collect(), ..found });
+            return Ok(GriddedSheets { notes: notes.into_iter().chain(found.notes).collect(), ..found });
         }
         notes.push("its normals are not used: it is a map".to_owned());
     }
@@ -174,8 +174,8 @@ fn from_points(
     let any_shape = |notes: Vec<String>, note: Option<&str>| {
         let place = |(voxel, p): (&DVec2, &RawPoint)| placement::world_xy(geometry, *voxel).extend(p.z);
         let vertices = placed.voxels.iter().zip(points).map(place).collect();
-        let found = Nodes::any_shape(TriangleMesh { vertices, triangles: Vec::new() }, placed.outside, note);
-        Nodes { notes: notes.into_iter().chain(found.notes).collect(), ..found }
+        let found = GriddedSheets::any_shape(TriangleMesh { vertices, triangles: Vec::new() }, placed.outside, note);
+        GriddedSheets { notes: notes.into_iter().chain(found.notes).collect(), ..found }
     };
     if is_any {
         return Ok(any_shape(notes, None));
@@ -189,11 +189,12 @@ fn from_points(
                 notes.push("fewer than three points: nothing lies between them".into());
             }
             let pairs: Vec<_> = placed.voxels.iter().zip(points).map(|(v, p)| (*v, p.z as f32)).collect();
-            let told = if options.shape.is_none() { any_shape::of_points(&pairs, geometry) } else { Told::Map };
-            if told == Told::Overturned {
+            let told =
+                if options.shape.is_none() { surface_kind::of_points(&pairs, geometry) } else { SeenSideways::Map };
+            if told == SeenSideways::Overturned {
                 let fact = "its points are overturned: several limbs lie over one place on the map";
                 let note = Note::unless(fact, Setting::Shape.stated_as("map"));
-                return Ok(Nodes { warnings: vec![note], ..any_shape(notes, None) });
+                return Ok(GriddedSheets { warnings: vec![note], ..any_shape(notes, None) });
             }
             let gridded = scatter::grid(&pairs, geometry, options.gap_m, tolerance).map_err(|_| crowded(file, name))?;
             if gridded.repeated > 0 {
@@ -204,14 +205,14 @@ fn from_points(
             }
             let off_map = gridded.outliers.map(|o| (o.count, Note::from(o.sentence(geometry.vertical.unit))));
             let mut warnings: Vec<Note> = off_map.iter().map(|(_, note)| note.clone()).collect();
-            if told == Told::Unclear {
+            if told == SeenSideways::Unclear {
                 let fact = "its points are taken as a map, but seen from aside some of them seem to lie upside down, as on an \
                             overturned limb";
                 warnings.push(Note::unless(fact, Setting::Shape.stated_as("any")));
             }
             let count = |q| gridded.sheets.iter().flat_map(|s| &s.quality).filter(|k| **k == q).count();
             let (picked, filled) = (count(Quality::Picked), count(Quality::Filled));
-            return Ok(Nodes {
+            return Ok(GriddedSheets {
                 gridding: Gridding::Interpolated { gap_m: gridded.gap_m, picked, filled },
                 multivalued: gridded.multivalued,
                 sheets: gridded.sheets,
@@ -238,7 +239,7 @@ fn from_points(
     if twice > 0 {
         notes.push(format!("{twice} points repeat the depth of another at the same node and were averaged with it"));
     }
-    Ok(Nodes {
+    Ok(GriddedSheets {
         sheets,
         gridding,
         outside: placed.outside,
@@ -255,24 +256,24 @@ fn through_normals(
     file: &Path,
     name: &str,
     points: &[RawPoint],
-    placed: &Placed,
+    placed: &PlacedPoints,
     geometry: &SurveyGeometry,
     options: &ImportOptions,
-) -> Result<Option<Nodes>, FormatError> {
+) -> Result<Option<GriddedSheets>, FormatError> {
     let normals: Vec<DVec3> = points.iter().filter_map(|p| p.normal).collect();
     let worlds = placed.voxels.iter().zip(points).map(|(v, p)| placement::world_xy(geometry, *v).extend(p.z));
     let worlds: Vec<DVec3> = worlds.collect();
     let mesh = model::surface_through(name, &worlds, &normals, geometry, &Progress::silent())
         .map_err(|source| FormatError::Normals { file: file.to_path_buf(), why: source.to_string() })?;
-    let shape = any_shape::of_mesh(&mesh);
+    let shape = surface_kind::of_mesh(&mesh);
     if shape.is_none() && options.shape != Some(HorizonShape::Any) {
         return Ok(None);
     }
     let note = match shape {
-        Some(Shape::Body) => "a closed body through its points and normals",
+        Some(MeshKind::Body) => "a closed body through its points and normals",
         _ => "a surface through its points and normals",
     };
-    Ok(Some(Nodes::any_shape(mesh, placed.outside, Some(note))))
+    Ok(Some(GriddedSheets::any_shape(mesh, placed.outside, Some(note))))
 }
 
 /// Puts points on their nodes; several depths at a node make several sheets. Also counts such nodes, and repeated
@@ -314,8 +315,8 @@ fn from_mesh(
     geometry: &SurveyGeometry,
     options: &ImportOptions,
     tolerance: f32,
-) -> Result<Nodes, FormatError> {
-    let found = if options.shape == Some(HorizonShape::Map) { None } else { any_shape::of_mesh(mesh) };
+) -> Result<GriddedSheets, FormatError> {
+    let found = if options.shape == Some(HorizonShape::Map) { None } else { surface_kind::of_mesh(mesh) };
     if found.is_some() || options.shape == Some(HorizonShape::Any) {
         let worlds = || mesh.vertices.iter().map(|v| v.truncate());
         let outside = worlds().filter(|w| !is_inside(voxel_xy(geometry, *w), geometry)).count();
@@ -323,10 +324,10 @@ fn from_mesh(
             return Err(placement::outside_by_world(file, name, worlds(), geometry));
         }
         let note = found.map(|shape| match shape {
-            Shape::Body => "it is closed: a body",
-            Shape::Overturned => "it is overturned: a part of it lies above another",
+            MeshKind::Body => "it is closed: a body",
+            MeshKind::Overturned => "it is overturned: a part of it lies above another",
         });
-        return Ok(Nodes::any_shape(mesh.clone(), outside, note));
+        return Ok(GriddedSheets::any_shape(mesh.clone(), outside, note));
     }
     let grid = NodeGrid::of_survey(geometry);
     let most = (grid.count[0] * grid.count[1]).saturating_mul(MAX_MEAN_DEPTHS).saturating_add(FEW);
@@ -353,7 +354,7 @@ fn from_mesh(
     for (node, e) in (0..nodes).flat_map(|node| values_of(node).map(move |e| (node, e))) {
         depths[usize::from(sheet_of[e])][node] = values.z[e];
     }
-    Ok(Nodes {
+    Ok(GriddedSheets {
         sheets: depths.into_iter().map(|d| Sheet::new(grid, d, Quality::Picked)).collect(),
         gridding: Gridding::Rasterised { triangles: mesh.triangles.len() },
         outside,

@@ -6,7 +6,7 @@
 use super::column::Column;
 use super::columns::ColumnLayout;
 use super::raw::{RawSurface, ReadContext};
-use super::table::{self, Cut};
+use super::table::{self, LineCut};
 use super::text::{self, SourceFile};
 use super::unit::ZUnit;
 use super::{Codec, Format, FormatError};
@@ -44,7 +44,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         }
     }
     let rows: Vec<_> = text::lines(&text).filter(|l| !table::is_comment(l.text)).collect();
-    let cut = Cut::of(rows.first().map_or("", |l| l.text));
+    let cut = LineCut::of(rows.first().map_or("", |l| l.text));
     let mut surfaces = table::surfaces(source, &rows, cut, layout, context)?;
     surfaces.iter_mut().for_each(|s| s.name = name.clone());
     Ok(surfaces)

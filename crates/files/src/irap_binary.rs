@@ -4,7 +4,7 @@
 //! bytes `i NCOL, f ROTATION, X0, Y0`; 28 bytes of zeros; then values as f32, i fastest, in records of any
 //! length. Undefined from 1e30 on.
 
-use super::irap::{Header, transposed};
+use super::irap::{IrapHeader, transposed};
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::table::UNDEFINED;
 use super::text::SourceFile;
@@ -66,7 +66,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     if int(first[0]) != -996 {
         return Err(source.syntax(0, "-996, the mark of an Irap grid", &int(first[0]).to_string()));
     }
-    let header = Header {
+    let header = IrapHeader {
         count: [int(second[0]), int(first[1])],
         step: [float(first[6]), float(first[7])],
         rotation_deg: float(second[1]),

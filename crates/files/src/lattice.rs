@@ -125,13 +125,13 @@ fn distinct(points: &[DVec2]) -> Vec<DVec2> {
 }
 
 /// Points in square cells, for neighbours.
-struct Cells<'a> {
+struct PointCells<'a> {
     points: &'a [DVec2],
     side: f64,
     cells: HashMap<(i64, i64), Vec<u32>>,
 }
 
-impl<'a> Cells<'a> {
+impl<'a> PointCells<'a> {
     fn of(points: &'a [DVec2]) -> Option<Self> {
         let low = points.iter().copied().reduce(DVec2::min)?;
         let high = points.iter().copied().reduce(DVec2::max)?;
@@ -184,7 +184,7 @@ impl<'a> Cells<'a> {
 
 /// The two shortest vectors that most points have to a neighbour.
 fn basis(points: &[DVec2]) -> Option<(DVec2, DVec2)> {
-    let cells = Cells::of(points)?;
+    let cells = PointCells::of(points)?;
     let stride = (points.len() / 1000).max(1);
     let sample: Vec<usize> = (0..points.len()).step_by(stride).collect();
     let first: Vec<DVec2> = sample.iter().filter_map(|&n| cells.nearest(n, |_| true)).collect();

@@ -51,7 +51,6 @@
 //!
 //! To add a format: one file with a `CODEC`, one variant of [`Format`], one line in `CODECS`.
 
-mod any_shape;
 mod bounds;
 mod charisma;
 mod column;
@@ -75,6 +74,7 @@ mod mesh_sticks;
 mod opendtect;
 mod options;
 mod outline;
+mod overturned_points;
 mod petrel;
 mod petromod;
 mod placement;
@@ -82,16 +82,16 @@ mod plane_fit;
 mod raster;
 mod raw;
 mod report;
+mod resampling;
 mod scatter;
 pub mod segy;
 mod sheets;
-mod sideways;
 mod sticks;
+mod surface_kind;
 mod table;
 mod text;
 mod tsurf;
 mod unit;
-mod unrotated;
 mod vertical;
 pub mod well;
 mod write;
@@ -452,7 +452,7 @@ pub fn write_horizon_as(
         return Err(FormatError::Unsupported { format, action: "written", kind: SurfaceKind::Horizon, instead });
     };
     let (horizon, mut notes) = match format {
-        Format::Zmap | Format::Cps3 => unrotated::of(horizon, format, options)?,
+        Format::Zmap | Format::Cps3 => resampling::of(horizon, format, options)?,
         _ => (Cow::Borrowed(horizon), Vec::new()),
     };
     let is_map_alone = horizon.any_shape().is_some() && !matches!(format, Format::Tsurf | Format::Csv);

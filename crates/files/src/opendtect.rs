@@ -9,7 +9,7 @@
 use super::columns::{self, ColumnLayout};
 use super::mesh_sticks;
 use super::raw::{RawSurface, ReadContext};
-use super::table::{self, Cut};
+use super::table::{self, LineCut};
 use super::text::{self, SourceFile};
 use super::write::{self, TableNode, WriteFailure};
 use super::{Codec, Format, FormatError};
@@ -41,7 +41,7 @@ fn detect(source: &SourceFile) -> Option<String> {
         return (fields.len() >= 3 && fields.iter().all(|f| f.quoted))
             .then(|| "its header line lists quoted columns".into());
     }
-    let cut = Cut::of(first);
+    let cut = LineCut::of(first);
     let fields = cut.fields(first);
     let is_row = fields.len() >= 4 && fields[0].quoted && fields[1..].iter().all(|f| text::number(f.text).is_some());
     (cut.delimiter == Some('\t') && is_row).then(|| "a quoted name stands before numbers cut by tabs".into())
@@ -76,7 +76,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
             why: "there are no rows".into(),
         });
     };
-    let cut = Cut::of(first.text);
+    let cut = LineCut::of(first.text);
     let layout = table::settle_columns(source, context, header_of(&text, context), &rows, cut)?;
     table::surfaces(source, &rows, cut, layout, context)
 }

@@ -6,7 +6,7 @@
 
 use super::columns;
 use super::raw::{RawSurface, ReadContext};
-use super::table::{self, Cut};
+use super::table::{self, LineCut};
 use super::text::{self, SourceFile};
 use super::unit::ZUnit;
 use super::{Codec, Format, FormatError};
@@ -44,7 +44,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         layout.unit = Some((unit, format!("'{}'", line.trim_start_matches(['#', ' ']))));
     }
     let rows: Vec<_> = all[end + 1..].iter().copied().filter(|l| !table::is_comment(l.text)).collect();
-    let cut = Cut { delimiter: None, ..Cut::of(rows.first().map_or("", |l| l.text)) };
+    let cut = LineCut { delimiter: None, ..LineCut::of(rows.first().map_or("", |l| l.text)) };
     let mut surfaces = table::surfaces(source, &rows, cut, layout, context)?;
     for surface in &mut surfaces {
         let nulls = surface.shape.values_mut().filter(|z| **z == -999.0).map(|z| *z = f64::NAN).count();

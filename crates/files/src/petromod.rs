@@ -5,7 +5,7 @@
 //! big-endian f32, Y fastest. The origin is turned about the rotation origin by the angle, degrees
 //! anticlockwise. `DataUnitZ` is a code of the program's own and not interpreted.
 
-use super::irap::Header;
+use super::irap::IrapHeader;
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, SourceFile};
 use super::{Codec, Format, FormatError};
@@ -43,7 +43,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     let origin = DVec2::new(number("OriginX")?, number("OriginY")?);
     let pivot = DVec2::new(or("RotationOriginX", origin.x), or("RotationOriginY", origin.y));
     let rotation_deg = or("RotationAngle", 0.0);
-    let header = Header {
+    let header = IrapHeader {
         count: [number("GridNoX")? as i64, number("GridNoY")? as i64],
         step: [number("GridStepX")?, number("GridStepY")?],
         rotation_deg,

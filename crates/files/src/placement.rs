@@ -12,7 +12,7 @@ use survey::geometry::SurveyGeometry;
 
 /// Points over the survey.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Placed {
+pub(super) struct PlacedPoints {
     /// Voxel x, y per point.
     pub voxels: Vec<DVec2>,
     /// Number of points that lie beside the survey.
@@ -44,7 +44,7 @@ pub(super) fn place(
     points: &[RawPoint],
     geometry: &SurveyGeometry,
     place_by: Option<PlaceBy>,
-) -> Result<Placed, FormatError> {
+) -> Result<PlacedPoints, FormatError> {
     let of_lines = |p: &RawPoint| p.lines.map(|l| geometry.voxel_from_lines(l.x, l.y));
     let of_xy = |p: &RawPoint| p.xy.map(|w| voxel_xy(geometry, w));
     let both: Vec<(DVec2, DVec2)> = points.iter().filter_map(|p| of_lines(p).zip(of_xy(p))).collect();
@@ -99,7 +99,7 @@ pub(super) fn place(
             outside_by_world(file, name, voxels.iter().map(|v| world_xy(geometry, *v)), geometry)
         });
     }
-    Ok(Placed { voxels, outside, note })
+    Ok(PlacedPoints { voxels, outside, note })
 }
 
 /// World X, Y of the survey's corners.

@@ -95,12 +95,12 @@ fn circumradius([a, b, c]: [DVec2; 3]) -> f64 {
 }
 
 /// Points with the same place, to a hundredth of a bin, as one node.
-struct Places {
+struct MergedPoints {
     voxels: Vec<DVec2>,
     node: Vec<usize>,
 }
 
-impl Places {
+impl MergedPoints {
     fn of(voxels: &[DVec2]) -> Self {
         let mut places = Self { voxels: Vec::new(), node: Vec::with_capacity(voxels.len()) };
         let mut known = HashMap::new();
@@ -147,7 +147,7 @@ pub(super) fn grid(
     tolerance: f32,
 ) -> Result<Gridded, Crowded> {
     let voxels: Vec<DVec2> = points.iter().map(|p| p.0).collect();
-    let places = Places::of(&voxels);
+    let places = MergedPoints::of(&voxels);
     let world: Vec<DVec2> = places.voxels.iter().map(|v| world_xy(geometry, *v)).collect();
     let triangles = delaunay(&world);
     let gap_m = gap_m.unwrap_or_else(|| 2.0 * median_side(&world, &triangles));

@@ -13,14 +13,14 @@ pub(super) const UNDEFINED: f64 = 1e29;
 
 /// How the lines of a table are cut into numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Cut {
+pub(crate) struct LineCut {
     /// The delimiter; `None` = blanks.
     pub delimiter: Option<char>,
     /// Whether numbers have a decimal comma.
     pub decimal_comma: bool,
 }
 
-impl Cut {
+impl LineCut {
     /// How a line is cut: by `;`, tab or comma, whichever it has, in this order, else by blanks.
     ///
     /// A comma between digits of a table cut by `;` or tab is a decimal comma.
@@ -75,7 +75,7 @@ pub(crate) fn is_comment(line: &str) -> bool {
 }
 
 /// The numbers of up to 2000 rows spread over the table, to identify columns, and whether a name precedes them.
-pub(super) fn sample_rows(rows: &[Line<'_>], cut: Cut) -> (Vec<Vec<f64>>, bool) {
+pub(super) fn sample_rows(rows: &[Line<'_>], cut: LineCut) -> (Vec<Vec<f64>>, bool) {
     let stride = (rows.len() / 2000).max(1);
     let mut named = false;
     let numbers = rows
@@ -95,7 +95,7 @@ pub(super) fn sample_rows(rows: &[Line<'_>], cut: Cut) -> (Vec<Vec<f64>>, bool) 
 pub(super) fn surfaces(
     source: &SourceFile,
     rows: &[Line<'_>],
-    cut: Cut,
+    cut: LineCut,
     mut layout: ColumnLayout,
     context: &ReadContext<'_>,
 ) -> Result<Vec<RawSurface>, FormatError> {
@@ -161,7 +161,7 @@ pub(super) fn surfaces(
 }
 
 /// RMS ends each part of a points file with a row of three 999.0.
-fn is_separator(fields: &[Field<'_>], cut: Cut) -> bool {
+fn is_separator(fields: &[Field<'_>], cut: LineCut) -> bool {
     fields.len() == 3 && fields.iter().all(|f| cut.number(f.text) == Some(999.0))
 }
 
@@ -171,7 +171,7 @@ fn point_of(
     source: &SourceFile,
     line: &Line<'_>,
     fields: &[Field<'_>],
-    cut: Cut,
+    cut: LineCut,
     columns: &[Column],
     polygons: &mut HashMap<String, f64>,
 ) -> Result<(Option<String>, RawPoint), FormatError> {
@@ -227,7 +227,7 @@ pub(super) fn settle_columns(
     context: &ReadContext<'_>,
     header: Option<ColumnLayout>,
     rows: &[Line<'_>],
-    cut: Cut,
+    cut: LineCut,
 ) -> Result<ColumnLayout, FormatError> {
     if let Some(columns) = &context.options.columns {
         return Ok(ColumnLayout::plain(columns.clone()));
@@ -252,12 +252,12 @@ mod tests {
 
     #[test]
     fn the_cut_is_seen_in_the_line() {
-        assert_eq!(Cut::of("1;2;3").delimiter, Some(';'));
-        assert_eq!(Cut::of("1, 2, 3").delimiter, Some(','));
-        assert_eq!(Cut::of("1 2\t3").delimiter, None);
-        let german = Cut::of("1,5;2,25;3");
+        assert_eq!(LineCut::of("1;2;3").delimiter, Some(';'));
+        assert_eq!(LineCut::of("1, 2, 3").delimiter, Some(','));
+        assert_eq!(LineCut::of("1 2\t3").delimiter, None);
+        let german = LineCut::of("1,5;2,25;3");
         assert!(german.decimal_comma);
         assert_eq!(german.number("2,25"), Some(2.25));
-        assert!(!Cut::of("1,5").decimal_comma);
+        assert!(!LineCut::of("1,5").decimal_comma);
     }
 }

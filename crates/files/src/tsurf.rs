@@ -38,19 +38,19 @@ fn detect(source: &SourceFile) -> Option<String> {
     let first = text::lines(&start).find(|l| !l.text.starts_with('#'))?;
     let mut words = first.text.split_whitespace();
     let kind = (words.next()? == "GOCAD").then(|| words.next())??;
-    Kind::of(kind).map(|_| format!("it begins with GOCAD {kind}"))
+    ObjectKind::of(kind).map(|_| format!("it begins with GOCAD {kind}"))
 }
 
 /// The kinds of objects that are read.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-enum Kind {
+enum ObjectKind {
     #[default]
     Surface,
     Points,
     Lines,
 }
 
-impl Kind {
+impl ObjectKind {
     fn of(word: &str) -> Option<Self> {
         let named = [("TSurf", Self::Surface), ("VSet", Self::Points), ("PLine", Self::Lines)];
         named.into_iter().find(|(name, _)| name.eq_ignore_ascii_case(word)).map(|(_, kind)| kind)
@@ -59,8 +59,8 @@ impl Kind {
 
 /// The state of the object being read.
 #[derive(Default)]
-struct Object {
-    kind: Kind,
+struct GocadObject {
+    kind: ObjectKind,
     /// The line of each vertex, of a PLine.
     lines: Vec<f64>,
     line: f64,
@@ -72,12 +72,12 @@ struct Object {
     axis_name: Option<String>,
 }
 
-impl Object {
+impl GocadObject {
     fn surface(self) -> RawSurface {
-        let shape = if self.kind == Kind::Surface {
+        let shape = if self.kind == ObjectKind::Surface {
             RawShape::Mesh(self.mesh)
         } else {
-            let stick = |n: usize| (self.kind == Kind::Lines).then(|| self.lines[n]);
+            let stick = |n: usize| (self.kind == ObjectKind::Lines).then(|| self.lines[n]);
             let point = |(n, at): (usize, &DVec3)| RawPoint {
                 xy: Some(at.truncate()),
                 z: at.z,
@@ -161,16 +161,16 @@ impl Object {
 fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
     let text = source.text();
     let mut surfaces = Vec::new();
-    let mut object: Option<Object> = None;
+    let mut object: Option<GocadObject> = None;
     let mut other = None;
     for line in text::lines(&text) {
         let (keyword, rest) = line.text.split_once(char::is_whitespace).unwrap_or((line.text, ""));
         if keyword == "GOCAD" {
             // A file may end an object with the next one instead of END.
-            surfaces.extend(object.take().map(Object::surface));
+            surfaces.extend(object.take().map(GocadObject::surface));
             if let Some(word) = rest.split_whitespace().next() {
-                match Kind::of(word) {
-                    Some(kind) => object = Some(Object { kind, ..Object::default() }),
+                match ObjectKind::of(word) {
+                    Some(kind) => object = Some(GocadObject { kind, ..GocadObject::default() }),
                     None => other = Some(word.to_string()),
                 }
             }
@@ -178,7 +178,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         }
         let Some(o) = &mut object else { continue };
         match keyword {
-            "END" => surfaces.extend(object.take().map(Object::surface)),
+            "END" => surfaces.extend(object.take().map(GocadObject::surface)),
             "GOCAD_ORIGINAL_COORDINATE_SYSTEM" => o.in_coordinates = true,
             "END_ORIGINAL_COORDINATE_SYSTEM" => o.in_coordinates = false,
             _ if o.in_coordinates => o.read_coordinates(keyword, rest),
@@ -199,7 +199,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
             _ => o.read_name(line.text),
         }
     }
-    surfaces.extend(object.take().map(Object::surface));
+    surfaces.extend(object.take().map(GocadObject::surface));
     let empty = |why: String| FormatError::Empty { file: source.path.clone(), kind: context.kind, why };
     if surfaces.is_empty() {
         return Err(empty(other.map_or_else(

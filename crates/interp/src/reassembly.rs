@@ -67,7 +67,7 @@ const NONE: u32 = u32::MAX;
 pub fn reassemble(forest: &Forest, selection: &Selection, seeds: &[u32], blocks: &FaultNetwork) -> Reassembled {
     let surfaces = &forest.surfaces;
     let [nx, ny, _] = surfaces.size;
-    let mesh = Mesh::of(forest, selection);
+    let mesh = SelectedMesh::of(forest, selection);
     let of = |v: u32| surfaces.vertices[mesh.vertices[v as usize] as usize];
     let place = |vertex: Vertex| Vec3::new(f32::from(vertex.x), f32::from(vertex.y), vertex.z);
     let block: Vec<u16> = (0..mesh.vertices.len() as u32).map(|v| blocks.block_at(place(of(v)))).collect();
@@ -122,7 +122,7 @@ struct SheetPatch {
 
 /// Traverses the mesh from each start that has not been reached yet, within its block.
 fn patches(
-    mesh: &Mesh,
+    mesh: &SelectedMesh,
     block: &[u16],
     starts: impl Iterator<Item = u32>,
     trace_of: impl Fn(u32) -> usize,
@@ -169,7 +169,12 @@ const FRINGE: u32 = 12;
 /// Which patches are overshoots, i.e. were left by tracking beyond a fault. Such a patch continues a larger
 /// patch of another block, and its own block has a larger patch: either the two lie over one another, or the
 /// overshoot is a mere fringe along the fault.
-fn overshoots(patches: &[SheetPatch], mesh: &Mesh, trace_of: impl Fn(u32) -> usize, traces: usize) -> Vec<bool> {
+fn overshoots(
+    patches: &[SheetPatch],
+    mesh: &SelectedMesh,
+    trace_of: impl Fn(u32) -> usize,
+    traces: usize,
+) -> Vec<bool> {
     let mut patch_of = vec![NONE; mesh.vertices.len()];
     for (p, patch) in patches.iter().enumerate() {
         patch.vertices.iter().for_each(|&v| patch_of[v as usize] = p as u32);
@@ -189,7 +194,7 @@ fn overshoots(patches: &[SheetPatch], mesh: &Mesh, trace_of: impl Fn(u32) -> usi
     })
 }
 
-/// Decides on the patches of each block, the largest first: `is_left_out` is told the patch, how many of its vertices lie
+/// Decides on the patches of each block, the largest first: `is_left_out` gets the patch, how many of its vertices lie
 /// over or under those that were kept, and whether it is the largest.
 fn left_out(
     patches: &[SheetPatch],
@@ -217,7 +222,7 @@ fn left_out(
 }
 
 /// Whether a patch reaches at most [`FRINGE`] edges away from its vertices at a fault.
-fn is_fringe(mesh: &Mesh, patch_of: &[u32], patch: u32, fault: Vec<u32>) -> bool {
+fn is_fringe(mesh: &SelectedMesh, patch_of: &[u32], patch: u32, fault: Vec<u32>) -> bool {
     let mut seen: HashSet<u32> = fault.iter().copied().collect();
     let mut rim = fault;
     for _ in 0..=FRINGE {
@@ -272,14 +277,14 @@ fn overlap_of(sheets: &[VoxelSheet], ny: usize) -> Overlap {
 }
 
 /// Selected vertices and their neighbours, numbered from 0.
-struct Mesh {
+struct SelectedMesh {
     /// Vertices of the forest, ascending.
     vertices: Vec<u32>,
     starts: Vec<u32>,
     next: Vec<u32>,
 }
 
-impl Mesh {
+impl SelectedMesh {
     fn of(forest: &Forest, selection: &Selection) -> Self {
         let triangles = || selection.iter().map(|t| forest.surfaces.triangles[t as usize]);
         let mut vertices: Vec<u32> = triangles().flatten().collect();

@@ -14,7 +14,7 @@
 //! Because the bits suffice, a section is cut by the smooth, unclipped sheets, and junctions are exact
 //! intersections of two of them.
 
-use crate::below::Below;
+use crate::sides::Below;
 use survey::stratigraphy::{Contact, Stratigraphy};
 
 /// The contacts of a stratigraphy, youngest first, ready to be applied to the sheets of a model.

@@ -38,7 +38,7 @@ impl MarginLattice {
 
 /// One interpreted node.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Node {
+pub(super) struct InterpretedNode {
     /// Lattice node.
     pub at: u32,
     /// Height, voxel z.

@@ -48,7 +48,7 @@
 //! Positions are voxel coordinates (x, y, z) with z down. Distances to faults are metric (m).
 
 pub mod accuracy;
-mod below;
+mod adjacency;
 #[cfg(test)]
 pub(crate) mod closed_form;
 mod contacts;
@@ -62,11 +62,10 @@ mod report;
 pub mod section;
 mod settings;
 mod sheets;
+mod sides;
 mod strays;
 mod structural;
-mod touching;
 
-pub use below::{Below, MOST_HORIZONS};
 pub use contacts::ContactRules;
 pub use levels::{
     CutLattice, Equations, LevelSurface, NodeBox, Terms, bodies_overlap, check_surface, hole_m, is_closed, resampled,
@@ -76,6 +75,7 @@ pub use network::{BlockSignature, FaultCrossing, FaultNetwork, FaultSurface, Tru
 pub use report::{InferredPlacement, ModelError, ModelNote, ModelReport, SurfaceProblem};
 pub use settings::ModelSettings;
 pub use sheets::picked_share;
+pub use sides::{Below, MOST_HORIZONS};
 pub use structural::{Region, StructuralModel};
 
 #[cfg(test)]

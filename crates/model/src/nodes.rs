@@ -4,7 +4,7 @@
 //! when its four corners belong to one block, so that nothing is interpolated across a fault. Nodes too close
 //! to a fault, or picked on the wrong side of it, are left out.
 
-use super::lattice::{MarginLattice, Node};
+use super::lattice::{InterpretedNode, MarginLattice};
 use super::network::FaultNetwork;
 use super::report::{ModelNote, ModelReport};
 use super::settings::ModelSettings;
@@ -19,8 +19,8 @@ const DOUBTFUL_VOXELS: f64 = 4.0;
 
 /// All nodes of one horizon, at most one per block and lattice node; by block, then lattice node.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Nodes {
-    pub nodes: Vec<Node>,
+pub(super) struct HorizonNodes {
+    pub nodes: Vec<InterpretedNode>,
     /// Interpreted depths that lie outside the lattice or far outside the samples.
     pub outside: usize,
     /// Native nodes without a depth.
@@ -35,8 +35,8 @@ pub(super) fn gather(
     faults: &FaultNetwork,
     settings: &ModelSettings,
     report: &mut ModelReport,
-) -> Nodes {
-    let mut out = Nodes::default();
+) -> HorizonNodes {
+    let mut out = HorizonNodes::default();
     let mut set_back = 0;
     for sheet in &horizon.sheets {
         let native = Native::new(geometry, sheet, faults, &horizon.name, report);
@@ -60,7 +60,7 @@ pub(super) fn gather(
                     set_back += 1;
                 } else {
                     let doubtful = distance < DOUBTFUL_VOXELS;
-                    out.nodes.push(Node { at: n as u32, z, quality, block, bits, beyond, doubtful });
+                    out.nodes.push(InterpretedNode { at: n as u32, z, quality, block, bits, beyond, doubtful });
                 }
             });
         }

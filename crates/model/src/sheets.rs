@@ -7,10 +7,10 @@
 //! ([`join`]): the throw between them dies out towards the tip, and nothing is seen beyond it. A horizon without data in
 //! a block is placed by the thickness or proportion it has elsewhere.
 
-use super::extension::{Extension, Plane};
-use super::lattice::{MarginLattice, Node};
+use super::extension::{Extension, NodePlane};
+use super::lattice::{InterpretedNode, MarginLattice};
 use super::network::{FaultNetwork, FaultSurface};
-use super::nodes::Nodes;
+use super::nodes::HorizonNodes;
 use super::report::{InferredPlacement, ModelNote};
 use super::settings::ModelSettings;
 use rayon::prelude::*;
@@ -86,7 +86,7 @@ fn beside(size: [usize; 2], n: usize) -> impl Iterator<Item = usize> {
 pub(super) fn extend_all(
     lattice: MarginLattice,
     names: &[&str],
-    nodes: &[Nodes],
+    nodes: &[HorizonNodes],
     faults: &FaultNetwork,
     settings: &ModelSettings,
     progress: &Progress,
@@ -99,7 +99,7 @@ pub(super) fn extend_all(
         .iter()
         .map(|n| {
             let whole = average(lattice, &n.nodes);
-            let slope = Plane::through(lattice.size, &whole, [0.0; 2]).map_or([0.0; 2], |p| p.slope());
+            let slope = NodePlane::through(lattice.size, &whole, [0.0; 2]).map_or([0.0; 2], |p| p.slope());
             (whole, Extension { radius: settings.slope_radius, noise: NOISE, slope })
         })
         .collect();
@@ -134,7 +134,7 @@ pub(super) fn extend_all(
 }
 
 /// The mean height of all blocks' nodes, NaN without any.
-fn average(lattice: MarginLattice, nodes: &[Node]) -> Vec<f32> {
+fn average(lattice: MarginLattice, nodes: &[InterpretedNode]) -> Vec<f32> {
     let mut sum = vec![(0.0f32, 0.0f32); lattice.len()];
     for node in nodes {
         let (z, n) = &mut sum[node.at as usize];
@@ -147,7 +147,7 @@ fn average(lattice: MarginLattice, nodes: &[Node]) -> Vec<f32> {
 /// The sheet of `block` from the nodes that count for it; `None` with fewer than `fewest`.
 fn extend_one(
     lattice: MarginLattice,
-    nodes: &[Node],
+    nodes: &[InterpretedNode],
     faults: &FaultNetwork,
     block: usize,
     extension: &Extension,
@@ -189,7 +189,7 @@ fn join(lattice: MarginLattice, sheets: &mut [Option<ExtendedSheet>], faults: &F
         return;
     }
     order.sort_by_key(|&b| (std::cmp::Reverse(sheets[b].as_ref().map_or(0, |sheet| sheet.own)), b));
-    let mut shared: Vec<Shared> = Vec::with_capacity(order.len());
+    let mut shared: Vec<LentNodes> = Vec::with_capacity(order.len());
     for (done, &b) in order.iter().enumerate() {
         let lent = borrow(sheets, faults, b, &order[..done], &shared);
         if let Some(sheet) = sheets[b].as_mut().filter(|_| !lent.is_empty()) {
@@ -199,7 +199,7 @@ fn join(lattice: MarginLattice, sheets: &mut [Option<ExtendedSheet>], faults: &F
             // There is data, so it can be continued.
             let _ = extension.extend(lattice.size, field);
         }
-        shared.push(Shared::of(lattice, sheets[b].as_ref(), faults, b));
+        shared.push(LentNodes::of(lattice, sheets[b].as_ref(), faults, b));
     }
     for (done, &b) in order.iter().enumerate() {
         let lent = borrow(sheets, faults, b, &order[done + 1..], &shared[done + 1..]);
@@ -210,13 +210,13 @@ fn join(lattice: MarginLattice, sheets: &mut [Option<ExtendedSheet>], faults: &F
 }
 
 /// What a sheet lends to other blocks: its nodes inside its own block that lie beyond the tip of some fault.
-struct Shared {
+struct LentNodes {
     nodes: Vec<u32>,
     /// The faults that are virtual beside each.
     beyond: Vec<u64>,
 }
 
-impl Shared {
+impl LentNodes {
     fn of(lattice: MarginLattice, sheet: Option<&ExtendedSheet>, faults: &FaultNetwork, block: usize) -> Self {
         let mut shared = Self { nodes: Vec::new(), beyond: Vec::new() };
         for (n, &z) in sheet.iter().flat_map(|sheet| sheet.field.z.iter().enumerate()) {
@@ -239,7 +239,7 @@ fn borrow(
     faults: &FaultNetwork,
     b: usize,
     lenders: &[usize],
-    shared: &[Shared],
+    shared: &[LentNodes],
 ) -> Vec<(usize, f32)> {
     let (Some(sheet), signature) = (&sheets[b], faults.signatures()[b]) else { return Vec::new() };
     let mut is_free: Vec<bool> = sheet.known.iter().map(|known| !known).collect();

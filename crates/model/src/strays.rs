@@ -7,7 +7,7 @@
 //! times as well.
 
 use super::extension::LocalFits;
-use super::lattice::{MarginLattice, Node};
+use super::lattice::{InterpretedNode, MarginLattice};
 
 /// Undoubted nodes are looked for within this many nodes.
 const REACH: i32 = 8;
@@ -17,12 +17,13 @@ const LEAST: f32 = 1.5;
 const NOISE: f32 = 0.25;
 
 /// Removes the strays among the nodes of one horizon (sorted by block); returns how many there were.
-pub(super) fn take_out(lattice: MarginLattice, nodes: &mut Vec<Node>, radius: f32) -> usize {
+pub(super) fn take_out(lattice: MarginLattice, nodes: &mut Vec<InterpretedNode>, radius: f32) -> usize {
     let blocks = nodes.last().map_or(0, |n| usize::from(n.block) + 1);
     if blocks < 2 || !nodes.iter().any(|n| n.doubtful) {
         return 0;
     }
-    let doubtful: Vec<(usize, Node)> = nodes.iter().copied().enumerate().filter(|(_, n)| n.doubtful).collect();
+    let doubtful: Vec<(usize, InterpretedNode)> =
+        nodes.iter().copied().enumerate().filter(|(_, n)| n.doubtful).collect();
     // Misfit of each doubtful node to the surface continued from each block; infinite where that block is not
     // near.
     let mut off = vec![vec![f32::INFINITY; blocks]; doubtful.len()];

@@ -1,15 +1,15 @@
 //! The structural model: sheets, faults and contact rules together.
 
-use super::below::{Below, MOST_HORIZONS};
 use super::contacts::ContactRules;
 use super::lattice::MarginLattice;
-use super::levels::{Given, LevelSurface};
+use super::levels::{LevelSources, LevelSurface};
 use super::network::FaultNetwork;
-use super::nodes::{Nodes, gather};
+use super::nodes::{HorizonNodes, gather};
 use super::order::keep_order;
 use super::report::{ModelError, ModelNote, ModelReport};
 use super::settings::ModelSettings;
 use super::sheets::{ExtendedSheet, extend_all};
+use super::sides::{Below, MOST_HORIZONS};
 use glam::{DMat3, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -73,7 +73,7 @@ pub struct StructuralModel {
     /// `[horizon][block]`; `None` for height fields.
     levels: Vec<Vec<Option<LevelSurface>>>,
     /// Of each block, for finding the sheets near a depth.
-    depths: Vec<Depths>,
+    depths: Vec<SheetDepths>,
     report: ModelReport,
 }
 
@@ -93,14 +93,14 @@ fn span(sheet: &ExtendedSheet) -> [f32; 2] {
 
 /// How deep the sheets of a block reach, so that of many only those near a place are evaluated.
 #[derive(Debug, Clone, PartialEq)]
-struct Depths {
+struct SheetDepths {
     /// The greatest depth of each horizon and all younger ones.
     deepest: Vec<f32>,
     /// The least depth of each horizon and all older ones.
     highest: Vec<f32>,
 }
 
-impl Depths {
+impl SheetDepths {
     /// Of spans, youngest first.
     fn new(spans: &[[f32; 2]]) -> Self {
         let mut deepest: Vec<f32> = spans.iter().map(|span| span[1]).collect();
@@ -144,7 +144,7 @@ impl StructuralModel {
         report.notes.extend(faults.crossing_note(geometry));
         let lattice = MarginLattice::with_margin(size, settings.margin_for(size));
         let rules = ContactRules::new(stratigraphy);
-        let given = Given { geometry, horizons: &ordered, contacts: rules.contacts(), faults: &faults };
+        let given = LevelSources { geometry, horizons: &ordered, contacts: rules.contacts(), faults: &faults };
         let levels = given.levels(progress)?;
         report.notes.extend(levels.notes);
         let is_field = |h: &usize| levels.surfaces[*h].iter().all(Option::is_none);
@@ -154,7 +154,7 @@ impl StructuralModel {
         for horizon in fields.iter().map(|&h| ordered[h]) {
             let found = gather(geometry, lattice, horizon, &faults, settings, &mut report);
             if found.nodes.is_empty() {
-                let Nodes { outside, holes, .. } = found;
+                let HorizonNodes { outside, holes, .. } = found;
                 return Err(ModelError::EmptyHorizon { name: horizon.name.clone(), outside, holes });
             }
             if found.outside > 0 {
@@ -413,13 +413,13 @@ impl StructuralModel {
 }
 
 /// The depths of each block's sheets, of `[horizon][block]`.
-fn depths_of(sheets: &[Vec<ExtendedSheet>], levels: &[Vec<Option<LevelSurface>>], blocks: usize) -> Vec<Depths> {
+fn depths_of(sheets: &[Vec<ExtendedSheet>], levels: &[Vec<Option<LevelSurface>>], blocks: usize) -> Vec<SheetDepths> {
     let of_block = |block: usize| {
         let spans = sheets.iter().zip(levels).map(|(sheets, levels)| match levels[block] {
             None => span(&sheets[block]),
             Some(_) => [f32::NEG_INFINITY, f32::INFINITY],
         });
-        Depths::new(&spans.collect::<Vec<_>>())
+        SheetDepths::new(&spans.collect::<Vec<_>>())
     };
     (0..blocks).map(of_block).collect()
 }

@@ -200,7 +200,7 @@ impl RegionGrid {
         let block = self.region.block;
         let below = |sheet: &SheetRef| match sheet.of {
             SheetSource::Horizon(horizon) => Some(match model.level(horizon, block) {
-                // Regions are told by the trilinear field, whose slopes jump from cell to cell.
+                // The trilinear field decides on regions, whose slopes jump from cell to cell.
                 Some(level) => {
                     let (value, slope) = tricubic::sample(&level.field, p);
                     ((value - level.at) * level.scale_m, slope * level.scale_m)

@@ -2,7 +2,7 @@
 
 use crate::arrays::{array, wrong};
 use crate::refusal;
-use crate::stored::{box_of, info_of};
+use crate::stored::{box_of, info_of, live_of};
 use crate::work::{long, long_of, on, task};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods};
 use project::command::Command;
@@ -193,8 +193,8 @@ impl Project {
     }
 
     /// The live-trace mask of a volume.
-    fn read_live(&self, py: Python<'_>, name: &str) -> PyResult<Vec<bool>> {
-        Ok(self.opened(py, name)?.live().to_vec())
+    fn read_live<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyArray2<bool>>> {
+        live_of(py, &self.opened(py, name)?)
     }
 
     /// A horizon: its sheets, and its surface where it has any shape.

@@ -3,7 +3,7 @@
 use crate::arrays::{array, mask, slice, wrong};
 use crate::refusal;
 use crate::work::{long_of, task};
-use numpy::{PyReadonlyArray2, PyReadonlyArray3};
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::borrow::Cow;
@@ -85,8 +85,14 @@ pub fn box_of<'py>(
 
 /// The live-trace mask, one value a trace, `[inline][crossline]`.
 #[pyfunction]
-pub fn read_live(py: Python<'_>, path: PathBuf) -> PyResult<Vec<bool>> {
-    Ok(StoredVolume::open(&path).map_err(|error| refusal::of(py, error))?.live().to_vec())
+pub fn read_live(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyArray2<bool>>> {
+    live_of(py, &StoredVolume::open(&path).map_err(|error| refusal::of(py, error))?)
+}
+
+/// The same of an open one.
+pub fn live_of<'py>(py: Python<'py>, stored: &StoredVolume) -> PyResult<Bound<'py, PyArray2<bool>>> {
+    let [nx, ny, _] = stored.size(0);
+    stored.live().to_vec().into_pyarray(py).reshape([nx, ny])
 }
 
 /// A volume whose blocks Python supplies.

@@ -1,15 +1,11 @@
-"""Every command has its twin."""
+"""Every change of a project has its method."""
 
 import inspect
 import json
-import os
-import runpy
-import subprocess
-from pathlib import Path
 
 import petroglyph
 import pytest
-from petroglyph import _native, program
+from petroglyph import _native
 from petroglyph._commands import Commands
 
 FIELDS = json.loads(_native.command_fields())
@@ -41,32 +37,6 @@ def test_every_command_has_a_method_with_its_fields(command):
 def test_creating_has_a_function_in_place_of_a_method():
     assert FIELDS["create"] == ["geometry"]
     assert "geometry" in inspect.signature(petroglyph.create).parameters
-
-
-def test_every_command_of_the_command_line_has_a_function():
-    for command in program.commands():
-        name = "_".join(command["words"]).replace("-", "_")
-        function = getattr(program, name, None) or getattr(program, f"{name}_")
-        known = set(inspect.signature(function).parameters)
-        for option in command["options"]:
-            own = option["name"].replace("-", "_")
-            assert option["name"] in ("json", "wait", "version") or own in known or f"{own}_" in known, (name, own)
-
-
-def test_functions_are_what_make_program_writes():
-    maker = runpy.run_path(str(Path(__file__).parent.parent / "make_program.py"))
-    assert maker["OUT"].read_text() == maker["text"](), "run make_program.py again"
-
-
-def test_functions_are_those_of_the_program_that_is_built():
-    path = os.environ.get("PETROGLYPH_PROGRAM")
-    if not path:
-        pytest.skip("PETROGLYPH_PROGRAM names no program to compare with")
-    told = subprocess.run([path, "--help"], capture_output=True, text=True, check=True).stdout
-    first = {command["words"][0] for command in program.commands()}
-    listed = told.split("Commands:")[1].split("Options:")[0].splitlines()
-    words = {line.split()[0] for line in listed if line.startswith("  ") and line[2:3].strip()}
-    assert words - {"help"} == first
 
 
 def test_apply_takes_any_command_and_tells_what_it_did(project):

@@ -7,8 +7,8 @@
 
 use super::capacity;
 use super::error::StoreError;
+use super::file_place::ArrayFiles;
 use super::layout::{ArrayLayout, gather, grid_index};
-use super::placed::ArrayFiles;
 use super::sample::StoredSample;
 use super::shard::{ShardGrid, Shards};
 use rayon::prelude::*;

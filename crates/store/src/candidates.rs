@@ -53,7 +53,7 @@ enum LeafWriter {
 }
 
 /// One level in memory.
-struct Level {
+struct StoredLevel {
     size: [usize; 3],
     distance: Vec<u8>,
     leaf: Vec<u32>,
@@ -66,7 +66,7 @@ pub struct CandidateWriter {
     distance: ArrayWriter<u8>,
     leaf: LeafWriter,
     /// Level 1, once there are slabs.
-    half: Option<Level>,
+    half: Option<StoredLevel>,
 }
 
 impl CandidateWriter {
@@ -118,7 +118,7 @@ impl CandidateWriter {
             self.leaf.write_shard(&index, gather(leaf, &size, &start, edge))?;
             Ok::<(), StoreError>(progress.check()?)
         })?;
-        let half = self.half.get_or_insert_with(|| Level::empty(halved(self.size)));
+        let half = self.half.get_or_insert_with(|| StoredLevel::empty(halved(self.size)));
         let row = half.size[1] * half.size[2];
         let part = first / 2 * row..(first / 2 + lines.div_ceil(2)) * row;
         halve(size, distance, leaf, &mut half.distance[part.clone()], &mut half.leaf[part]);
@@ -136,7 +136,7 @@ impl CandidateWriter {
         progress: &Progress,
     ) -> Result<(), StoreError> {
         let Self { replacement, size, half, .. } = self;
-        let mut half = half.unwrap_or_else(|| Level::empty(halved(size)));
+        let mut half = half.unwrap_or_else(|| StoredLevel::empty(halved(size)));
         let group = replacement.path();
         write_group(group, "pyramid", serde_json::Map::new())?;
         for level in 1..levels(size) {
@@ -240,7 +240,7 @@ fn level_name(level: usize, array: &str) -> String {
     if level == 0 { array.to_owned() } else { format!("pyramid/{level}/{array}") }
 }
 
-impl Level {
+impl StoredLevel {
     fn empty(size: [usize; 3]) -> Self {
         let count = size.iter().product();
         Self { size, distance: vec![BEYOND; count], leaf: vec![0; count] }

@@ -18,7 +18,7 @@ const KIND: &str = "fault";
 
 /// The file's content.
 #[derive(Deserialize)]
-struct Document {
+struct FaultDocument {
     kind: String,
     version: u64,
     name: String,
@@ -88,7 +88,7 @@ pub fn read_fault(path: &Path) -> Result<Fault, StoreError> {
     let text =
         file::read_text(path, file::MAX_INTERPRETATION_BYTES).map_err(|source| StoreError::io("read", path, source))?;
     let wrong = |reason| StoreError::WrongKind { path: path.to_owned(), expected: "a fault", reason };
-    let document: Document = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+    let document: FaultDocument = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     if document.kind != KIND {
         return Err(wrong(format!("it says that it is {:?}", document.kind)));
     }

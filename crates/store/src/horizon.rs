@@ -24,7 +24,7 @@ const KIND: &str = "horizon";
 
 /// Facts of a horizon.
 #[derive(Serialize, Deserialize)]
-struct Header {
+struct HorizonHeader {
     name: String,
     sheets: Vec<SheetHeader>,
     /// Counts of corners and triangles of a horizon of any shape.
@@ -63,7 +63,7 @@ pub fn write_horizon(path: &Path, horizon: &Horizon, progress: &Progress) -> Res
     let replacement = Replacement::of(path)?;
     let group = replacement.path();
     let surface = horizon.surface.as_ref().map(|mesh| [mesh.vertices.len(), mesh.triangles.len()]);
-    write_header(group, KIND, &Header { name: horizon.name.clone(), sheets, surface })?;
+    write_header(group, KIND, &HorizonHeader { name: horizon.name.clone(), sheets, surface })?;
     for (n, sheet) in horizon.sheets.iter().enumerate() {
         write_group(group, &n.to_string(), serde_json::Map::new())?;
         let layout = || ArrayLayout::map(sheet.grid.count, ["inline", "crossline"]);
@@ -133,7 +133,7 @@ fn check_vertices(path: &Path, mesh: &TriangleMesh) -> Result<(), StoreError> {
 /// # Errors
 /// [`StoreError`] when it is missing, of another kind, newer than this program or damaged.
 pub fn read_horizon(path: &Path, progress: &Progress) -> Result<Horizon, StoreError> {
-    let header: Header = read_header(path, KIND, "a horizon")?;
+    let header: HorizonHeader = read_header(path, KIND, "a horizon")?;
     let mut sheets = Vec::with_capacity(header.sheets.len());
     for (n, SheetHeader { block, grid }) in header.sheets.into_iter().enumerate() {
         let open = |what: &str| {

@@ -13,7 +13,7 @@ use super::error::StoreError;
 use super::header::write_header;
 use super::layout::{ArrayLayout, BRICK};
 use super::pyramid::{Halving, LevelBox, halved, needed};
-use super::ranges::{BrickRanges, IndexedRanges, Samples};
+use super::ranges::{BrickRanges, IndexedRanges, SampleBox};
 use super::replacement::Replacement;
 use super::sample::StoredSample;
 use super::shard::{ShardGrid, Shards};
@@ -291,7 +291,8 @@ impl Ingest<'_> {
                     let (start, extent) = grid.extent(place);
                     let values = shards.read_box::<T>(start, extent)?;
                     ranges.take(
-                        Samples { values: &values, first: start, size: extent }.ranges(start, extent, &self.mask, size),
+                        SampleBox { values: &values, first: start, size: extent }
+                            .ranges(start, extent, &self.mask, size),
                     );
                     self.progress.step(1)?;
                 }
@@ -310,7 +311,7 @@ impl Ingest<'_> {
             if values.len() != expected {
                 return Err(StoreError::SizeMismatch { what: "a block of samples", expected, found: values.len() });
             }
-            let samples = Samples { values: &values, first, size: block_size };
+            let samples = SampleBox { values: &values, first, size: block_size };
             for places in places.chunks(together) {
                 let found: Vec<IndexedRanges> = places
                     .par_iter()
@@ -359,12 +360,12 @@ impl Ingest<'_> {
                     let (start, part) = grid.extent(place);
                     if shards.is_whole::<T>(place) {
                         let values = shards.read_box::<T>(start, part)?;
-                        let samples = Samples { values: &values, first: start, size: part };
+                        let samples = SampleBox { values: &values, first: start, size: part };
                         return Ok((true, samples.ranges(start, part, mask, size)));
                     }
                     let found = rooms.with(|room| {
                         room.fill(&source, [fine_size, size], [start, part], [fine_mask, mask])?;
-                        let samples = Samples { values: &room.coarse, first: start, size: part };
+                        let samples = SampleBox { values: &room.coarse, first: start, size: part };
                         write_shard(&grid, place, &samples, mask, &mut room.bytes)
                     });
                     Ok((false, found?))
@@ -385,7 +386,7 @@ impl Ingest<'_> {
 pub(super) fn write_shard<T: StoredSample + Sample>(
     grid: &ShardGrid,
     place: [usize; 3],
-    samples: &Samples<'_, T>,
+    samples: &SampleBox<'_, T>,
     mask: &[bool],
     bytes: &mut Vec<u8>,
 ) -> Result<IndexedRanges, StoreError> {

@@ -40,21 +40,21 @@
 //! ```
 
 mod array;
+mod block_file;
 mod candidates;
 mod capacity;
 mod coordinates;
 mod error;
 mod fault;
+mod file_place;
 mod header;
 mod horizon;
 mod ingest;
 mod layout;
-mod linked;
-mod linking;
-mod packed;
+mod links;
+mod object_storage;
 mod parameterization;
 mod parts;
-mod placed;
 mod pyramid;
 mod ranges;
 mod replacement;
@@ -76,7 +76,7 @@ pub use header::VERSION;
 pub use horizon::{read_horizon, write_horizon};
 pub use ingest::{Ingested, MEMORY_BYTES, resume_blocks, write_blocks, write_volume};
 pub use layout::{ArrayLayout, BRICK};
-pub use linking::link_volume;
+pub use links::link_volume;
 pub use parameterization::{
     NO_ID, ParameterizationVolumes, ParameterizationWriter, StoredParameterization, write_parameterization,
 };

@@ -27,7 +27,7 @@ const ARRAYS: [&str; 5] = ["i", "j", "k", "layer", "block"];
 
 /// Facts of a parameterization.
 #[derive(Serialize, Deserialize)]
-struct Header {
+struct ParameterizationHeader {
     size: [usize; 3],
     key: String,
 }
@@ -95,7 +95,7 @@ impl ParameterizationWriter {
     /// # Errors
     /// The disk does not take it.
     pub fn create(group: &Path, size: [usize; 3], counts: [usize; 2], key: &str) -> Result<Self, StoreError> {
-        write_header(group, KIND, &Header { size, key: key.to_owned() })?;
+        write_header(group, KIND, &ParameterizationHeader { size, key: key.to_owned() })?;
         let layout = ArrayLayout::volume(size);
         let field = |name| ArrayWriter::create(group, name, layout.clone(), f32::NAN);
         let ids = |name, count| -> Result<IdWriter, StoreError> {
@@ -115,7 +115,7 @@ impl ParameterizationWriter {
     /// # Errors
     /// It was not begun, or its metadata are damaged.
     pub fn open(group: &Path) -> Result<Self, StoreError> {
-        let Header { size, .. } = read_header(group, KIND, "a parameterization")?;
+        let ParameterizationHeader { size, .. } = read_header(group, KIND, "a parameterization")?;
         let (layout, apart) = (ArrayLayout::volume(size), new_apart(group));
         let field = |name| ArrayWriter::of_created(group, name, layout.clone(), f32::NAN, Some(&apart));
         let ids = |name| -> Result<IdWriter, StoreError> {
@@ -230,7 +230,7 @@ impl IdWriter {
 
 /// A parameterization on disk.
 pub struct StoredParameterization {
-    header: Header,
+    header: ParameterizationHeader,
     fields: [StoredArray; 3],
     ids: [StoredArray; 2],
 }
@@ -241,7 +241,7 @@ impl StoredParameterization {
     /// # Errors
     /// [`StoreError`] when it is missing, of another kind, newer than this program or damaged.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
-        let header: Header = read_header(path, KIND, "a parameterization")?;
+        let header: ParameterizationHeader = read_header(path, KIND, "a parameterization")?;
         let open = |name: &str| {
             let array = StoredArray::open(path, name)?;
             if array.shape() != header.size {
@@ -279,7 +279,7 @@ impl StoredParameterization {
         if let Some(other) = fields.iter().chain(&ids).find(|array| array.shape() != size) {
             return Err(wrong(format!("{} has {:?} samples, i has {size:?}", other.name(), other.shape())));
         }
-        Ok(Self { header: Header { size, key: String::new() }, fields, ids })
+        Ok(Self { header: ParameterizationHeader { size, key: String::new() }, fields, ids })
     }
 
     /// Voxels.

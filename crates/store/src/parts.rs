@@ -1,4 +1,4 @@
-//! A volume that several processes write together, each file by whoever is told to: the bytes are those of
+//! A volume that several processes write together, each file by the process that it is assigned to: the bytes are those of
 //! [`write_blocks`](super::write_blocks), whoever writes what, in whatever order and however often.
 //!
 //! ```text
@@ -20,7 +20,7 @@ use super::header::read_header;
 use super::ingest::{LevelRoom, MARKER, every_second, is_unfinished, mask_of, write_frame, write_shard};
 use super::layout::{BRICK, grid_index};
 use super::pyramid::halved;
-use super::ranges::{BrickRanges, IndexedRanges, Samples};
+use super::ranges::{BrickRanges, IndexedRanges, SampleBox};
 use super::sample::StoredSample;
 use super::shard::{PARTIAL, ShardGrid, Shards};
 use super::volume_info::{KIND, VolumeInfo};
@@ -173,7 +173,7 @@ impl VolumeParts {
         if samples.len() != expected {
             return Err(StoreError::SizeMismatch { what: "a file of the volume", expected, found: samples.len() });
         }
-        write_shard(&grid, place, &Samples { values: samples, first, size }, &self.levels[0].1, &mut Vec::new())
+        write_shard(&grid, place, &SampleBox { values: samples, first, size }, &self.levels[0].1, &mut Vec::new())
     }
 
     /// Makes the file at `place` of a further level from the level before, and returns the ranges of its bricks.
@@ -264,7 +264,7 @@ fn halve_as<T: StoredSample + Sample>(
     let (start, part) = grid.extent(place);
     let mut room = LevelRoom::<T>::default();
     room.fill(&source, [*fine_size, *size], [start, part], [fine_mask, mask])?;
-    let samples = Samples { values: &room.coarse, first: start, size: part };
+    let samples = SampleBox { values: &room.coarse, first: start, size: part };
     write_shard(&grid, place, &samples, mask, &mut room.bytes)
 }
 

@@ -39,7 +39,7 @@ pub(super) fn needed(start: usize, count: usize, fine_count: usize) -> (usize, u
 
 /// What a row of samples holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Row {
+enum RowContent {
     /// Numbers throughout.
     Whole,
     /// Nothing; its values are not defined.
@@ -48,7 +48,7 @@ enum Row {
     Mixed,
 }
 
-impl Row {
+impl RowContent {
     fn of(values: &[f32]) -> Self {
         match values.iter().map(|value| u32::from(value.is_nan())).sum::<u32>() as usize {
             0 => Self::Whole,
@@ -63,17 +63,17 @@ impl Row {
 struct Rows {
     length: usize,
     values: Vec<f32>,
-    kinds: Vec<Row>,
+    kinds: Vec<RowContent>,
 }
 
 impl Rows {
     fn reset(&mut self, count: usize, length: usize) {
         self.length = length;
         self.values.resize(count * length, 0.0);
-        self.kinds.resize(count, Row::Missing);
+        self.kinds.resize(count, RowContent::Missing);
     }
 
-    fn get(&self, row: usize) -> (&[f32], Row) {
+    fn get(&self, row: usize) -> (&[f32], RowContent) {
         (&self.values[row * self.length..(row + 1) * self.length], self.kinds[row])
     }
 }
@@ -120,9 +120,10 @@ impl Halving {
         let mut done = 0;
         for x in 0..nx {
             for y in 0..ny {
-                let kind = if supply(x, y, &mut self.trace) { Row::of(&self.trace) } else { Row::Missing };
+                let kind =
+                    if supply(x, y, &mut self.trace) { RowContent::of(&self.trace) } else { RowContent::Missing };
                 self.along_z.kinds[y] = kind;
-                if kind != Row::Missing {
+                if kind != RowContent::Missing {
                     self.halve_trace(y, middle(2, 0), kind);
                 }
             }
@@ -146,7 +147,7 @@ impl Halving {
     }
 
     /// Halves the trace into row `y`; `first` is its sample at which the first one of the result lies.
-    fn halve_trace(&mut self, y: usize, first: usize, kind: Row) {
+    fn halve_trace(&mut self, y: usize, first: usize, kind: RowContent) {
         let length = self.along_z.length;
         let out = &mut self.along_z.values[y * length..(y + 1) * length];
         let trace = &self.trace;
@@ -154,7 +155,7 @@ impl Halving {
         // Results whose samples are all there.
         let low = REACH.saturating_sub(first).div_ceil(2).min(length);
         let high = match trace.len().checked_sub(REACH + first) {
-            Some(reached @ 1..) if kind == Row::Whole => ((reached - 1) / 2 + 1).clamp(low, length),
+            Some(reached @ 1..) if kind == RowContent::Whole => ((reached - 1) / 2 + 1).clamp(low, length),
             _ => low,
         };
         out[..low].iter_mut().enumerate().for_each(|(n, out)| *out = single(n));
@@ -173,7 +174,7 @@ impl Halving {
                 *out = whole([*a, *b, *middle, *d, *e]);
             }
         }
-        self.along_z.kinds[y] = if kind == Row::Whole { Row::Whole } else { Row::of(out) };
+        self.along_z.kinds[y] = if kind == RowContent::Whole { RowContent::Whole } else { RowContent::of(out) };
     }
 }
 
@@ -204,24 +205,24 @@ fn weighted(samples: [Option<f32>; 5]) -> f32 {
 }
 
 /// The filter across rows, those that there are; what the result holds.
-fn filter(out: &mut [f32], rows: [Option<(&[f32], Row)>; 5]) -> Row {
-    let rows = rows.map(|row| row.filter(|(_, kind)| *kind != Row::Missing));
+fn filter(out: &mut [f32], rows: [Option<(&[f32], RowContent)>; 5]) -> RowContent {
+    let rows = rows.map(|row| row.filter(|(_, kind)| *kind != RowContent::Missing));
     if rows[MIDDLE].is_none() {
         out.fill(f32::NAN);
-        return Row::Missing;
+        return RowContent::Missing;
     }
-    if rows.iter().flatten().any(|(_, kind)| *kind == Row::Mixed) {
+    if rows.iter().flatten().any(|(_, kind)| *kind == RowContent::Mixed) {
         for (n, out) in out.iter_mut().enumerate() {
             *out = weighted(rows.map(|row| row.map(|(values, _)| values[n])));
         }
-        return Row::of(out);
+        return RowContent::of(out);
     }
     if let [Some((a, _)), Some((b, _)), Some((c, _)), Some((d, _)), Some((e, _))] = rows {
         let sides = a.iter().zip(b).zip(d.iter().zip(e));
         for ((out, middle), ((a, b), (d, e))) in out.iter_mut().zip(c).zip(sides) {
             *out = whole([*a, *b, *middle, *d, *e]);
         }
-        return Row::Whole;
+        return RowContent::Whole;
     }
     out.fill(0.0);
     let mut weights = 0.0;
@@ -230,7 +231,7 @@ fn filter(out: &mut [f32], rows: [Option<(&[f32], Row)>; 5]) -> Row {
         weights += weight;
     }
     out.iter_mut().for_each(|out| *out /= weights);
-    Row::Whole
+    RowContent::Whole
 }
 
 #[cfg(test)]

@@ -13,13 +13,13 @@ use survey::sample::Sample;
 pub type IndexedRanges = Vec<(usize, [f32; 2])>;
 
 /// A box of samples whose first voxel is `first`.
-pub(super) struct Samples<'a, T> {
+pub(super) struct SampleBox<'a, T> {
     pub values: &'a [T],
     pub first: [usize; 3],
     pub size: [usize; 3],
 }
 
-impl<T: StoredSample + Sample> Samples<'_, T> {
+impl<T: StoredSample + Sample> SampleBox<'_, T> {
     /// Least and greatest live sample of each brick of the box from `start` of size `part`, with the brick's
     /// number in a volume of `volume` voxels; `start` is a multiple of the brick. NaN is ignored.
     pub fn ranges(&self, start: [usize; 3], part: [usize; 3], mask: &[bool], volume: [usize; 3]) -> IndexedRanges {
@@ -117,9 +117,9 @@ mod tests {
         values[69] = 9.0;
         values[2 * 70 + 5] = 1000.0;
         let mask = [true, true, false, true, true, false];
-        let found = Samples { values: &values, first: [0; 3], size }.ranges([0; 3], size, &mask, size);
+        let found = SampleBox { values: &values, first: [0; 3], size }.ranges([0; 3], size, &mask, size);
         assert_eq!(found, [(0, [-5.0, 1.0]), (1, [1.0, 9.0])]);
-        let dead = Samples { values: &values, first: [0; 3], size }.ranges([0; 3], size, &[false; 6], size);
+        let dead = SampleBox { values: &values, first: [0; 3], size }.ranges([0; 3], size, &[false; 6], size);
         let mut all = BrickRanges::of(size);
         all.take(dead);
         assert!(all.ranges.as_flattened().iter().all(|v| v.is_nan()));

@@ -3,7 +3,7 @@
 //! ```text
 //! FOLDER/ARRAY/PART     the bytes, and their crc32c
 //! FOLDER/.system        the start of the system in which they were written
-//! FOLDER/.packed        where it is there, the bytes are packed ([`crate::packed`])
+//! FOLDER/.packed        where it is there, the bytes are packed ([`crate::block_file`])
 //! ```
 //!
 //! Packed parts take four fifths of the disk, and an extraction with them a quarter more processor time: they
@@ -13,8 +13,8 @@
 //! flushed: after a power cut nothing of them is believed, which the number that the system gives itself at its start
 //! tells.
 
+use super::block_file::{self, PackedFile};
 use super::error::StoreError;
-use super::packed::{self, PackedFile};
 use std::collections::VecDeque;
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -171,7 +171,7 @@ impl NamedArrays for FolderArrays {
             use io::Write;
             let mut file = fs::File::create(&partial)?;
             if self.is_packed {
-                return packed::write(&mut file, bytes);
+                return block_file::write(&mut file, bytes);
             }
             file.write_all(bytes)?;
             file.write_all(&crc32c::crc32c(bytes).to_le_bytes())

@@ -139,7 +139,7 @@ impl ShardGrid {
         let (start, _) = self.extent(index);
         let mut entries: Vec<u64> = Vec::with_capacity(2 * nx * ny * nz);
         let mut sums: Vec<u32> = vec![0; nx * ny * nz * sums_of(self.chunk)];
-        let advance = Advance::by(self.chunk[1] * self.chunk[2] * size_of::<T>());
+        let advance = CrcAdvance::by(self.chunk[1] * self.chunk[2] * size_of::<T>());
         let chunk_bytes = self.samples_in_chunk() * size_of::<T>();
         let most = self.file_bytes::<T>();
         if bytes.len() < most {
@@ -201,7 +201,7 @@ fn sums_of(edges: [usize; 3]) -> usize {
 
 /// The checksum of a chunk of `edges`; those of its planes of one inline, then of its crosslines, go to `sums`.
 /// `advance` is by a plane.
-fn sums_of_planes(chunk: &[u8], edges: [usize; 3], advance: &Advance, sums: &mut [u32]) -> u32 {
+fn sums_of_planes(chunk: &[u8], edges: [usize; 3], advance: &CrcAdvance, sums: &mut [u32]) -> u32 {
     let (of_x, of_y) = sums.split_at_mut(edges[0]);
     let plane_bytes = chunk.len() / edges[0];
     let rows_bytes = plane_bytes / edges[1] * CROSSLINES_TOGETHER;
@@ -219,9 +219,9 @@ fn sums_of_planes(chunk: &[u8], edges: [usize; 3], advance: &Advance, sums: &mut
 
 /// What a checksum becomes when a fixed count of bytes follows: crc(a, b) = M·crc(a) + crc(b) over the field of
 /// two elements, where M depends on the length of b alone.
-struct Advance([u32; 32]);
+struct CrcAdvance([u32; 32]);
 
-impl Advance {
+impl CrcAdvance {
     fn by(bytes: usize) -> Self {
         Self(std::array::from_fn(|bit| crc32c::crc32c_combine(1 << bit, 0, bytes)))
     }

@@ -9,14 +9,14 @@ use rayon::prelude::*;
 use std::path::Path;
 use survey::progress::Progress;
 
-/// How many places of damage are told one by one.
+/// How many places of damage are named one by one.
 const TOLD: usize = 4;
 
 /// What is damaged in the arrays of a group, in their order.
 #[derive(Debug, Default)]
-pub(super) struct Findings(Vec<(String, String)>);
+pub(super) struct DamageFindings(Vec<(String, String)>);
 
-impl Findings {
+impl DamageFindings {
     /// Notes damage, and files that cannot be read.
     ///
     /// # Errors
@@ -57,13 +57,13 @@ impl StoredArray {
     /// Reads every file of the array, whatever its type, and verifies every checksum. Memory: one file for each
     /// thread.
     pub(super) fn verify(&self, progress: &Progress) -> Result<(), StoreError> {
-        let mut findings = Findings::default();
+        let mut findings = DamageFindings::default();
         self.find_damage(&mut findings, progress)?;
         findings.into_result(self.group())
     }
 
     /// The same, with the damage of several arrays in one account.
-    pub(super) fn find_damage(&self, findings: &mut Findings, progress: &Progress) -> Result<(), StoreError> {
+    pub(super) fn find_damage(&self, findings: &mut DamageFindings, progress: &Progress) -> Result<(), StoreError> {
         match self.type_name().as_str() {
             "int8" => self.find_damage_as::<i8>(findings, progress),
             "uint8" => self.find_damage_as::<u8>(findings, progress),
@@ -77,7 +77,11 @@ impl StoredArray {
         }
     }
 
-    fn find_damage_as<T: StoredSample>(&self, findings: &mut Findings, progress: &Progress) -> Result<(), StoreError> {
+    fn find_damage_as<T: StoredSample>(
+        &self,
+        findings: &mut DamageFindings,
+        progress: &Progress,
+    ) -> Result<(), StoreError> {
         let edge = self.file_shape()?;
         let counts: Vec<usize> = self.shape().iter().zip(&edge).map(|(&n, &edge)| n.div_ceil(edge)).collect();
         let count: usize = counts.iter().product();

@@ -22,10 +22,10 @@ use super::error::StoreError;
 use super::header::read_header;
 use super::ingest::is_unfinished;
 use super::layout::BRICK;
-use super::linked;
+use super::object_storage;
 use super::pyramid::halved;
 use super::sample::StoredSample;
-use super::verify::Findings;
+use super::verify::DamageFindings;
 use super::volume_info::{KIND, VolumeInfo};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -43,7 +43,7 @@ pub struct StoredVolume {
     levels: Vec<StoredArray>,
     live: Vec<bool>,
     /// Where its bricks lie, if not beside the rest.
-    link: Option<linked::Link>,
+    link: Option<object_storage::Link>,
 }
 
 impl StoredVolume {
@@ -57,7 +57,7 @@ impl StoredVolume {
         }
         let info: VolumeInfo = read_header(path, KIND, "a volume")?;
         info.geometry.validate().map_err(|source| StoreError::Geometry { path: path.to_owned(), source })?;
-        let link = linked::Link::read(path)?;
+        let link = object_storage::Link::read(path)?;
         let array = |name: &str| match &link {
             Some(link) => StoredArray::open_linked(path, name, link.files(name)?),
             None => StoredArray::open(path, name),
@@ -107,7 +107,7 @@ impl StoredVolume {
     /// Where its bricks lie in object storage.
     #[cfg(feature = "remote")]
     pub(super) fn linked_url(&self) -> Option<&str> {
-        self.link.as_ref().map(linked::Link::url)
+        self.link.as_ref().map(object_storage::Link::url)
     }
 
     /// Count of levels, the full volume included.
@@ -254,7 +254,7 @@ impl StoredVolume {
     ///
     /// Of a linked volume only what lies here is read.
     pub fn verify(&self, progress: &Progress) -> Result<(), StoreError> {
-        let mut findings = Findings::default();
+        let mut findings = DamageFindings::default();
         if self.link.is_none() {
             self.levels.iter().try_for_each(|array| array.find_damage(&mut findings, progress))?;
         }

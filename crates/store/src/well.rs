@@ -16,7 +16,7 @@ const KIND: &str = "well";
 
 /// The file's content.
 #[derive(Deserialize)]
-struct Document {
+struct WellDocument {
     kind: String,
     version: u64,
     well: Well,
@@ -81,7 +81,7 @@ pub fn read_well(path: &Path) -> Result<Well, StoreError> {
     let text =
         file::read_text(path, file::MAX_INTERPRETATION_BYTES).map_err(|source| StoreError::io("read", path, source))?;
     let wrong = |reason| StoreError::WrongKind { path: path.to_owned(), expected: "a well", reason };
-    let document: Document = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+    let document: WellDocument = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     if document.kind != KIND {
         return Err(wrong(format!("it says that it is {:?}", document.kind)));
     }

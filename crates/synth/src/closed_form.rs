@@ -26,7 +26,7 @@ const FAULT_NODES: [usize; 2] = [17, 17];
 
 /// One horizon before faulting, in metric space.
 #[derive(Debug, Clone, PartialEq)]
-enum Surface {
+enum UnfaultedHorizon {
     /// depth = at_origin + slope · (u, v).
     Plane { at_origin: f64, slope: DVec2 },
     /// The upper half of a cylinder: depth = axis.depth − √(radius² − across²), across = (u, v) · direction −
@@ -36,7 +36,7 @@ enum Surface {
     Bed { beds: FoldedBeds, strat_m: f64 },
 }
 
-impl Surface {
+impl UnfaultedHorizon {
     /// Depth at (u, v), m; NaN beside a cylinder.
     fn depth_m(&self, place: DVec2) -> f64 {
         match self {
@@ -109,7 +109,7 @@ pub struct ClosedForm {
     pub horizons: Vec<Horizon>,
     /// Empty, or the planar fault "F", which reaches from one side face of the volume to the other.
     pub faults: Vec<Fault>,
-    surfaces: Vec<Surface>,
+    surfaces: Vec<UnfaultedHorizon>,
     erosional: Option<usize>,
     fault: Option<PlanarFault>,
 }
@@ -124,7 +124,7 @@ impl ClosedForm {
     /// `direction_deg`, measured from world +X to +Y.
     pub fn dipping(geometry: &SurveyGeometry, samples: &[f64], dip_deg: f64, direction_deg: f64) -> Self {
         let slope = DVec2::from_angle(direction_deg.to_radians()) * dip_deg.to_radians().tan();
-        let plane = |sample: &f64| Surface::Plane {
+        let plane = |sample: &f64| UnfaultedHorizon::Plane {
             at_origin: sample * geometry.sample_m() - slope.dot(middle(geometry)),
             slope,
         };
@@ -139,7 +139,7 @@ impl ClosedForm {
         let half_width = 0.5 * (geometry.inlines.count as f64 - 1.0) * geometry.inline_vector.dot(direction).abs();
         let deepest = samples.iter().copied().fold(0.0, f64::max) * geometry.sample_m();
         let axis_depth = deepest + half_width / dip_deg.to_radians().sin();
-        let cylinder = |sample: &f64| Surface::Cylinder {
+        let cylinder = |sample: &f64| UnfaultedHorizon::Cylinder {
             direction,
             axis: direction.dot(middle(geometry)),
             axis_depth,
@@ -165,7 +165,7 @@ impl ClosedForm {
             },
             thickening: Undulation { waves: vec![wave(0.9, 0.9, 2.0, &|_| thickening)] },
         };
-        let bed = |sample: &f64| Surface::Bed { beds: beds.clone(), strat_m: sample * geometry.sample_m() };
+        let bed = |sample: &f64| UnfaultedHorizon::Bed { beds: beds.clone(), strat_m: sample * geometry.sample_m() };
         Self::of(geometry, samples.iter().map(bed).collect(), None)
     }
 
@@ -178,7 +178,8 @@ impl ClosedForm {
         dip_deg: f64,
         direction_deg: f64,
     ) -> Self {
-        let mut surfaces = vec![Surface::Plane { at_origin: base_sample * geometry.sample_m(), slope: DVec2::ZERO }];
+        let mut surfaces =
+            vec![UnfaultedHorizon::Plane { at_origin: base_sample * geometry.sample_m(), slope: DVec2::ZERO }];
         surfaces.extend(Self::dipping(geometry, samples, dip_deg, direction_deg).surfaces);
         Self::of(geometry, surfaces, Some(0))
     }
@@ -197,7 +198,7 @@ impl ClosedForm {
     }
 
     /// Puts the parts together.
-    fn of(geometry: &SurveyGeometry, surfaces: Vec<Surface>, erosional: Option<usize>) -> Self {
+    fn of(geometry: &SurveyGeometry, surfaces: Vec<UnfaultedHorizon>, erosional: Option<usize>) -> Self {
         let contact = |h| if erosional == Some(h) { Contact::Erosional } else { Contact::Conformable };
         let named = |h| StratigraphicHorizon { name: format!("H{}", h + 1), contact: contact(h) };
         let stratigraphy = Stratigraphy { horizons: (0..surfaces.len()).map(named).collect(), layer_names: Vec::new() };
@@ -291,9 +292,9 @@ fn middle(geometry: &SurveyGeometry) -> DVec2 {
 }
 
 /// k between two parallel surfaces and where the isocurve through `p` crosses the middle surface; metric.
-fn parallel_k(top: &Surface, bottom: &Surface, p: DVec3) -> Option<(f64, DVec3)> {
+fn parallel_k(top: &UnfaultedHorizon, bottom: &UnfaultedHorizon, p: DVec3) -> Option<(f64, DVec3)> {
     match (top, bottom) {
-        (Surface::Plane { slope, .. }, Surface::Plane { slope: other, .. }) if slope == other => {
+        (UnfaultedHorizon::Plane { slope, .. }, UnfaultedHorizon::Plane { slope: other, .. }) if slope == other => {
             let (top_m, bottom_m) = (top.depth_m(p.truncate()), bottom.depth_m(p.truncate()));
             let k = (bottom_m - p.z) / (bottom_m - top_m);
             // Down the common normal (−slope, 1)/|…|, a vertical gap g is the distance g/|…|.
@@ -302,8 +303,8 @@ fn parallel_k(top: &Surface, bottom: &Surface, p: DVec3) -> Option<(f64, DVec3)>
             Some((k, p + normal * gap / normal.length_squared()))
         }
         (
-            Surface::Cylinder { direction, axis, axis_depth, radius: outer },
-            Surface::Cylinder { axis_depth: other, radius: inner, .. },
+            UnfaultedHorizon::Cylinder { direction, axis, axis_depth, radius: outer },
+            UnfaultedHorizon::Cylinder { axis_depth: other, radius: inner, .. },
         ) if axis_depth == other => {
             let across = direction.dot(p.truncate()) - axis;
             let radius = across.hypot(axis_depth - p.z);

@@ -83,20 +83,20 @@ pub(super) fn design(settings: &SynthSettings) -> Result<SynthTruth, SynthError>
     let wavelength_m = (settings.wavelength_samples * step_m.z).min(extent.z / WAVELENGTHS_IN_DEPTH);
 
     let mut draws = Draws::new(settings.seed, 1);
-    let mut waves = |designs: &[WaveDesign], relief: Relief| Undulation {
+    let mut waves = |designs: &[WaveDesign], relief: UndulationMeasure| Undulation {
         waves: designs.iter().map(|design| wave(design, relief, scale, &mut draws)).collect(),
     };
     let at = |fraction: f64| fraction * extent.z;
     let base_m = at(UNCONFORMITY);
     let young_beds = FoldedBeds {
         pivot_m: base_m,
-        relief: waves(&YOUNG_RELIEF, Relief::Metres),
-        thickening: waves(&YOUNG_THICKENING, Relief::Fraction),
+        relief: waves(&YOUNG_RELIEF, UndulationMeasure::Metres),
+        thickening: waves(&YOUNG_THICKENING, UndulationMeasure::Fraction),
     };
     let old_beds = FoldedBeds {
         pivot_m: at(0.62),
-        relief: waves(&OLD_RELIEF, Relief::Metres),
-        thickening: waves(&OLD_THICKENING, Relief::Fraction),
+        relief: waves(&OLD_RELIEF, UndulationMeasure::Metres),
+        thickening: waves(&OLD_THICKENING, UndulationMeasure::Fraction),
     };
 
     let mut beds = Draws::new(settings.seed, 2);
@@ -131,7 +131,7 @@ pub(super) fn design(settings: &SynthSettings) -> Result<SynthTruth, SynthError>
 
 /// What an undulation measures.
 #[derive(Clone, Copy)]
-enum Relief {
+enum UndulationMeasure {
     /// Metres; the strength is a slope.
     Metres,
     /// A fraction of the thickness; the strength is the amplitude.
@@ -139,12 +139,12 @@ enum Relief {
 }
 
 /// One wave, its direction turned by up to 8° and its phase drawn.
-fn wave(design: &WaveDesign, relief: Relief, scale: f64, draws: &mut Draws) -> Wave {
+fn wave(design: &WaveDesign, relief: UndulationMeasure, scale: f64, draws: &mut Draws) -> Wave {
     let angle = (design.direction_deg + draws.between(-8.0, 8.0)).to_radians();
     let number = TAU / (design.wavelength * scale);
     let amplitude = match relief {
-        Relief::Metres => design.strength / number,
-        Relief::Fraction => design.strength,
+        UndulationMeasure::Metres => design.strength / number,
+        UndulationMeasure::Fraction => design.strength,
     };
     Wave { amplitude, wave_vector: DVec2::from_angle(angle) * number, phase: draws.between(0.0, TAU) }
 }

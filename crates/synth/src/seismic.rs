@@ -51,7 +51,7 @@ pub struct SeismicLines<'a> {
 
 /// Noise and the factor that gives it its level.
 struct ScaledNoise {
-    noise: Noise,
+    noise: BandNoise,
     scale: f32,
 }
 
@@ -65,7 +65,7 @@ impl<'a> SeismicLines<'a> {
     ) -> Result<Self, Cancelled> {
         let Some(snr) = snr else { return Ok(Self { truth, noise: None }) };
         let [nx, ny, nz] = truth.size;
-        let mut noise = Noise::new(truth, seed);
+        let mut noise = BandNoise::new(truth, seed);
         let (mut signal_squares, mut noise_squares) = (Vec::with_capacity(nx), Vec::with_capacity(nx));
         let squares = |values: &[f32]| values.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>();
         progress.begin("noise", nx as u64);
@@ -143,7 +143,7 @@ fn root_mean_square(line_sums: &[f64], count: usize) -> f64 {
 
 /// Noise without its level: white, filtered along z and along y, line by line; smoothed across inlines when it is asked
 /// for.
-struct Noise {
+struct BandNoise {
     size: [usize; 3],
     key: u64,
     wavelet: Vec<f32>,
@@ -155,7 +155,7 @@ struct Noise {
     is_kept: bool,
 }
 
-impl Noise {
+impl BandNoise {
     fn new(truth: &SynthTruth, seed: u64) -> Self {
         let wavelength = truth.wavelength_m / truth.step_m.z;
         let reach = (REACH * wavelength).ceil() as usize;
@@ -170,7 +170,7 @@ impl Noise {
         }
     }
 
-    /// Makes the lines that [`Noise::across`] needs for these inlines, and forgets others.
+    /// Makes the lines that [`BandNoise::across`] needs for these inlines, and forgets others.
     fn make(&mut self, inlines: &Range<usize>) {
         let reach = self.weights.len() / 2;
         // Lines beyond the outer boundary are mirrored into this range.

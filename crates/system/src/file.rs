@@ -20,7 +20,7 @@ pub const MAX_DOCUMENT_BYTES: u64 = 64 << 20;
 /// Most bytes of an interpretation: a horizon, a fault, a well, proposals.
 pub const MAX_INTERPRETATION_BYTES: u64 = 1 << 30;
 
-/// What the system knows of an ordinary file. It is told by its kind before it is opened, since opening a
+/// What the system knows of an ordinary file. Its kind is known before it is opened, since opening a
 /// pipe waits.
 ///
 /// # Errors

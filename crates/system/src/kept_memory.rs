@@ -32,7 +32,7 @@ static WITHIN: AtomicUsize = AtomicUsize::new(0);
 /// Bytes in use in large blocks.
 static IN_USE: AtomicUsize = AtomicUsize::new(0);
 
-static KEPT: Mutex<Kept> = Mutex::new(Kept { blocks: [(0, 0); MOST], count: 0, bytes: 0 });
+static KEPT: Mutex<FreedBlocks> = Mutex::new(FreedBlocks { blocks: [(0, 0); MOST], count: 0, bytes: 0 });
 
 /// Keeps freed blocks until it is dropped.
 #[derive(Debug)]
@@ -66,29 +66,29 @@ fn give_all_back() -> bool {
 }
 
 /// An address and the bytes that are there.
-type Block = (usize, usize);
+type FreedBlock = (usize, usize);
 
 /// Freed blocks.
-struct Kept {
-    blocks: [Block; MOST],
+struct FreedBlocks {
+    blocks: [FreedBlock; MOST],
     count: usize,
     bytes: usize,
 }
 
-impl Kept {
+impl FreedBlocks {
     /// Takes the smallest block that serves a request.
-    fn take(&mut self, size: usize) -> Option<Block> {
-        let fits = |&(_, (_, bytes)): &(usize, &Block)| (size..=size.saturating_mul(SHARE)).contains(bytes);
+    fn take(&mut self, size: usize) -> Option<FreedBlock> {
+        let fits = |&(_, (_, bytes)): &(usize, &FreedBlock)| (size..=size.saturating_mul(SHARE)).contains(bytes);
         let (place, _) = self.blocks[..self.count].iter().enumerate().filter(fits).min_by_key(|(_, (_, b))| *b)?;
         Some(self.take_at(place))
     }
 
-    fn take_largest(&mut self) -> Option<Block> {
+    fn take_largest(&mut self) -> Option<FreedBlock> {
         let (place, _) = self.blocks[..self.count].iter().enumerate().max_by_key(|(_, (_, bytes))| *bytes)?;
         Some(self.take_at(place))
     }
 
-    fn take_at(&mut self, place: usize) -> Block {
+    fn take_at(&mut self, place: usize) -> FreedBlock {
         let block = self.blocks[place];
         self.count -= 1;
         self.blocks[place] = self.blocks[self.count];
@@ -97,7 +97,7 @@ impl Kept {
     }
 
     /// Keeps a block if there is a place for it and `room` bytes may be kept.
-    fn put(&mut self, block: Block, room: usize) -> bool {
+    fn put(&mut self, block: FreedBlock, room: usize) -> bool {
         if self.count == MOST || self.bytes + block.1 > room {
             return false;
         }
@@ -125,7 +125,7 @@ fn bytes_at(_address: usize) -> usize {
 }
 
 /// Gives a kept block back to the system.
-fn give_back((address, bytes): Block) {
+fn give_back((address, bytes): FreedBlock) {
     #[expect(unsafe_code, reason = "an allocator can be written in no other way")]
     // SAFETY: the block came from the system's allocator with this alignment, and nothing else owns it; its size is not
     // used there.
@@ -239,7 +239,7 @@ mod tests {
 
     #[test]
     fn the_smallest_block_that_serves_is_taken_and_no_more_is_kept_than_was_said() {
-        let mut kept = Kept { blocks: [(0, 0); MOST], count: 0, bytes: 0 };
+        let mut kept = FreedBlocks { blocks: [(0, 0); MOST], count: 0, bytes: 0 };
         assert!(kept.put((1, 300), 1000) && kept.put((2, 200), 1000) && kept.put((3, 500), 1000));
         assert!(!kept.put((4, 1), 1000));
         assert_eq!(kept.take(180), Some((2, 200)));

@@ -112,7 +112,7 @@ pub fn geologic_time(
         return Err(TimeError::Size { candidates: surfaces.size, volume: size });
     }
     system::memory::check("geologic time", &size, BYTES_A_VOXEL)?;
-    let mut solution = Solution::start(volume, surfaces, interpretation, settings, progress)?;
+    let mut solution = TimeSolution::start(volume, surfaces, interpretation, settings, progress)?;
     if solution.hubs.len() == 0 {
         return Ok(GeologicTime { tau: Volume::filled(size, f32::NAN), known: 0.0, not_monotone: 0.0, steps: 0 });
     }
@@ -149,7 +149,7 @@ const ROUNDS: [Round; 3] = [
 ];
 
 /// A solution on its way.
-struct Solution<'a> {
+struct TimeSolution<'a> {
     volume: &'a Volume<f32>,
     cuts: &'a [Cut],
     horizons: &'a [KnownHorizon],
@@ -164,7 +164,7 @@ struct Solution<'a> {
     steps: usize,
 }
 
-impl<'a> Solution<'a> {
+impl<'a> TimeSolution<'a> {
     /// Hubs, links, throws, and s from the hubs alone.
     fn start(
         volume: &'a Volume<f32>,
@@ -301,7 +301,7 @@ fn spanning_ties(
     hubs: &Hubs,
     links: &Links,
     cuts: &[Cut],
-    near: &mut Vec<start::Neighbours>,
+    near: &mut Vec<start::HubNeighbours>,
 ) -> Vec<Tie> {
     let mut throws: Vec<(usize, Throw)> =
         cuts.iter().enumerate().filter_map(|(f, cut)| Some((f, throw_of(volume, links, cut)?))).collect();

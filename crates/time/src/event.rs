@@ -80,14 +80,14 @@ const LEAST_SHARE: f64 = 0.6;
 const SEED_AROUND: usize = 8;
 /// What a seed may point at: a reflection, or the level through the seed.
 #[derive(Debug, Clone, Copy)]
-struct Target {
+struct SeedTarget {
     z: f32,
     kind: Option<Extremum>,
     hub: Option<u32>,
 }
 
 /// A seed that was looked at.
-struct Placed {
+struct PlacedSeed {
     seed: Seed,
     hub: Option<u32>,
     kind: Option<Extremum>,
@@ -100,7 +100,7 @@ impl Reflections {
     ///
     /// Cost: one pass over τ and the vertices of all candidates.
     pub fn event(&self, tau: &Volume<f32>, seeds: &[Seed], cuts: &[Cut]) -> Option<Event> {
-        let mut placed: Vec<Placed> = Vec::new();
+        let mut placed: Vec<PlacedSeed> = Vec::new();
         for seed in seeds {
             let target = self.target(tau, seed, placed.first().map(|first| first.kind));
             placed.push(self.place(tau, seed, &target)?);
@@ -119,22 +119,22 @@ impl Reflections {
     /// What a seed points at. The reflections within reach on its trace, and the level through the seed itself, are
     /// compared by the share of the traces around it on which a reflection of their kind lies on their level, less their
     /// distance: a patch that noise broke at the seed is found by what lies around. `kind` is that of the first seed.
-    fn target(&self, tau: &Volume<f32>, seed: &Seed, kind: Option<Option<Extremum>>) -> Target {
+    fn target(&self, tau: &Volume<f32>, seed: &Seed, kind: Option<Option<Extremum>>) -> SeedTarget {
         let hubs = self.hubs();
         let [nx, ny, nz] = hubs.size;
         let [x, y] = seed.trace;
         let own = hubs.on_trace(x * ny + y).filter(|&v| (hubs.z[v] - seed.z).abs() <= SEED_REACH);
-        let mut targets: Vec<Target> = own
-            .map(|v| Target { z: hubs.z[v], kind: Some(hubs.kind[hubs.hub[v] as usize]), hub: Some(hubs.hub[v]) })
+        let mut targets: Vec<SeedTarget> = own
+            .map(|v| SeedTarget { z: hubs.z[v], kind: Some(hubs.kind[hubs.hub[v] as usize]), hub: Some(hubs.hub[v]) })
             .collect();
-        let plain = Target { z: seed.z.clamp(0.0, (nz - 1) as f32), kind: None, hub: None };
+        let plain = SeedTarget { z: seed.z.clamp(0.0, (nz - 1) as f32), kind: None, hub: None };
         targets.extend(
-            [Extremum::Peak, Extremum::Trough, Extremum::Zero].map(|kind| Target { kind: Some(kind), ..plain }),
+            [Extremum::Peak, Extremum::Trough, Extremum::Zero].map(|kind| SeedTarget { kind: Some(kind), ..plain }),
         );
         if let Some(kind) = kind {
             targets.retain(|target| target.kind == kind);
         }
-        let score = |target: &Target| {
+        let score = |target: &SeedTarget| {
             let time = interpolate(tau.trace(x, y), target.z);
             let (mut on, mut all) = (0.0f32, 0.0f32);
             for (x, y) in around(seed, [nx, ny]) {
@@ -149,12 +149,12 @@ impl Reflections {
         let best = targets.iter().map(|target| (score(target), target)).max_by(|a, b| a.0.total_cmp(&b.0));
         match best {
             Some((score, target)) if score >= LEAST_ALONG => *target,
-            _ => Target { kind: kind.flatten(), ..plain },
+            _ => SeedTarget { kind: kind.flatten(), ..plain },
         }
     }
 
     /// The time of a seed: the median over its patch around it.
-    fn place(&self, tau: &Volume<f32>, seed: &Seed, target: &Target) -> Option<Placed> {
+    fn place(&self, tau: &Volume<f32>, seed: &Seed, target: &SeedTarget) -> Option<PlacedSeed> {
         let hubs = self.hubs();
         let [nx, ny, _] = hubs.size;
         let [x, y] = seed.trace;
@@ -170,11 +170,11 @@ impl Reflections {
             time = times.get(times.len() / 2).copied().unwrap_or(time);
         }
         let seed = Seed { z: target.z, ..*seed };
-        time.is_finite().then_some(Placed { seed, hub: target.hub, kind: target.kind, time })
+        time.is_finite().then_some(PlacedSeed { seed, hub: target.hub, kind: target.kind, time })
     }
 
     /// What a seed holds: its trace, and where its patch lies along its level.
-    fn holding(&self, tau: &Volume<f32>, Placed { seed, hub, time, .. }: &Placed) -> Holding {
+    fn holding(&self, tau: &Volume<f32>, PlacedSeed { seed, hub, time, .. }: &PlacedSeed) -> Holding {
         let hubs = self.hubs();
         let [nx, ny, _] = hubs.size;
         let crossing = |trace: usize| crossings(tau.trace(trace / ny, trace % ny), *time).next();
@@ -189,7 +189,7 @@ impl Reflections {
     }
 
     /// The traces of each patch but a seed's own that lies along the seed's level.
-    fn patches_along(&self, tau: &Volume<f32>, Placed { hub, kind, time, .. }: &Placed) -> Vec<Vec<usize>> {
+    fn patches_along(&self, tau: &Volume<f32>, PlacedSeed { hub, kind, time, .. }: &PlacedSeed) -> Vec<Vec<usize>> {
         let hubs = self.hubs();
         let levels = self.levels(tau, |_| *time);
         let belongs = self.belonging(&levels, *kind);

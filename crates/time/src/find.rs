@@ -44,7 +44,7 @@ const MOST_SUMMED: usize = 400;
 const MOST_BENT: usize = 12;
 
 /// Evidence `[line cell][sample cell][across]`.
-struct Evidence {
+struct FaultEvidence {
     lines: usize,
     samples: usize,
     cells: [usize; 2],
@@ -52,7 +52,7 @@ struct Evidence {
     values: Vec<f32>,
 }
 
-impl Evidence {
+impl FaultEvidence {
     fn new(hubs: &Hubs, across: Across) -> Self {
         let [nx, ny, nz] = hubs.size;
         let (width, lines) = if across == Across::Inlines { (nx, ny) } else { (ny, nx) };
@@ -98,7 +98,7 @@ impl Evidence {
         self.sum_of_every(1, terms)
     }
 
-    /// The evidence of every so manieth cell along and down.
+    /// The evidence of every n-th cell along and down.
     fn sum_of_every(&self, step: usize, terms: &[f32; 5]) -> f32 {
         let mut sum = 0.0;
         for along in (0..self.cells[0]).step_by(step) {
@@ -258,7 +258,7 @@ pub fn find_faults(
     let links = Links::new(&hubs, &[], &[]);
     let mut found = Vec::new();
     for across in [Across::Inlines, Across::Crosslines] {
-        let mut evidence = Evidence::new(&hubs, across);
+        let mut evidence = FaultEvidence::new(&hubs, across);
         progress.begin("looking for faults", MOST as u64);
         for _ in 0..MOST {
             progress.step(1)?;

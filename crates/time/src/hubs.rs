@@ -25,7 +25,7 @@ const BLOCKS: usize = 16;
 
 /// A vertex on its way into a hub.
 #[derive(Clone, Copy)]
-struct Entry {
+struct HubVertex {
     trace: u32,
     z: f32,
     hub: u32,
@@ -134,9 +134,9 @@ impl Hubs {
             let hub = if s == NONE { NONE } else { hub_of_set[s as usize] };
             let vertex = &vertices[v];
             let trace = (usize::from(vertex.x) * ny + usize::from(vertex.y)) as u32;
-            (hub != NONE).then_some(Entry { trace, z: vertex.z, hub, weight })
+            (hub != NONE).then_some(HubVertex { trace, z: vertex.z, hub, weight })
         });
-        let kept: Vec<Entry> = kept.collect();
+        let kept: Vec<HubVertex> = kept.collect();
         drop((count, hub_of_set));
         Self::by_trace(surfaces.size, kept, kind)
     }
@@ -149,8 +149,9 @@ impl Hubs {
         let [nx, ny, nz] = self.size;
         let mut kind = self.kind.clone();
         let traces = (0..nx * ny).flat_map(|trace| self.on_trace(trace).map(move |v| (trace as u32, v)));
-        let mut entries: Vec<Entry> =
-            traces.map(|(trace, v)| Entry { trace, z: self.z[v], hub: self.hub[v], weight: self.weight[v] }).collect();
+        let mut entries: Vec<HubVertex> = traces
+            .map(|(trace, v)| HubVertex { trace, z: self.z[v], hub: self.hub[v], weight: self.weight[v] })
+            .collect();
         for horizon in horizons.iter().filter(|horizon| !horizon.nodes.is_empty()) {
             let mut counts = [(Extremum::Peak, 0), (Extremum::Trough, 0), (Extremum::Zero, 0)];
             for node in &horizon.nodes {
@@ -160,7 +161,7 @@ impl Hubs {
                     counts.iter_mut().filter(|(kind, _)| *kind == follows).for_each(|(_, count)| *count += 1);
                 }
                 let z = horizon.sample_of(node).clamp(0.0, (nz - 1) as f32);
-                entries.push(Entry { trace: trace as u32, z, hub: kind.len() as u32, weight: KNOWN * weight });
+                entries.push(HubVertex { trace: trace as u32, z, hub: kind.len() as u32, weight: KNOWN * weight });
             }
             kind.push(counts.into_iter().fold(counts[0], |best, next| if next.1 > best.1 { next } else { best }).0);
         }
@@ -168,7 +169,7 @@ impl Hubs {
     }
 
     /// Puts vertices into the order of the traces.
-    fn by_trace(size: [usize; 3], mut kept: Vec<Entry>, kind: Vec<Extremum>) -> Self {
+    fn by_trace(size: [usize; 3], mut kept: Vec<HubVertex>, kind: Vec<Extremum>) -> Self {
         // Stable, so that vertices of one place keep their order.
         kept.par_sort_by(|a, b| a.trace.cmp(&b.trace).then(a.z.total_cmp(&b.z)));
         let mut starts = vec![0u32; size[0] * size[1] + 1];

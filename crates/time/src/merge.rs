@@ -6,7 +6,7 @@ use crate::links::Links;
 use rayon::prelude::*;
 
 /// A group of hubs that is growing.
-struct Group {
+struct HubGroup {
     /// Mean time, and how many vertices it is of.
     time: f64,
     count: usize,
@@ -41,7 +41,7 @@ pub fn merge(hubs: &mut Hubs, links: &Links, times: &[f32], tolerance: f64) -> u
     let places = places(hubs, links);
     let mut order: Vec<usize> = (0..hubs.len()).collect();
     order.sort_by_key(|&hub| (std::cmp::Reverse(hubs.of_hub(hub).len()), hub));
-    let mut groups: Vec<Group> = Vec::new();
+    let mut groups: Vec<HubGroup> = Vec::new();
     // Groups by kind and whole samples of time.
     let mut shelves: std::collections::BTreeMap<(interp::Extremum, i64), Vec<usize>> =
         std::collections::BTreeMap::new();
@@ -76,7 +76,7 @@ pub fn merge(hubs: &mut Hubs, links: &Links, times: &[f32], tolerance: f64) -> u
             None => {
                 group_of[hub] = groups.len() as u32;
                 shelves.entry((kind, shelf)).or_default().push(groups.len());
-                groups.push(Group { time, count: own.len(), places: own });
+                groups.push(HubGroup { time, count: own.len(), places: own });
             }
         }
     }

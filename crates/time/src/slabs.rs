@@ -123,7 +123,7 @@ impl JoinedSlabs {
         let mut lines = tau.samples().to_vec();
         if !self.common.is_empty() {
             let width = self.common.len();
-            if let Some(clock) = Clock::new(&self.common, &lines[..width]) {
+            if let Some(clock) = ClockMap::new(&self.common, &lines[..width]) {
                 lines.iter_mut().for_each(|time| *time = clock.set(*time));
             }
             let count = (width / line).max(1);
@@ -147,12 +147,12 @@ impl JoinedSlabs {
 }
 
 /// An increasing function that sets one clock by another.
-struct Clock {
+struct ClockMap {
     /// (own time, the other's), ascending.
     knots: Vec<[f32; 2]>,
 }
 
-impl Clock {
+impl ClockMap {
     /// From the times of the same voxels; `None` where none has both.
     fn new(old: &[f32], new: &[f32]) -> Option<Self> {
         let known = || old.iter().zip(new).filter(|(old, new)| old.is_finite() && new.is_finite());

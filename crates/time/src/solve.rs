@@ -29,7 +29,7 @@ pub struct Tie {
 
 /// A point whose time is given.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Anchor {
+pub struct TimedPoint {
     /// Trace (x·crosslines + y).
     pub trace: u32,
     /// Fractional sample.
@@ -73,7 +73,7 @@ pub struct System<'a> {
     /// Points of one time on both sides of faults.
     pub ties: &'a [Tie],
     /// Points of a given time.
-    pub anchors: &'a [Anchor],
+    pub anchors: &'a [TimedPoint],
     /// e₁ and e₂: the weights of the first and the second difference along a trace, squared.
     pub smoothness: [f32; 2],
 }

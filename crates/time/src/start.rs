@@ -13,7 +13,7 @@ use survey::{Cancelled, Progress};
 
 /// Two hubs that follow one another on some traces, or that are beside two points of one time.
 #[derive(Debug, Clone, Copy)]
-pub struct Neighbours {
+pub struct HubNeighbours {
     /// The upper and the lower hub.
     pub hubs: [u32; 2],
     /// Count of traces, or weight.
@@ -24,7 +24,7 @@ pub struct Neighbours {
 
 /// What lies between a vertex and the next of its trace.
 #[derive(Clone, Copy, PartialEq)]
-enum Below {
+enum Gap {
     /// A fault, or there is none.
     Nothing,
     /// Beds.
@@ -34,9 +34,9 @@ enum Below {
 }
 
 /// The pairs of hubs that follow one another on a trace without a fault between them, ascending.
-pub fn neighbours(hubs: &Hubs, links: &Links) -> Vec<Neighbours> {
+pub fn neighbours(hubs: &Hubs, links: &Links) -> Vec<HubNeighbours> {
     let [_, ny, nz] = hubs.size;
-    let mut below = vec![Below::Nothing; hubs.z.len()];
+    let mut below = vec![Gap::Nothing; hubs.z.len()];
     hubs.split_inlines(&mut below).into_par_iter().enumerate().for_each(|(x, below)| {
         let first = hubs.on_inline(x).start;
         for trace in x * ny..(x + 1) * ny {
@@ -45,15 +45,15 @@ pub fn neighbours(hubs: &Hubs, links: &Links) -> Vec<Neighbours> {
                 let mut between = hubs.z[v] as usize..(hubs.z[w].ceil() as usize).min(nz - 1);
                 if !between.clone().any(|z| links.is_cut_below(trace * nz + z)) {
                     let jumps = between.any(|z| links.is_broken_below(trace * nz + z));
-                    below[v - first] = if jumps { Below::Jump } else { Below::Beds };
+                    below[v - first] = if jumps { Gap::Jump } else { Gap::Beds };
                 }
             }
         }
     });
     let of_hub = |hub: usize| {
-        let own = hubs.of_hub(hub).iter().map(|&v| v as usize).filter(|&v| below[v] != Below::Nothing);
+        let own = hubs.of_hub(hub).iter().map(|&v| v as usize).filter(|&v| below[v] != Gap::Nothing);
         let mut found: Vec<(u32, f32, bool)> =
-            own.map(|v| (hubs.hub[v + 1], hubs.z[v + 1] - hubs.z[v], below[v] == Below::Jump)).collect();
+            own.map(|v| (hubs.hub[v + 1], hubs.z[v + 1] - hubs.z[v], below[v] == Gap::Jump)).collect();
         // Stable: sums have the order of the traces.
         found.sort_by_key(|(next, _, _)| *next);
         let pair = |same: &[(u32, f32, bool)]| {
@@ -61,7 +61,7 @@ pub fn neighbours(hubs: &Hubs, links: &Links) -> Vec<Neighbours> {
             // Through an unconformity distances tell next to nothing.
             let through = same.iter().filter(|(_, _, jumps)| *jumps).count();
             let count = (same.len() - through) as f32 + THROUGH * through as f32;
-            Neighbours { hubs: [hub as u32, same[0].0], count, distance: (sum / same.len() as f64) as f32 }
+            HubNeighbours { hubs: [hub as u32, same[0].0], count, distance: (sum / same.len() as f64) as f32 }
         };
         found.chunk_by(|a, b| a.0 == b.0).map(pair).collect::<Vec<_>>()
     };
@@ -71,7 +71,7 @@ pub fn neighbours(hubs: &Hubs, links: &Links) -> Vec<Neighbours> {
 /// The same for the hubs beside the two ends of ties.
 ///
 /// The distance is that of two points of one time; with the times of the vertices, it is what their times lack.
-pub fn tied(hubs: &Hubs, ties: &[Tie], times: Option<&[f32]>) -> Vec<Neighbours> {
+pub fn tied(hubs: &Hubs, ties: &[Tie], times: Option<&[f32]>) -> Vec<HubNeighbours> {
     let nearest = |trace: u32, z: f32| {
         let own = hubs.on_trace(trace as usize);
         own.min_by(|&v, &w| (hubs.z[v] - z).abs().total_cmp(&(hubs.z[w] - z).abs()))
@@ -81,7 +81,7 @@ pub fn tied(hubs: &Hubs, ties: &[Tie], times: Option<&[f32]>) -> Vec<Neighbours>
         let (v, w) = (nearest(tie.trace[0], tie.z[0])?, nearest(tie.trace[1], tie.z[1])?);
         let between = (tie.z[0] - hubs.z[v]) - (tie.z[1] - hubs.z[w]);
         let distance = between - times.map_or(0.0, |times| times[w] - times[v]);
-        (hubs.hub[v] != hubs.hub[w]).then(|| Neighbours {
+        (hubs.hub[v] != hubs.hub[w]).then(|| HubNeighbours {
             hubs: [hubs.hub[v], hubs.hub[w]],
             count: tie.weight,
             distance,
@@ -94,7 +94,7 @@ pub fn tied(hubs: &Hubs, ties: &[Tie], times: Option<&[f32]>) -> Vec<Neighbours>
 const TIED_REACH: f32 = 8.0;
 
 /// The smallest hub of the connected part to which each hub belongs.
-pub fn parts(count: usize, neighbours: &[Neighbours]) -> UnionFind {
+pub fn parts(count: usize, neighbours: &[HubNeighbours]) -> UnionFind {
     let mut sets = UnionFind::new(count);
     for pair in neighbours {
         sets.union(pair.hubs[0], pair.hubs[1]);
@@ -106,10 +106,10 @@ pub fn parts(count: usize, neighbours: &[Neighbours]) -> UnionFind {
 const MOST_STEPS: usize = 2000;
 
 /// The times of all hubs that fit the distances of neighbours best. Hubs that no neighbour joins have no common zero.
-pub fn hub_times(count: usize, neighbours: &[Neighbours]) -> Vec<f64> {
+pub fn hub_times(count: usize, neighbours: &[HubNeighbours]) -> Vec<f64> {
     let mut diagonal = vec![1e-9f64; count];
     let mut residual = vec![0.0f64; count];
-    for &Neighbours { hubs: [a, b], count, distance } in neighbours {
+    for &HubNeighbours { hubs: [a, b], count, distance } in neighbours {
         let (a, b, n) = (a as usize, b as usize, f64::from(count));
         diagonal[a] += n;
         diagonal[b] += n;
@@ -126,7 +126,7 @@ pub fn hub_times(count: usize, neighbours: &[Neighbours]) -> Vec<f64> {
             break;
         }
         let mut image = vec![0.0f64; count];
-        for &Neighbours { hubs: [a, b], count, .. } in neighbours {
+        for &HubNeighbours { hubs: [a, b], count, .. } in neighbours {
             let (a, b) = (a as usize, b as usize);
             let e = f64::from(count) * (direction[b] - direction[a]);
             image[a] -= e;
@@ -148,9 +148,9 @@ pub fn hub_times(count: usize, neighbours: &[Neighbours]) -> Vec<f64> {
 }
 
 /// The correction of the times of hubs that ties ask for: neighbours keep their distances as well as they can.
-pub fn corrections(count: usize, neighbours: &[Neighbours], tied: &[Neighbours]) -> Vec<f64> {
-    let mut all: Vec<Neighbours> =
-        neighbours.iter().map(|pair| Neighbours { count: STIFFNESS * pair.count, distance: 0.0, ..*pair }).collect();
+pub fn corrections(count: usize, neighbours: &[HubNeighbours], tied: &[HubNeighbours]) -> Vec<f64> {
+    let mut all: Vec<HubNeighbours> =
+        neighbours.iter().map(|pair| HubNeighbours { count: STIFFNESS * pair.count, distance: 0.0, ..*pair }).collect();
     all.extend(tied);
     hub_times(count, &all)
 }

@@ -152,7 +152,7 @@ impl Panels {
     /// Correlation under a throw, a little less where little overlaps; −1 where less than enough does.
     fn score(&self, terms: &[f32; 6]) -> f32 {
         let nz = self.size[1];
-        let (mut all, mut there) = (Sums::default(), 0usize);
+        let (mut all, mut there) = (PairSums::default(), 0usize);
         for line in (0..self.size[0]).step_by(self.step) {
             let row = line * nz..(line + 1) * nz;
             let (a, b) = (&self.sides[0][row.clone()], &self.sides[1][row]);
@@ -203,7 +203,7 @@ struct Shifts {
     /// Every so many lines are in it.
     step: usize,
     /// `[line][window][shift]`.
-    sums: Vec<Sums>,
+    sums: Vec<PairSums>,
     /// Samples that either side has.
     there: f32,
 }
@@ -216,7 +216,7 @@ impl Shifts {
         let most = (greatest * SHIFT_STEPS).ceil() as isize;
         let width = (2 * most + 1) as usize;
         let (windows, taken) = (nz.div_ceil(WINDOW), lines.div_ceil(step));
-        let mut sums = vec![Sums::default(); taken * windows * width];
+        let mut sums = vec![PairSums::default(); taken * windows * width];
         let row = |side: usize, line: usize| &panels.sides[side][line * nz..(line + 1) * nz];
         sums.par_chunks_mut(windows * width).enumerate().for_each(|(n, sums)| {
             let (a, b) = (row(0, n * step), row(1, n * step));
@@ -240,7 +240,7 @@ impl Shifts {
         let [lines, nz] = self.size;
         let width = (2 * self.most + 1) as usize;
         let windows = nz.div_ceil(WINDOW);
-        let mut all = Sums::default();
+        let mut all = PairSums::default();
         for (n, line) in (0..lines).step_by(self.step).enumerate() {
             let on_line = on_line(terms, lines, line);
             for window in 0..windows {
@@ -256,27 +256,27 @@ impl Shifts {
 }
 
 /// Σ a b, Σ a², Σ b² and the count of pairs.
-type Sums = [f32; 4];
+type PairSums = [f32; 4];
 
 #[inline]
-fn add(sums: &mut Sums, more: Sums) {
+fn add(sums: &mut PairSums, more: PairSums) {
     sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
 }
 
 /// What the amplitudes of both sides half a throw above and below a sample add; nothing where one of them has none there.
 #[inline]
-fn products(a: &[f32], b: &[f32], z: f32, half: f32) -> Sums {
+fn products(a: &[f32], b: &[f32], z: f32, half: f32) -> PairSums {
     let (za, zb) = (z - half, z + half);
     if za.min(zb) < 0.0 || za.max(zb) > (a.len() - 1) as f32 {
-        return Sums::default();
+        return PairSums::default();
     }
     let (a, b) = (interpolate(a, za), interpolate(b, zb));
-    if a.is_finite() && b.is_finite() { [a * b, a * a, b * b, 1.0] } else { Sums::default() }
+    if a.is_finite() && b.is_finite() { [a * b, a * a, b * b, 1.0] } else { PairSums::default() }
 }
 
 /// The score of a throw from its sums and how many samples there are: the correlation, a
 /// little less where little overlaps, −1 where less than enough does.
-fn scored([product, lower, upper, both]: Sums, there: f32, terms: &[f32; 6]) -> f32 {
+fn scored([product, lower, upper, both]: PairSums, there: f32, terms: &[f32; 6]) -> f32 {
     let bend = BEND_COST * terms[1..].iter().map(|term| term * term).sum::<f32>();
     let overlap = both / there.max(1.0);
     if overlap < LEAST_OVERLAP { -1.0 } else { product / (lower * upper).sqrt().max(1e-9) * overlap.powf(0.25) - bend }

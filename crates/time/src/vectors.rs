@@ -25,7 +25,7 @@ pub fn advance(
     let lines = lines.zip(image.par_chunks(line)).zip(inverse.par_chunks(line));
     let parts: Vec<f64> = lines
         .map(|((((s, residual), direction), image), inverse)| {
-            widest(Advance { step, s, residual, direction, image });
+            widest(LineAdvance { step, s, residual, direction, image });
             widest(Products { a: residual, b: residual, weights: Some(inverse) })
         })
         .collect();
@@ -72,7 +72,7 @@ fn summed(lanes: impl Iterator<Item = [f32; LANES]>, rest: impl Iterator<Item = 
 }
 
 /// One line of [`advance`].
-struct Advance<'a> {
+struct LineAdvance<'a> {
     step: f32,
     s: &'a mut [f32],
     residual: &'a mut [f32],
@@ -80,7 +80,7 @@ struct Advance<'a> {
     image: &'a [f32],
 }
 
-impl Wide for Advance<'_> {
+impl Wide for LineAdvance<'_> {
     type Output = ();
 
     #[inline(always)]

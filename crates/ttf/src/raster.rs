@@ -45,7 +45,7 @@ pub(crate) fn read_tile(path: &Path) -> Result<(Texture, Option<String>, f32), T
     Ok((texture, None, shape))
 }
 
-/// The content of an ordinary file of at most `limit` bytes. A pipe or device is told by its kind, before it is
+/// The content of an ordinary file of at most `limit` bytes. A pipe or device is recognised by its kind, before it is
 /// opened, since opening a pipe waits.
 fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, TtfError> {
     let unreadable = |source| TtfError::ReadTexture { path: path.to_owned(), source };

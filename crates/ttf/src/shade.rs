@@ -82,7 +82,7 @@ pub fn shade(tables: &TtfTables, point: &ShadePoint, scalars: &[f32]) -> [f32; 4
     let mut frequency = layer.frequency;
     let flat = [point.flat.i, point.flat.j, point.flat.k];
     if flat.iter().all(|part| part.is_finite()) {
-        let sampler = Sampler::new(tables, point);
+        let sampler = TextureSampler::new(tables, point);
         if let Some(interval) = tables.interval_at(layer, point.flat.k) {
             frequency = interval.frequency;
             colour = [interval.colour[0], interval.colour[1], interval.colour[2]];
@@ -155,14 +155,14 @@ fn over(bottom: [f32; 3], top: [f32; 4], opacity: f32) -> [f32; 3] {
 }
 
 /// The mappings of a point, from which any texture can be sampled at any frequency.
-struct Sampler<'a> {
+struct TextureSampler<'a> {
     tables: &'a TtfTables,
     weights: [f32; 3],
     /// Per mapping: uv at the point, its change to the right and down; before frequencies.
     coordinates: [[[f32; 2]; 3]; 3],
 }
 
-impl<'a> Sampler<'a> {
+impl<'a> TextureSampler<'a> {
     fn new(tables: &'a TtfTables, point: &ShadePoint) -> Self {
         let flat = [point.flat.i, point.flat.j, point.flat.k];
         let FlatFootprint { dx, dy } = point.footprint;

@@ -50,7 +50,7 @@ pub struct FaceUse {
 }
 
 impl FaceUse {
-    /// The face as a file for programs that are told which glyph stands where.
+    /// The face as a file for programs that get the glyph of each place.
     pub fn file(&self) -> Option<FontSubset> {
         subset(&self.face, &self.glyphs, &self.characters)
     }
@@ -200,12 +200,12 @@ fn changed(mut table: Vec<u8>, values: &[(usize, u16)]) -> Vec<u8> {
 }
 
 /// A point of a contour, units of the face, and whether the curve goes through it.
-type Point = ([i16; 2], bool);
+type ContourPoint = ([i16; 2], bool);
 
 /// The contours of a glyph as points of quadratic curves.
-fn points_of(curves: &[TextCurve], units: f32) -> Vec<Vec<Point>> {
+fn points_of(curves: &[TextCurve], units: f32) -> Vec<Vec<ContourPoint>> {
     let rounded = |p: [f32; 2]| p.map(|part| part.round().clamp(-16384.0, 16383.0) as i16);
-    let mut contours: Vec<Vec<Point>> = Vec::new();
+    let mut contours: Vec<Vec<ContourPoint>> = Vec::new();
     let mut end = None;
     for curve in curves {
         let places = curve.places();
@@ -258,8 +258,8 @@ fn quads_of([a, b, c, d]: [[f32; 2]; 4], tolerance: f32) -> Vec<[[f32; 2]; 3]> {
 }
 
 /// An outline as it is stored: its box, the ends of its contours, and its points with words as steps.
-fn outline_of(contours: &[Vec<Point>]) -> Vec<u8> {
-    let points: Vec<Point> = contours.iter().flatten().copied().collect();
+fn outline_of(contours: &[Vec<ContourPoint>]) -> Vec<u8> {
+    let points: Vec<ContourPoint> = contours.iter().flatten().copied().collect();
     let bound = |axis: usize, of: fn(i16, i16) -> i16| points.iter().map(|(at, _)| at[axis]).reduce(of);
     let (Some(left), Some(low), Some(right), Some(high)) =
         (bound(0, i16::min), bound(1, i16::min), bound(0, i16::max), bound(1, i16::max))

@@ -153,8 +153,9 @@ pub fn confusions(
     preset: Preset,
     library: &TextureLibrary,
 ) -> Result<Vec<Confusion>, TtfError> {
-    let ends = styles.iter().map(|style| Ends::of(&preset.layer(style), library)).collect::<Result<Vec<_>, _>>()?;
-    let mut search = Search { styles, touching, preset, library, ends, patterns: BTreeMap::new() };
+    let ends =
+        styles.iter().map(|style| LayerEnds::of(&preset.layer(style), library)).collect::<Result<Vec<_>, _>>()?;
+    let mut search = ChangeSearch { styles, touching, preset, library, ends, patterns: BTreeMap::new() };
     let mut found = Vec::new();
     for &layers in touching {
         let under = search.alike(layers, [&search.ends[layers[0]], &search.ends[layers[1]]]);
@@ -167,19 +168,19 @@ pub fn confusions(
 }
 
 /// A search for changes that tell layers apart.
-struct Search<'a> {
+struct ChangeSearch<'a> {
     styles: &'a [LayerStyle],
     touching: &'a [[usize; 2]],
     preset: Preset,
     library: &'a TextureLibrary,
-    ends: Vec<Ends>,
+    ends: Vec<LayerEnds>,
     /// How the library's patterns look on their own colours, as far as they were tried.
-    patterns: BTreeMap<String, Ends>,
+    patterns: BTreeMap<String, LayerEnds>,
 }
 
-impl Search<'_> {
+impl ChangeSearch<'_> {
     /// Under what two layers that look like this are alike.
-    fn alike(&self, [upper, lower]: [usize; 2], [above, below]: [&Ends; 2]) -> Vec<Vision> {
+    fn alike(&self, [upper, lower]: [usize; 2], [above, below]: [&LayerEnds; 2]) -> Vec<Vision> {
         if lower == upper + 1 {
             return above.base.alike(&below.top);
         }
@@ -191,7 +192,7 @@ impl Search<'_> {
     }
 
     /// Whether a layer that looks like this can be told from all that it touches.
-    fn is_clear(&self, layer: usize, look: &Ends) -> bool {
+    fn is_clear(&self, layer: usize, look: &LayerEnds) -> bool {
         self.touching.iter().filter(|pair| pair.contains(&layer)).all(|&pair| {
             let seen = pair.map(|other| if other == layer { look } else { &self.ends[other] });
             self.alike(pair, seen).is_empty()
@@ -206,7 +207,7 @@ impl Search<'_> {
             for layer in lower_first {
                 let mut style = self.styles[layer].clone();
                 style.colour = lightened(style.colour, step);
-                if self.is_clear(layer, &Ends::of(&self.preset.layer(&style), self.library)?) {
+                if self.is_clear(layer, &LayerEnds::of(&self.preset.layer(&style), self.library)?) {
                     return Ok(Some(Restyling { layer, colour: style.colour, pattern: None }));
                 }
             }
@@ -227,7 +228,7 @@ impl Search<'_> {
                     let (name, colour) = (pattern.name.clone(), pattern.colour);
                     if !self.patterns.contains_key(&name) {
                         let style = LayerStyle::textured(&self.styles[layer].layer, colour, &name);
-                        let look = Ends::of(&self.preset.layer(&style), self.library)?;
+                        let look = LayerEnds::of(&self.preset.layer(&style), self.library)?;
                         self.patterns.insert(name.clone(), look);
                     }
                     if self.is_clear(layer, &self.patterns[&name]) {
@@ -258,18 +259,18 @@ fn lightened(colour: Colour, step: f32) -> Colour {
 }
 
 /// How a layer looks at its top and at its base.
-struct Ends {
-    top: Look,
-    base: Look,
+struct LayerEnds {
+    top: PatchLook,
+    base: PatchLook,
 }
 
-impl Ends {
+impl LayerEnds {
     fn of(style: &LayerStyle, library: &TextureLibrary) -> Result<Self, TtfError> {
-        let base = Look::of(style, 0.0, library)?;
+        let base = PatchLook::of(style, 0.0, library)?;
         let top = if style.interval_at(0.0) == style.interval_at(1.0) {
             base.clone()
         } else {
-            Look::of(style, 1.0, library)?
+            PatchLook::of(style, 1.0, library)?
         };
         Ok(Self { top, base })
     }
@@ -296,14 +297,14 @@ impl Dot {
 
 /// How a patch of a layer looks in each way of seeing.
 #[derive(Debug, Clone, PartialEq)]
-struct Look {
+struct PatchLook {
     /// Mean L\*a\*b\*.
     mean: [[f32; 3]; Vision::ALL.len()],
     /// Differences of neighbours along the layer and across it, at each scale.
     grain: [[f32; DIRECTIONS * SCALES]; Vision::ALL.len()],
 }
 
-impl Look {
+impl PatchLook {
     /// The layer at local `k`.
     fn of(style: &LayerStyle, k: f32, library: &TextureLibrary) -> Result<Self, TtfError> {
         let interval = style.interval_at(k);

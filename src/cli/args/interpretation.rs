@@ -313,7 +313,7 @@ pub(in crate::cli) enum FaultAction {
         /// Fault
         name: String,
         /// `drawn`, or `grow` and how many metres it reaches farther on every side
-        #[arg(value_name = "drawn|grow M", num_args = 1..=2, required = true, allow_hyphen_values = true)]
+        #[arg(value_name = "drawn|grow M", num_args = 1..=2, required = true, allow_negative_numbers = true)]
         extent: Vec<String>,
     },
     /// Give a fault another colour, on sections and on the block
@@ -359,7 +359,7 @@ pub(in crate::cli) struct FaultAddArgs {
     #[arg(long, value_name = "FAULT")]
     pub(in crate::cli) truncated_by: Option<String>,
     /// How far it reaches beyond what was drawn: not at all, or so many metres on every side [default: drawn]
-    #[arg(long, value_name = "drawn|grow M", num_args = 1..=2, allow_hyphen_values = true)]
+    #[arg(long, value_name = "drawn|grow M", num_args = 1..=2, allow_negative_numbers = true)]
     pub(in crate::cli) extent: Vec<String>,
     #[command(flatten)]
     pub(in crate::cli) reading: ReadingArgs,

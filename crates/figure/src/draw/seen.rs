@@ -22,7 +22,7 @@ const COLUMNS: u32 = 160;
 const BEHIND: f32 = 0.02;
 /// Faces that are seen smaller than this are seen edge on, square pixels.
 const LEAST_PX: f64 = 1.0;
-/// As far as it is told how far rock lies before or behind water, voxels.
+/// The farthest that is measured of how far rock lies before or behind water, voxels.
 const FAR: f64 = 5.0;
 /// Places of the ground this close on the map, as a share of the block's longest side, are neighbours.
 const NEAR: f32 = 0.04;

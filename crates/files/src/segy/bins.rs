@@ -20,7 +20,7 @@ use super::SegyOptions;
 use super::columns::{Columns, HeaderColumn};
 use super::coordinates::{Coordinates, varying};
 use super::header::NO_INTEGER;
-use super::neighbours::Neighbours;
+use super::neighbours::PointGrid;
 use super::place::Affine;
 
 /// Least share of filled bins when the user asks for this lattice.
@@ -49,7 +49,7 @@ const MIN_IN_ORDER: f64 = 0.4;
 
 /// Indices of every trace on the lattice of X and Y, from 1; [`NO_INTEGER`] without X and Y.
 #[derive(Debug)]
-pub(super) struct Bins {
+pub(super) struct TraceBins {
     /// Bytes of X and Y.
     pub bytes: [u16; 2],
     /// Which inline, if traces follow one another along inlines.
@@ -63,9 +63,9 @@ pub(super) struct Bins {
 }
 
 /// Finds the lattice. The error is the reason why there is none, or empty if there are no X and Y.
-pub(super) fn find(columns: &Columns, options: &SegyOptions, min_fill: f64) -> Result<Bins, String> {
+pub(super) fn find(columns: &Columns, options: &SegyOptions, min_fill: f64) -> Result<TraceBins, String> {
     let Some(coordinates) = varying(columns, options) else { return Err(String::new()) };
-    let points = Points::of(&coordinates, columns.count());
+    let points = TracePoints::of(&coordinates, columns.count());
     let steps = points.steps()?;
     let affine = points.grow(steps);
     let (mut indices, near, mean_sq) = points.indices(&affine);
@@ -80,7 +80,7 @@ pub(super) fn find(columns: &Columns, options: &SegyOptions, min_fill: f64) -> R
     }
     let axes = Axes::of(&indices, &affine);
     indices.iter_mut().for_each(|index| *index = axes.turn(*index));
-    let lines = Lines::of(&indices, &points.traces, columns.count());
+    let lines = LineIndices::of(&indices, &points.traces, columns.count());
     let [inlines, crosslines] = lines.counts;
     let filled = lines.filled(&indices);
     let places = inlines.saturating_mul(crosslines);
@@ -93,7 +93,7 @@ pub(super) fn find(columns: &Columns, options: &SegyOptions, min_fill: f64) -> R
         ));
     }
     let [along_inline, along_crossline] = lines.columns;
-    Ok(Bins {
+    Ok(TraceBins {
         bytes: coordinates.bytes,
         along_inline,
         along_crossline,
@@ -106,12 +106,12 @@ pub(super) fn find(columns: &Columns, options: &SegyOptions, min_fill: f64) -> R
 }
 
 /// X and Y of the traces that have them, from their mean.
-struct Points {
+struct TracePoints {
     at: Vec<DVec2>,
     traces: Vec<usize>,
 }
 
-impl Points {
+impl TracePoints {
     fn of(coordinates: &Coordinates<'_>, count: usize) -> Self {
         let (mut at, mut traces) = (Vec::new(), Vec::new());
         for trace in 0..count {
@@ -127,7 +127,7 @@ impl Points {
 
     /// The two shortest steps that are not on one line.
     fn steps(&self) -> Result<DMat2, String> {
-        let neighbours = Neighbours::of(&self.at);
+        let neighbours = PointGrid::of(&self.at);
         let queries = || (0..self.at.len()).step_by(self.at.len().div_ceil(MAX_QUERIES).max(1));
         let nearest: Vec<DVec2> = queries().filter_map(|q| neighbours.nearest(q, |_| true)).collect();
         let lengths = || nearest.iter().map(|d| d.length()).collect::<Vec<_>>();
@@ -294,12 +294,12 @@ fn inverse(across: I64Vec2, along: I64Vec2) -> [I64Vec2; 2] {
 }
 
 /// Line numbers from 1.
-struct Lines {
+struct LineIndices {
     columns: [HeaderColumn; 2],
     counts: [usize; 2],
 }
 
-impl Lines {
+impl LineIndices {
     fn of(indices: &[I64Vec2], traces: &[usize], count: usize) -> Self {
         let low = indices.iter().copied().fold(I64Vec2::MAX, I64Vec2::min);
         let high = indices.iter().copied().fold(I64Vec2::MIN, I64Vec2::max);

@@ -10,8 +10,8 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
-use super::anywhere::Sweep;
 use super::error::SegyProblem;
+use super::field_sweep::Sweep;
 use super::header::{Field, Traces, reinterpret};
 use super::number_type::NumberType;
 use super::sample::ByteOrder;

@@ -5,9 +5,9 @@ use glam::DVec2;
 
 use super::SegyOptions;
 use super::angles::{Angles, look_like_degrees, note_unknown_units};
-use super::anywhere::coordinate_pairs;
 use super::columns::{Columns, HeaderColumn, HeaderLayout};
 use super::error::SegyProblem;
+use super::field_sweep::coordinate_pairs;
 use super::header::{Field, at};
 use super::info::{Findings, GeometrySummary, LengthUnit, in_figures};
 use super::lines::LineLattice;

@@ -12,12 +12,12 @@ use std::borrow::Cow;
 use rayon::prelude::*;
 
 use super::SegyOptions;
-use super::anywhere::{MAX_LINE_NUMBER, Sweep};
-use super::bins::{self, Bins};
+use super::bins::{self, TraceBins};
 use super::candidate::{Candidate, Verdict};
 use super::columns::{Columns, HeaderColumn, HeaderLayout};
 use super::coordinates::{HOMES, confirm, coordinate_fields, locate, varying as varying_coordinates};
 use super::error::SegyProblem;
+use super::field_sweep::{MAX_LINE_NUMBER, Sweep};
 use super::header::{Field, NO_INTEGER, at};
 use super::info::Findings;
 use super::lines::{Flaw, LineLattice};
@@ -108,7 +108,7 @@ pub(super) fn detect(
     options: &SegyOptions,
     findings: &mut Findings,
 ) -> Result<Detected, SegyProblem> {
-    let search = Search { columns, every_field, swept: None, options };
+    let search = FieldSearch { columns, every_field, swept: None, options };
     if options.line_source != LineSource::Headers {
         return match bins::find(columns, options, bins::MIN_FILL_STATED) {
             Ok(bins) => search.by_coordinates(&bins, Vec::new(), findings),
@@ -154,7 +154,7 @@ pub(super) fn detect(
     }
 }
 
-struct Search<'a> {
+struct FieldSearch<'a> {
     columns: &'a Columns,
     every_field: &'a EveryField<'a>,
     /// The sweep that `columns` are of.
@@ -162,7 +162,7 @@ struct Search<'a> {
     options: &'a SegyOptions,
 }
 
-impl Search<'_> {
+impl FieldSearch<'_> {
     fn column(&self, byte: u16) -> &HeaderColumn {
         self.columns.get(Field::I32(byte))
     }
@@ -254,7 +254,7 @@ impl Search<'_> {
         }
         let candidate = self.evaluate(bytes, NumberType::I32, NAMED, MIN_FILL);
         if !candidate.fits() {
-            // What holds several traces, or none, at a place is told by what is found elsewhere.
+            // What holds several traces, or none, at a place follows from what is found elsewhere.
             findings.warning(Note::unless(
                 format!("the text header names bytes that are not taken: {}", candidate.as_sentence()),
                 candidate.remedy(),
@@ -334,7 +334,7 @@ impl Search<'_> {
     /// The lattice of X and Y, where no header numbers lines or the user wants it.
     fn by_coordinates(
         &self,
-        bins: &Bins,
+        bins: &TraceBins,
         mut candidates: Vec<Candidate>,
         findings: &mut Findings,
     ) -> Result<Detected, SegyProblem> {
@@ -432,7 +432,7 @@ impl Search<'_> {
             && let Some(sweep) = next
         {
             let columns = (self.every_field)(sweep)?;
-            let search = Search { columns: &columns, swept: Some(sweep), ..*self };
+            let search = FieldSearch { columns: &columns, swept: Some(sweep), ..*self };
             let mut detected = search.elsewhere(candidates, findings)?;
             detected.columns = detected.columns.or_else(|| Some(Box::new(columns)));
             return Ok(detected);
@@ -490,7 +490,7 @@ impl Search<'_> {
         findings: &mut Findings,
     ) -> Option<Result<Detected, SegyProblem>> {
         let columns = (self.every_field)(Sweep::FourBytes).ok()?;
-        let search = Search { columns: &columns, swept: Some(Sweep::FourBytes), ..*self };
+        let search = FieldSearch { columns: &columns, swept: Some(Sweep::FourBytes), ..*self };
         let chosen = search.confirmed([at::FIELD_RECORD, at::TRACE_IN_RECORD], MIN_FILL_UNCONFIRMED)?;
         let mut detected = search.choose(&chosen, candidates, findings);
         if let Ok(detected) = &mut detected {

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
-use super::anywhere::Sweep;
 use super::bytes::{Bytes, Stamp};
 use super::columns::{Columns, HeaderColumn, HeaderLayout};
 use super::coordinates::{CoordinatePlace, needs_any_place, scalar_range};
 use super::detect::{Detected, detect, fields};
 use super::error::{SegyError, SegyProblem};
+use super::field_sweep::Sweep;
 use super::frame::FileLayout;
 use super::header::{Field, at};
 use super::info::{BytePositions, Findings, SegyInfo, corners};

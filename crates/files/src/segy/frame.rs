@@ -52,7 +52,7 @@ impl FileLayout {
         findings.evidence(format!("text header: {}", encoding.name()));
         let (order, format) = order_and_format(file, &head, options, findings)?;
         let binary = BinaryHeader::parse(&head, order);
-        let shape = Shape::find(file, &binary, order, format, encoding, findings)?;
+        let shape = LayoutReading::find(file, &binary, order, format, encoding, findings)?;
         let extended = (shape.start.saturating_sub(FILE_HEADER_BYTES as u64) as usize).min(MOST_EXTENDED_TEXT);
         let extended_text = match file.get(FILE_HEADER_BYTES as u64, extended, None)? {
             Some(bytes) => decode_lines(&bytes, encoding),
@@ -216,14 +216,14 @@ fn samples_in_header(file: &Bytes, byte: u64, trace: usize, order: ByteOrder) ->
 
 /// One reading of where the traces are.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Shape {
+struct LayoutReading {
     start: u64,
     header_bytes: usize,
     samples: usize,
     traces: usize,
 }
 
-impl Shape {
+impl LayoutReading {
     fn stride(&self, format: SampleFormat) -> usize {
         self.header_bytes + self.samples * format.bytes()
     }

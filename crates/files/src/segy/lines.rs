@@ -78,8 +78,8 @@ impl LineLattice {
         let is_numbered = |pair: &(i32, i32)| Some(*pair) != skip;
         let limit = MAX_PLACES_PER_TRACE * inline.len() as u64 + 1024;
         let (inlines, crosslines) = rayon::join(
-            || Axis::find(pairs().filter(is_numbered), ranges[0], limit),
-            || Axis::find(pairs().filter(is_numbered).map(|(i, x)| (x, i)), ranges[1], limit),
+            || AxisNumbers::find(pairs().filter(is_numbered), ranges[0], limit),
+            || AxisNumbers::find(pairs().filter(is_numbered).map(|(i, x)| (x, i)), ranges[1], limit),
         );
         let (inlines, crosslines) = (inlines?, crosslines?);
         let places = (inlines.count as u64).saturating_mul(crosslines.count as u64);
@@ -184,7 +184,7 @@ fn unnumbered(inline: &HeaderColumn, crossline: &HeaderColumn) -> bool {
 }
 
 /// The numbers of one axis.
-struct Axis {
+struct AxisNumbers {
     low: i64,
     high: i64,
     step: i64,
@@ -192,7 +192,7 @@ struct Axis {
     descending: bool,
 }
 
-impl Axis {
+impl AxisNumbers {
     /// From `(number, number of the other axis)` in file order; numbers lie in `range`.
     fn find(pairs: impl Iterator<Item = (i32, i32)>, range: [i32; 2], limit: u64) -> Result<Self, Flaw> {
         let mut numbers = Numbers::within(range);

@@ -35,7 +35,6 @@
 //! ```
 
 mod angles;
-mod anywhere;
 mod bins;
 mod block;
 mod bytes;
@@ -44,6 +43,7 @@ mod columns;
 mod coordinates;
 mod detect;
 mod error;
+mod field_sweep;
 mod file;
 mod frame;
 mod header;

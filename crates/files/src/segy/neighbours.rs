@@ -7,7 +7,7 @@ use glam::{DVec2, IVec2};
 const MAX_RINGS: i32 = 24;
 
 /// Points sorted into cells. Memory: 4 bytes per point and 4 bytes per cell.
-pub(super) struct Neighbours<'a> {
+pub(super) struct PointGrid<'a> {
     points: &'a [DVec2],
     low: DVec2,
     cell: f64,
@@ -17,7 +17,7 @@ pub(super) struct Neighbours<'a> {
     order: Vec<u32>,
 }
 
-impl<'a> Neighbours<'a> {
+impl<'a> PointGrid<'a> {
     pub fn of(points: &'a [DVec2]) -> Self {
         let low = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
         let high = points.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
@@ -95,7 +95,7 @@ mod tests {
             (state >> 40) as f64 / (1 << 24) as f64
         };
         let points: Vec<DVec2> = (0..300).map(|_| DVec2::new(1000.0 * random(), 300.0 * random())).collect();
-        let grid = Neighbours::of(&points);
+        let grid = PointGrid::of(&points);
         for (index, &from) in points.iter().enumerate() {
             let brute = |accept: &dyn Fn(DVec2) -> bool| {
                 points
@@ -117,8 +117,8 @@ mod tests {
     #[test]
     fn points_on_a_line_or_in_one_place_are_no_trouble() {
         let line: Vec<DVec2> = (0..50).map(|k| DVec2::new(12.5 * f64::from(k), 0.0)).collect();
-        assert_eq!(Neighbours::of(&line).nearest(7, |_| true).unwrap().length(), 12.5);
+        assert_eq!(PointGrid::of(&line).nearest(7, |_| true).unwrap().length(), 12.5);
         let place = vec![DVec2::ONE; 9];
-        assert_eq!(Neighbours::of(&place).nearest(3, |_| true), None);
+        assert_eq!(PointGrid::of(&place).nearest(3, |_| true), None);
     }
 }

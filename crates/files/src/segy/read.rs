@@ -46,7 +46,7 @@ pub struct SegyVolume {
 
 /// Sums over a part of the volume.
 #[derive(Debug, Clone, Copy)]
-struct Sums {
+struct SampleSums {
     min: f32,
     max: f32,
     sum: f64,
@@ -55,7 +55,7 @@ struct Sums {
     non_finite: u64,
 }
 
-impl Sums {
+impl SampleSums {
     const NONE: Self =
         Self { min: f32::INFINITY, max: f32::NEG_INFINITY, sum: 0.0, sum_sq: 0.0, samples: 0, non_finite: 0 };
 
@@ -142,7 +142,7 @@ impl SegyFile {
         let [_, crosslines, samples] = self.size();
         // In a file that is sorted by crosslines, traces of neighbouring inlines lie side by side.
         let together = if self.info().sorted_by == "inline" { 1 } else { INLINES_TOGETHER };
-        let sums: Vec<Vec<Sums>> = out
+        let sums: Vec<Vec<SampleSums>> = out
             .par_chunks_mut(together * crosslines * samples)
             .enumerate()
             .map_init(Vec::new, |room, (index, inlines)| {
@@ -153,11 +153,16 @@ impl SegyFile {
             })
             .collect::<Result<_, SegyError>>()?;
         // In order, so that the last bit does not depend on the threads.
-        Ok(sums.into_iter().flatten().fold(Sums::NONE, Sums::add).amplitudes())
+        Ok(sums.into_iter().flatten().fold(SampleSums::NONE, SampleSums::add).amplitudes())
     }
 
     /// Decodes a few inlines; returns the sums of each.
-    fn read_group(&self, first_inline: usize, out: &mut [f32], room: &mut Vec<u8>) -> Result<Vec<Sums>, SegyError> {
+    fn read_group(
+        &self,
+        first_inline: usize,
+        out: &mut [f32],
+        room: &mut Vec<u8>,
+    ) -> Result<Vec<SampleSums>, SegyError> {
         let [_, crosslines, samples] = self.size();
         let inlines = out.len().div_ceil(crosslines * samples).max(1);
         let mut traces = Vec::with_capacity(out.len() / samples.max(1));
@@ -167,7 +172,7 @@ impl SegyFile {
                 None => out.fill(0.0),
             }
         }
-        let mut sums = vec![Sums::NONE; inlines];
+        let mut sums = vec![SampleSums::NONE; inlines];
         // The sums of an inline are those of its traces in the order of crosslines. Where the file has that order,
         // a trace is summed while it is in the processor's cache.
         let is_in_order = inlines == 1 && traces.is_sorted_by_key(|(trace, _)| *trace);
@@ -239,7 +244,7 @@ mod tests {
         for scale in [1e-30_f32, 1e-14, 1.0, 32_000.0, 1e16, 1e30] {
             for count in [1, 7, 8, 63, 64, 65, 500] {
                 let trace: Vec<f32> = (0..count).map(|k| scale * ((k * 37 % 101) as f32 / 50.0 - 0.9)).collect();
-                let mut sums = Sums::NONE;
+                let mut sums = SampleSums::NONE;
                 sums.add_trace(&trace);
                 let exact = |of: fn(f64) -> f64| trace.iter().map(|&v| of(f64::from(v))).sum::<f64>();
                 let size = f64::from(scale);

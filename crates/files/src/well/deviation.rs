@@ -65,13 +65,13 @@ pub fn parse_deviation(file: &Path, text: &str, options: &WellOptions) -> Result
     let names: Vec<&str> = options.name.as_deref().into_iter().chain(name.as_deref()).collect();
     let names: Vec<String> = names.into_iter().map(str::to_string).collect();
     table.keep_well(&options.well_in_file, &names.iter().map(String::as_str).collect::<Vec<_>>())?;
-    let mut reading = Reading { file, table: &table, options, notes: Vec::new(), warnings: Vec::new() };
+    let mut reading = DeviationReading { file, table: &table, options, notes: Vec::new(), warnings: Vec::new() };
     let path = reading.path()?;
     let (notes, warnings) = (reading.notes, reading.warnings);
     Ok(Deviation { path, name, notes, warnings })
 }
 
-struct Reading<'a> {
+struct DeviationReading<'a> {
     file: &'a Path,
     table: &'a Table<'a>,
     options: &'a WellOptions,
@@ -79,7 +79,7 @@ struct Reading<'a> {
     warnings: Vec<Note>,
 }
 
-impl Reading<'_> {
+impl DeviationReading<'_> {
     fn path(&mut self) -> Result<WellPath, WellFileError> {
         let datum_m = self.datum();
         let md = self.column(WellColumn::Md)?;

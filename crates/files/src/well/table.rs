@@ -6,7 +6,7 @@
 
 use super::columns::{self, WellColumn};
 use super::error::WellFileError;
-use crate::table::{Cut, is_comment};
+use crate::table::{LineCut, is_comment};
 use crate::text::{self, Field, Line, excerpt};
 use crate::unit::ZUnit;
 use std::path::{Path, PathBuf};
@@ -33,7 +33,7 @@ pub(super) struct Table<'a> {
     /// The unit each column's name states.
     pub units: Vec<Option<ZUnit>>,
     pub rows: Vec<Row<'a>>,
-    cut: Cut,
+    cut: LineCut,
 }
 
 /// A line `KEY: value` or `KEY = value`, comment marks left out.
@@ -47,7 +47,7 @@ fn fact(line: &str) -> Option<(String, String)> {
 }
 
 fn names_of(words: &str) -> Vec<String> {
-    let cut = Cut::of(words);
+    let cut = LineCut::of(words);
     // "MD (ft)" is one name although blanks cut it.
     let mut names: Vec<String> = Vec::new();
     for field in cut.fields(words) {
@@ -77,7 +77,7 @@ impl<'a> Table<'a> {
             columns: Vec::new(),
             units: Vec::new(),
             rows: Vec::new(),
-            cut: Cut { delimiter: None, decimal_comma: false },
+            cut: LineCut { delimiter: None, decimal_comma: false },
         };
         let begin = lines.iter().position(|l| l.text == "BEGIN HEADER");
         let end = lines.iter().position(|l| l.text == "END HEADER");
@@ -117,7 +117,7 @@ impl<'a> Table<'a> {
             }
         }
         let first = data.first().map_or("", |l| l.text);
-        table.cut = Cut::of(first);
+        table.cut = LineCut::of(first);
         let cut = table.cut;
         table.rows = data.into_iter().map(|line| Row { line, fields: cut.fields(line.text) }).collect();
         for name in &names {

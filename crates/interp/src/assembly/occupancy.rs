@@ -40,14 +40,14 @@ pub struct Occupancy<'a> {
     seen: Vec<u64>,
     /// First entry of each trace, or `NONE`.
     heads: Vec<u32>,
-    entries: Vec<Entry>,
+    entries: Vec<TraceVertex>,
     /// Count of entries added before [`Occupancy::set_apart`].
     others: usize,
     overlap: Overlap,
 }
 
 /// A vertex in the list of its trace.
-struct Entry {
+struct TraceVertex {
     z: f32,
     block: u16,
     next: u32,
@@ -101,7 +101,7 @@ impl<'a> Occupancy<'a> {
             }
             self.overlap.traces += usize::from(taken);
             self.overlap.beside += usize::from(beside);
-            self.entries.push(Entry { z: vertex.z, block, next: self.heads[trace] });
+            self.entries.push(TraceVertex { z: vertex.z, block, next: self.heads[trace] });
             self.heads[trace] = self.entries.len() as u32 - 1;
         }
     }

@@ -3,7 +3,7 @@
 
 use crate::holes::{FillSettings, Filled, Hole, fill_holes, find_holes};
 use crate::reassembly::VoxelSheet;
-use crate::refine::reflection::{MOST_SEAM, MOST_STEP, Samples, Step, WINDOW, neighbours};
+use crate::refine::reflection::{MOST_SEAM, MOST_STEP, TraceBox, TraceStep, WINDOW, neighbours};
 use glam::Vec3;
 use model::FaultNetwork;
 use std::collections::BinaryHeap;
@@ -42,7 +42,7 @@ pub fn fill_along<E: From<Cancelled>>(
             holes += 1;
             let sheet = &mut sheets[index];
             let Some((first, extent)) = box_around(&hole, guide, size) else { continue };
-            let samples = Samples { samples: read(first, extent)?, first, crosslines: size[1] };
+            let samples = TraceBox { samples: read(first, extent)?, first, crosslines: size[1] };
             let front = Front { samples, guide, blocks, size };
             along += front.advance(sheet, &hole);
         }
@@ -75,7 +75,7 @@ fn box_around(hole: &Hole, guide: &VoxelSheet, [nx, ny, nz]: [usize; 3]) -> Opti
 
 /// What following through one hole needs.
 struct Front<'a> {
-    samples: Samples,
+    samples: TraceBox,
     guide: &'a VoxelSheet,
     blocks: &'a FaultNetwork,
     size: [usize; 3],
@@ -92,7 +92,7 @@ impl Front<'_> {
             front.extend(self.step(from, sheet.z[from], to));
         }
         let mut made = Vec::new();
-        while let Some(Step { to, z, .. }) = front.pop() {
+        while let Some(TraceStep { to, z, .. }) = front.pop() {
             if sheet.z[to].is_finite() {
                 continue;
             }
@@ -111,15 +111,15 @@ impl Front<'_> {
     }
 
     /// The reflection that is at `z` on one trace, on a neighbouring trace.
-    fn step(&self, from: usize, z: f32, to: usize) -> Option<Step> {
+    fn step(&self, from: usize, z: f32, to: usize) -> Option<TraceStep> {
         let expected = z + self.guide.z[to] - self.guide.z[from];
         if !expected.is_finite() {
             return None;
         }
-        let Step { alike, z, .. } = self.samples.step((from, z), to, expected, ALIKE)?;
+        let TraceStep { alike, z, .. } = self.samples.step((from, z), to, expected, ALIKE)?;
         let place = Vec3::new((to / self.size[1]) as f32, (to % self.size[1]) as f32, z);
         let is_near = (z - self.guide.z[to]).abs() <= REACH;
-        (is_near && self.blocks.holds(self.guide.block, place)).then_some(Step { alike, to, z })
+        (is_near && self.blocks.holds(self.guide.block, place)).then_some(TraceStep { alike, to, z })
     }
 }
 

@@ -15,7 +15,7 @@ pub(crate) const MOST_SEAM: f32 = 1.5;
 pub(crate) type Window = [f32; 2 * WINDOW as usize + 1];
 
 /// A box of samples, of traces that are counted over the whole survey.
-pub(crate) struct Samples {
+pub(crate) struct TraceBox {
     pub(crate) samples: Volume<f32>,
     /// The voxel of the first sample.
     pub(crate) first: [usize; 3],
@@ -24,37 +24,37 @@ pub(crate) struct Samples {
 }
 
 /// A trace that the reflection may go on to.
-pub(crate) struct Step {
+pub(crate) struct TraceStep {
     pub(crate) alike: f32,
     pub(crate) to: usize,
     pub(crate) z: f32,
 }
 
-impl PartialEq for Step {
+impl PartialEq for TraceStep {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl Eq for Step {}
+impl Eq for TraceStep {}
 
-impl PartialOrd for Step {
+impl PartialOrd for TraceStep {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Step {
+impl Ord for TraceStep {
     /// The most alike is the greatest; of two alike the one with the lesser number.
     fn cmp(&self, other: &Self) -> Ordering {
         self.alike.total_cmp(&other.alike).then_with(|| other.to.cmp(&self.to)).then_with(|| self.z.total_cmp(&other.z))
     }
 }
 
-impl Samples {
+impl TraceBox {
     /// The reflection that is at `z` on trace `from`, on trace `to`, near the depth that is expected there; `None` where
     /// nothing is at least so much alike.
-    pub(crate) fn step(&self, (from, z): (usize, f32), to: usize, expected: f32, least: f32) -> Option<Step> {
+    pub(crate) fn step(&self, (from, z): (usize, f32), to: usize, expected: f32, least: f32) -> Option<TraceStep> {
         let here = self.window(from, z)?;
         let alike =
             |shift: i32| self.window(to, expected + shift as f32).map_or(-1.0, |there| correlation(&here, &there));
@@ -65,7 +65,7 @@ impl Samples {
             return None;
         }
         let z = expected + (best as i32 - MOST_STEP - 1) as f32 + summit([before, at, after]);
-        Some(Step { alike: at, to, z })
+        Some(TraceStep { alike: at, to, z })
     }
 
     /// The samples around a depth on a trace; none where they are not all there.

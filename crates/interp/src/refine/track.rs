@@ -3,7 +3,9 @@
 
 use crate::reassembly::VoxelSheet;
 use crate::refine::line::sheet_of;
-use crate::refine::reflection::{MOST_SEAM, MOST_STEP, Samples, Step, WINDOW, Window, correlation, neighbours, summit};
+use crate::refine::reflection::{
+    MOST_SEAM, MOST_STEP, TraceBox, TraceStep, WINDOW, Window, correlation, neighbours, summit,
+};
 use glam::Vec3;
 use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
@@ -64,7 +66,7 @@ pub fn track<E>(
     }
     let first = [x.saturating_sub(within), y.saturating_sub(within), z.saturating_sub(deep)];
     let last = [(x + within).min(nx - 1), (y + within).min(ny - 1), (z + deep).min(nz - 1)];
-    let samples = Samples {
+    let samples = TraceBox {
         samples: read(first, std::array::from_fn(|axis| last[axis] + 1 - first[axis]))?,
         first,
         crosslines: ny,
@@ -80,7 +82,7 @@ pub fn track<E>(
 
 /// What growing from a place needs.
 struct Growth<'a> {
-    samples: Samples,
+    samples: TraceBox,
     /// What the reflection looks like at the place.
     like: Window,
     block: u16,
@@ -98,8 +100,8 @@ impl Growth<'_> {
             made.push(seed);
         }
         let beside = neighbours(seed, self.plane).filter(|next| sheet.z[*next].is_nan());
-        let mut front: BinaryHeap<Step> = beside.filter_map(|next| self.step(sheet, (seed, z), next)).collect();
-        while let Some(Step { to, z, .. }) = front.pop() {
+        let mut front: BinaryHeap<TraceStep> = beside.filter_map(|next| self.step(sheet, (seed, z), next)).collect();
+        while let Some(TraceStep { to, z, .. }) = front.pop() {
             if sheet.z[to].is_finite() {
                 // Another way led to another cycle of the wave; no one knows which is right.
                 if (sheet.z[to] - z).abs() > MOST_SEAM {
@@ -124,7 +126,7 @@ impl Growth<'_> {
     }
 
     /// The reflection on a neighbouring trace, expected where the dip of the last step leads.
-    fn step(&self, sheet: &VoxelSheet, (from, z): (usize, f32), to: usize) -> Option<Step> {
+    fn step(&self, sheet: &VoxelSheet, (from, z): (usize, f32), to: usize) -> Option<TraceStep> {
         let before = (2 * from).checked_sub(to).filter(|&n| neighbours(from, self.plane).any(|beside| beside == n));
         let dip = before.map(|n| z - sheet.z[n]).filter(|dip| dip.abs() <= STEEPEST).unwrap_or(0.0);
         let found = self.samples.step((from, z), to, z + dip, ALIKE)?;
@@ -135,7 +137,7 @@ impl Growth<'_> {
     }
 }
 
-impl Samples {
+impl TraceBox {
     /// The peak or trough nearest to a place of a trace, or the place where there is none close by.
     fn extremum(&self, n: usize, z: f32) -> f32 {
         let Some(around) = self.window(n, z) else { return z };

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 
 /// What a surface is near one node.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fit {
+pub struct LocalFit {
     /// Value at the node.
     pub z: f32,
     /// Slope per node along x and y.
@@ -19,7 +19,7 @@ pub struct Fit {
     pub hessian: [f32; 3],
 }
 
-impl Fit {
+impl LocalFit {
     /// The quadratic (dx, dy) nodes away.
     pub fn curved(&self, dx: f32, dy: f32) -> f32 {
         let [xx, xy, yy] = self.hessian;
@@ -58,7 +58,7 @@ pub struct LocalFits<'a> {
     known: &'a [bool],
     radius: f32,
     noise: f32,
-    cache: RefCell<HashMap<usize, Fit>>,
+    cache: RefCell<HashMap<usize, LocalFit>>,
 }
 
 impl<'a> LocalFits<'a> {
@@ -68,7 +68,7 @@ impl<'a> LocalFits<'a> {
     }
 
     /// The fit at node `n`.
-    pub fn at(&self, n: usize) -> Fit {
+    pub fn at(&self, n: usize) -> LocalFit {
         if let Some(fit) = self.cache.borrow().get(&n) {
             return *fit;
         }
@@ -90,7 +90,7 @@ impl<'a> LocalFits<'a> {
     pub fn collar(&self) -> Vec<usize> {
         let [nx, ny] = self.size;
         let reach = COLLAR.ceil() as i32 + 1;
-        let mut made: Vec<(usize, Fit)> = Vec::new();
+        let mut made: Vec<(usize, LocalFit)> = Vec::new();
         for n in (0..self.known.len()).filter(|&n| !self.known[n]) {
             let (x, y) = ((n / ny) as i32, (n % ny) as i32);
             let mut near: Vec<(f32, usize, f32, f32)> = Vec::new();
@@ -118,7 +118,7 @@ impl<'a> LocalFits<'a> {
                 }
             }
             let [z, a, b] = sum.1.map(|v| v / sum.0);
-            made.push((n, Fit { z, gradient: [a, b], hessian: [0.0; 3] }));
+            made.push((n, LocalFit { z, gradient: [a, b], hessian: [0.0; 3] }));
         }
         self.cache.borrow_mut().extend(made.iter().copied());
         made.into_iter().map(|(n, _)| n).collect()
@@ -145,7 +145,7 @@ impl<'a> LocalFits<'a> {
         nodes
     }
 
-    fn robust(&self, nodes: &[[f32; 3]], radius: f32) -> Fit {
+    fn robust(&self, nodes: &[[f32; 3]], radius: f32) -> LocalFit {
         let c = least_squares(nodes, |_| true);
         let off = |c: &[f64; 6], n: &[f32; 3]| (f64::from(n[2]) - quadratic(c, n[0], n[1])).abs() as f32;
         let mut offsets: Vec<f32> = nodes.iter().map(|n| off(&c, n)).collect();
@@ -156,7 +156,7 @@ impl<'a> LocalFits<'a> {
             if nodes.iter().any(|n| off(&c, n) > limit) { least_squares(nodes, |n| off(&c, n) <= limit) } else { c };
         let r = f64::from(radius);
         let hessian = [c[3], c[4], c[5]].map(|c| (c / (r * r)) as f32);
-        Fit { z: c[0] as f32, gradient: [(c[1] / r) as f32, (c[2] / r) as f32], hessian }
+        LocalFit { z: c[0] as f32, gradient: [(c[1] / r) as f32, (c[2] / r) as f32], hessian }
     }
 }
 

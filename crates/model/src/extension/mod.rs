@@ -20,7 +20,7 @@ mod plate;
 
 pub(super) use local_fit::LocalFits;
 
-use plate::Level;
+use plate::PlateGrid;
 
 /// How to continue data.
 #[derive(Debug, Clone, Copy)]
@@ -41,13 +41,13 @@ const LEAST_RADIUS: f32 = 0.6;
 
 /// The plane z = z0 + a·x + b·y over node indices.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Plane {
+pub(super) struct NodePlane {
     z0: f64,
     a: f64,
     b: f64,
 }
 
-impl Plane {
+impl NodePlane {
     /// The least-squares plane through the finite nodes of a grid; `None` without any. Directions in which
     /// the data has no width take their slope from `prior`.
     pub fn through(size: [usize; 2], values: &[f32], prior: [f64; 2]) -> Option<Self> {
@@ -129,7 +129,7 @@ impl Extension {
     /// Replaces the NaN nodes of `values`, `[x][y]` of `size`, and leaves the others as they are; `None` when
     /// all are NaN.
     pub fn extend(&self, size: [usize; 2], values: &mut [f32]) -> Option<()> {
-        let plane = Plane::through(size, values, self.slope)?;
+        let plane = NodePlane::through(size, values, self.slope)?;
         let known: Vec<bool> = values.iter().map(|z| z.is_finite()).collect();
         if known.iter().all(|&k| k) {
             return Some(());
@@ -163,7 +163,7 @@ fn fade_out(size: [usize; 2], known: &[bool], fits: &LocalFits, flat: &[f32]) ->
     let mut ring = vec![0u8; flat.len()];
     let mut front: Vec<usize> = Vec::new();
     for n in 0..flat.len() {
-        if known[n] && Level::near_unknown(size, known, n, 1) {
+        if known[n] && PlateGrid::near_unknown(size, known, n, 1) {
             rest[n] = flat[n] - fits.at(n).z;
             ring[n] = 1;
             front.push(n);
@@ -172,7 +172,7 @@ fn fade_out(size: [usize; 2], known: &[bool], fits: &LocalFits, flat: &[f32]) ->
     for step in 2..FADE.0 as u8 + 2 {
         let mut next: Vec<usize> = Vec::new();
         for &n in &front {
-            Level::neighbours(size, n, 1, |m| {
+            PlateGrid::neighbours(size, n, 1, |m| {
                 if !known[m] && ring[m] == 0 {
                     ring[m] = step;
                     next.push(m);
@@ -182,7 +182,7 @@ fn fade_out(size: [usize; 2], known: &[bool], fits: &LocalFits, flat: &[f32]) ->
         next.sort_unstable();
         for &m in &next {
             let (mut sum, mut count) = (0.0, 0.0);
-            Level::neighbours(size, m, 1, |n| {
+            PlateGrid::neighbours(size, m, 1, |n| {
                 if ring[n] == step - 1 {
                     sum += rest[n];
                     count += 1.0;

@@ -17,7 +17,7 @@ const SWEEPS: usize = 40;
 const OVER_RELAXATION: f32 = 1.5;
 
 /// One grid of the pyramid.
-pub struct Level {
+pub struct PlateGrid {
     size: [usize; 2],
     fixed: Vec<bool>,
     h: Vec<f32>,
@@ -30,10 +30,10 @@ pub fn solve(size: [usize; 2], known: &[bool], fits: &LocalFits) -> Vec<f32> {
         coarsest += 1;
     }
     let nearest = nearest_known(size, known);
-    let mut level = Level::new(size, coarsest, known, &nearest, fits);
+    let mut level = PlateGrid::new(size, coarsest, known, &nearest, fits);
     level.solve_directly();
     for l in (0..coarsest).rev() {
-        let mut finer = Level::new(size, l, known, &nearest, fits);
+        let mut finer = PlateGrid::new(size, l, known, &nearest, fits);
         finer.start_from(&level);
         finer.relax();
         level = finer;
@@ -77,7 +77,7 @@ fn nearest_known(size: [usize; 2], known: &[bool]) -> Vec<u32> {
     nearest
 }
 
-impl Level {
+impl PlateGrid {
     fn new(fine: [usize; 2], l: usize, known: &[bool], nearest: &[u32], fits: &LocalFits) -> Self {
         let size = fine.map(|n| (n - 1).div_ceil(1 << l) + 1);
         let fine_node = |n: usize| {

@@ -32,7 +32,7 @@ const NEAR: f64 = 1.5;
 const ALIKE: f64 = 0.999;
 
 /// A surface in metric space, ready for closest points.
-pub(super) struct Surface {
+pub(super) struct DistanceSurface {
     corners: Vec<[DVec3; 3]>,
     /// Unit normal per triangle.
     normals: Vec<DVec3>,
@@ -53,7 +53,7 @@ struct Closest {
     feature: usize,
 }
 
-impl Surface {
+impl DistanceSurface {
     /// The triangles of a mesh in metric space.
     pub fn of(oriented: &OrientedMesh) -> Self {
         let mesh = &oriented.mesh;
@@ -246,7 +246,7 @@ impl NodeBox {
 /// The signed distance in metres at the nodes of a box, positive where the normals point away from; and the worst place
 /// inside `volume` (voxels) where the sides contradict each other.
 pub(super) fn signed_distance(
-    surface: &Surface,
+    surface: &DistanceSurface,
     nodes: NodeBox,
     metric: DMat3,
     volume: Vec3,
@@ -312,7 +312,7 @@ struct Around {
 
 impl Around {
     /// Of the triangles of the coarse nodes and one other, the closest to a place.
-    fn best(&self, surface: &Surface, other: usize, p: DVec3) -> usize {
+    fn best(&self, surface: &DistanceSurface, other: usize, p: DVec3) -> usize {
         let known = self.triangles[..self.count].iter().map(|&n| (surface.distance_squared(n, p), n));
         let other = (surface.distance_squared(other, p), other);
         known.fold(other, |best, found| if found.0 < best.0 { found } else { best }).1
@@ -323,7 +323,7 @@ impl Coarse {
     fn of(
         nodes: NodeBox,
         metric: DMat3,
-        surface: &Surface,
+        surface: &DistanceSurface,
         exact: impl Fn(DVec3, usize) -> usize + Sync,
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
@@ -469,7 +469,7 @@ mod tests {
     }
 
     fn field(mesh: &TriangleMesh, low: f32, high: f32) -> (LevelField, Option<Contradiction>) {
-        let surface = Surface::of(&OrientedMesh::of(mesh, 1e-6).unwrap());
+        let surface = DistanceSurface::of(&OrientedMesh::of(mesh, 1e-6).unwrap());
         let nodes = NodeBox::covering(Vec3::splat(low), Vec3::splat(high), Vec3::ONE);
         signed_distance(&surface, nodes, DMat3::IDENTITY, Vec3::splat(high), &Progress::silent()).unwrap()
     }
@@ -487,7 +487,7 @@ mod tests {
     #[test]
     fn no_other_triangle_is_closer() {
         let mesh = ball(DVec3::new(11.0, 14.2, 9.7), 6.0, 9);
-        let surface = Surface::of(&OrientedMesh::of(&mesh, 1e-6).unwrap());
+        let surface = DistanceSurface::of(&OrientedMesh::of(&mesh, 1e-6).unwrap());
         let (found, _) = field(&mesh, 0.0, 24.0);
         for n in (0..found.values.len()).step_by(37) {
             let p = found.place(n).as_dvec3();
@@ -513,7 +513,7 @@ mod tests {
             vertices: (0..count * count).map(corner).collect(),
             triangles: (0..(count - 1) * (count - 1)).flat_map(cell).collect(),
         };
-        let surface = Surface::of(&OrientedMesh::of(&mesh, 1e-6).unwrap());
+        let surface = DistanceSurface::of(&OrientedMesh::of(&mesh, 1e-6).unwrap());
         let (found, _) = field(&mesh, 0.0, 40.0);
         let mut off = Vec::new();
         for n in (0..found.values.len()).step_by(53) {

@@ -23,7 +23,7 @@ use super::network::FaultNetwork;
 use super::report::{ModelError, ModelNote, SurfaceProblem};
 use glam::{DVec3, Vec3};
 use series::{Series, SeriesPoint};
-use shape::{Shape, problem};
+use shape::{ShapeMesh, problem};
 use std::sync::Arc;
 use survey::geometry::SurveyGeometry;
 use survey::horizon::Horizon;
@@ -72,7 +72,7 @@ impl LevelSurface {
         ((value - self.at) * self.scale_m, slope * self.scale_m)
     }
 
-    /// Whether the surface may run through a box of voxel positions; where it does, it is told.
+    /// Whether the surface may run through a box of voxel positions; true wherever it does.
     pub fn may_cross(&self, low: Vec3, high: Vec3) -> bool {
         let [smallest, largest] = self.field.range(low, high);
         smallest <= self.at && largest >= self.at
@@ -109,13 +109,13 @@ impl LevelSurface {
 /// Whether a horizon has triangles that enclose a body.
 pub fn is_closed(horizon: &Horizon, geometry: &SurveyGeometry) -> bool {
     let mesh = horizon.any_shape().filter(|mesh| !mesh.triangles.is_empty());
-    mesh.is_some_and(|mesh| Shape::of(&horizon.name, mesh, geometry).is_ok_and(|shape| shape.is_closed()))
+    mesh.is_some_and(|mesh| ShapeMesh::of(&horizon.name, mesh, geometry).is_ok_and(|shape| shape.is_closed()))
 }
 
 /// Length of the border of a horizon's triangles, m, where they may be meant as a body but leave a hole.
 pub fn hole_m(horizon: &Horizon, geometry: &SurveyGeometry) -> Option<f64> {
     let mesh = horizon.any_shape().filter(|mesh| !mesh.triangles.is_empty())?;
-    Shape::of(&horizon.name, mesh, geometry).ok()?.hole_m()
+    ShapeMesh::of(&horizon.name, mesh, geometry).ok()?.hole_m()
 }
 
 /// Checks that a horizon of any shape can be part of a model, as far as it alone tells: its triangles are one two-sided
@@ -129,7 +129,7 @@ pub fn check_surface(horizon: &Horizon, contact: Contact, geometry: &SurveyGeome
     if mesh.triangles.is_empty() {
         return if is_body { Err(problem(&horizon.name, geometry, SurfaceProblem::PointBody, None)) } else { Ok(()) };
     }
-    let shape = Shape::of(&horizon.name, mesh, geometry)?;
+    let shape = ShapeMesh::of(&horizon.name, mesh, geometry)?;
     if is_body { shape.check_body() } else { Ok(()) }
 }
 
@@ -141,7 +141,7 @@ pub(super) struct Levels {
 }
 
 /// What level surfaces are made of.
-pub(super) struct Given<'a> {
+pub(super) struct LevelSources<'a> {
     pub geometry: &'a SurveyGeometry,
     /// Youngest first.
     pub horizons: &'a [&'a Horizon],
@@ -149,7 +149,7 @@ pub(super) struct Given<'a> {
     pub faults: &'a FaultNetwork,
 }
 
-impl Given<'_> {
+impl LevelSources<'_> {
     /// Makes the surfaces of all horizons that are no height fields, or belong to a series of scattered points.
     pub fn levels(&self, progress: &Progress) -> Result<Levels, ModelError> {
         let blocks = self.faults.block_count();
@@ -192,7 +192,7 @@ impl Given<'_> {
 
     fn add_mesh(&self, h: usize, levels: &mut Levels, progress: &Progress) -> Result<(), ModelError> {
         let Some(mesh) = self.mesh(h) else { return Ok(()) };
-        let shape = Shape::of(&self.horizons[h].name, mesh, self.geometry)?;
+        let shape = ShapeMesh::of(&self.horizons[h].name, mesh, self.geometry)?;
         let blocks = self.faults.block_count();
         for block in 0..blocks {
             let own = shape.horizon(|p| blocks == 1 || self.shares(block, p), progress)?;
@@ -225,7 +225,7 @@ impl Given<'_> {
         if mesh.triangles.is_empty() {
             return Err(problem(name, self.geometry, SurfaceProblem::PointBody, None));
         }
-        let body = Shape::of(name, mesh, self.geometry)?.body(progress)?;
+        let body = ShapeMesh::of(name, mesh, self.geometry)?.body(progress)?;
         levels.surfaces[h].fill(Some(body));
         Ok(())
     }
@@ -339,7 +339,7 @@ pub fn bodies_overlap(
     if low.cmpgt(other_high).any() || high.cmplt(other_low).any() {
         return Ok(None);
     }
-    let level = |body: &Horizon, mesh| Shape::of(&body.name, mesh, geometry)?.body(progress);
+    let level = |body: &Horizon, mesh| ShapeMesh::of(&body.name, mesh, geometry)?.body(progress);
     let (a, b) = (level(younger, a)?, level(older, b)?);
     Ok(overlap([younger.name.as_str(), older.name.as_str()], [&a, &b], geometry))
 }

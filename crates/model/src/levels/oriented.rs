@@ -83,7 +83,7 @@ pub fn surface_through(
         return Err(problem(name, geometry, error, Some(metric.inverse() * turned[0].at)));
     }
     let spacing = usual_spacing(&known);
-    let fit = Fit { known: &known, metric, size: geometry.size() };
+    let fit = OrientedFit { known: &known, metric, size: geometry.size() };
     let mut field: Option<LevelField> = None;
     for level in (0..=COARSER).rev() {
         field = Some(fit.solve(f64::from(1u32 << level), field.as_ref(), progress)?);
@@ -147,13 +147,13 @@ fn usual_spacing(points: &[OrientedPoint]) -> f64 {
 }
 
 /// What is fitted.
-struct Fit<'a> {
+struct OrientedFit<'a> {
     known: &'a [OrientedPoint],
     metric: DMat3,
     size: [usize; 3],
 }
 
-impl Fit<'_> {
+impl OrientedFit<'_> {
     /// f in m on a lattice whose spacing is `coarseness` times the finest.
     fn solve(
         &self,
@@ -332,7 +332,7 @@ mod tests {
         assert!(through(&ball(6)).map(|_| ()).unwrap_err().to_string().contains("points"));
     }
 
-    /// Inward normals are as good: the sides of a closed surface are told by what it encloses.
+    /// Inward normals are as good: what a closed surface encloses decides its sides.
     #[test]
     fn normals_that_all_point_inwards_make_the_same_body() {
         let turned: Vec<_> = ball(100).into_iter().map(|(p, n)| (p, -n)).collect();

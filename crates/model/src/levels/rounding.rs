@@ -22,7 +22,7 @@ const FEWEST: usize = 5;
 /// beside those of the field.
 pub(super) fn round_off(field: &mut LevelField, metric: DMat3, progress: &Progress) -> Result<(), Cancelled> {
     let steps_m = [0, 1, 2].map(|axis: usize| metric.col(axis).length() as f32 * field.step[axis]);
-    let exact = Lattice { size: field.size, steps_m, values: std::mem::take(&mut field.values) };
+    let exact = NodeLattice { size: field.size, steps_m, values: std::mem::take(&mut field.values) };
     let rounded = exact.rounded(progress)?;
     field.values = match rounded {
         None => exact.values,
@@ -38,7 +38,7 @@ pub(super) fn round_off(field: &mut LevelField, metric: DMat3, progress: &Progre
 }
 
 /// A function at the nodes of a lattice.
-struct Lattice {
+struct NodeLattice {
     size: [usize; 3],
     /// Metres between nodes.
     steps_m: [f32; 3],
@@ -46,7 +46,7 @@ struct Lattice {
     values: Vec<f32>,
 }
 
-impl Lattice {
+impl NodeLattice {
     /// The function, averaged over its width where that is more than a step; `None` where it is nowhere.
     fn rounded(&self, progress: &Progress) -> Result<Option<Vec<f32>>, Cancelled> {
         progress.check()?;

@@ -61,7 +61,7 @@ pub(super) struct Series<'a> {
 }
 
 /// τ on a lattice, and its value on each horizon.
-struct Solution {
+struct SeriesSolution {
     /// At the nodes of the lattice, for each block.
     fields: Vec<LevelField>,
     levels: Vec<f64>,
@@ -73,7 +73,7 @@ impl Series<'_> {
     /// # Errors
     /// The user cancelled.
     pub fn surfaces(&self, progress: &Progress) -> Result<Vec<Vec<LevelSurface>>, Cancelled> {
-        let mut solution: Option<Solution> = None;
+        let mut solution: Option<SeriesSolution> = None;
         for level in (0..=COARSER).rev() {
             solution = Some(self.solve(f64::from(1u32 << level), solution.as_ref(), progress)?);
         }
@@ -96,7 +96,12 @@ impl Series<'_> {
     }
 
     /// τ on a lattice whose spacing is `coarseness` times the finest.
-    fn solve(&self, coarseness: f64, before: Option<&Solution>, progress: &Progress) -> Result<Solution, Cancelled> {
+    fn solve(
+        &self,
+        coarseness: f64,
+        before: Option<&SeriesSolution>,
+        progress: &Progress,
+    ) -> Result<SeriesSolution, Cancelled> {
         let nodes = CutLattice::nodes_around(self.size, self.metric, NODES, coarseness);
         let mut near =
             CutLattice::near_blocks(self.faults, nodes, AROUND, |node| Some(self.faults.block_at(nodes.place(node))));
@@ -130,7 +135,7 @@ impl Series<'_> {
         let mut values = equations.solve(guess, TOLERANCE, MOST_STEPS, progress)?;
         let between = values.split_off(lattice.unknowns);
         let levels = [[0.0]].into_iter().chain(between).chain([[1.0]]).map(|[level]| level).collect();
-        Ok(Solution { fields: lattice.spread(&values, 0), levels })
+        Ok(SeriesSolution { fields: lattice.spread(&values, 0), levels })
     }
 
     /// Metres along ∇τ for a unit of τ: the median over the points.

@@ -1,6 +1,6 @@
 //! A horizon given as triangles: checked, and as a level surface.
 
-use super::distance::{NodeBox, Surface, signed_distance};
+use super::distance::{DistanceSurface, NodeBox, signed_distance};
 use super::rounding::round_off;
 use super::tree::Tree;
 use super::{LevelSurface, cut::MARGIN};
@@ -22,7 +22,7 @@ const FINE_STEP: f32 = 0.5;
 const FINE_NODES: usize = 3_000_000;
 
 /// A mesh in metric space, oriented, of a survey.
-pub(super) struct Shape<'a> {
+pub(super) struct ShapeMesh<'a> {
     name: &'a str,
     geometry: &'a SurveyGeometry,
     metric: DMat3,
@@ -30,7 +30,7 @@ pub(super) struct Shape<'a> {
     mesh: OrientedMesh,
 }
 
-impl<'a> Shape<'a> {
+impl<'a> ShapeMesh<'a> {
     /// Checks that triangles are a surface: two-sided, without branches or crossings.
     ///
     /// # Errors
@@ -149,7 +149,7 @@ impl<'a> Shape<'a> {
         let fine = NodeBox::covering(low, high, Vec3::splat(FINE_STEP));
         let nodes =
             if is_closed && fine.count() <= FINE_NODES { fine } else { NodeBox::covering(low, high, Vec3::ONE) };
-        let (field, contradiction) = signed_distance(&Surface::of(mesh), nodes, self.metric, last, progress)?;
+        let (field, contradiction) = signed_distance(&DistanceSurface::of(mesh), nodes, self.metric, last, progress)?;
         if let Some(found) = contradiction {
             return Err(problem(self.name, self.geometry, SurfaceProblem::Contradiction, Some(found.at.as_dvec3())));
         }

@@ -8,7 +8,7 @@ const LEAF: usize = 4;
 
 /// A box around the triangles `start..end` of the order; its halves follow at `children` if it is no leaf.
 #[derive(Debug, Clone, Copy)]
-struct Node {
+struct BoxNode {
     low: DVec3,
     high: DVec3,
     start: u32,
@@ -17,7 +17,7 @@ struct Node {
     second: u32,
 }
 
-impl Node {
+impl BoxNode {
     fn distance_squared(&self, p: DVec3) -> f64 {
         (self.low - p).max(p - self.high).max(DVec3::ZERO).length_squared()
     }
@@ -25,7 +25,7 @@ impl Node {
 
 /// The tree.
 pub(super) struct Tree {
-    nodes: Vec<Node>,
+    nodes: Vec<BoxNode>,
     order: Vec<u32>,
 }
 
@@ -46,7 +46,7 @@ impl Tree {
         };
         let (low, high) = bounds(&mut all.into_iter());
         let at = self.nodes.len();
-        self.nodes.push(Node { low, high, start: start as u32, end: end as u32, second: 0 });
+        self.nodes.push(BoxNode { low, high, start: start as u32, end: end as u32, second: 0 });
         if end - start <= LEAF {
             return;
         }

@@ -30,7 +30,7 @@ pub(super) fn occurring(
     metric: DMat3,
     progress: &Progress,
 ) -> Result<Vec<BlockSignature>, Cancelled> {
-    let search = Search {
+    let search = BlockSearch {
         surfaces,
         change: surfaces.iter().map(|s| s.steepest().hypot(1.0)).collect(),
         truncation,
@@ -46,7 +46,7 @@ pub(super) fn occurring(
     Ok(by_voxel.into_iter().map(|(_, s)| s).collect())
 }
 
-struct Search<'a> {
+struct BlockSearch<'a> {
     surfaces: &'a [FaultSurface],
     /// Largest change of w − g per metre, per fault.
     change: Vec<f64>,
@@ -56,7 +56,7 @@ struct Search<'a> {
     metric: DMat3,
 }
 
-impl Search<'_> {
+impl BlockSearch<'_> {
     /// Visits the voxels `low .. low + size`, where the sides of the faults in `known.0` are `known.1`.
     fn visit(
         &self,

@@ -1,6 +1,6 @@
 //! From a triangle mesh to a fault surface: best-fit plane, exact rasterisation, continuation.
 
-use super::outline::Patch;
+use super::outline::FaultPatch;
 use super::surface::FaultSurface;
 use crate::extension::Extension;
 use crate::report::ModelError;
@@ -20,7 +20,7 @@ const FOLD_CELLS: f64 = 1.0;
 /// A fault surface together with the mesh it was made from, in the surface's frame.
 pub(super) struct Built {
     pub surface: FaultSurface,
-    pub patch: Patch,
+    pub patch: FaultPatch,
     /// Vertices in use, voxel space.
     pub vertices: Vec<DVec3>,
 }
@@ -87,7 +87,7 @@ pub(super) fn drawn(geometry: &SurveyGeometry, fault: &Fault) -> Result<(Built, 
     let size = [size.x.max(4) as usize, size.y.max(4) as usize];
     let grid_origin = [first.x as i32, first.y as i32];
     let frame = DMat3::from_cols(u / spacing_m, v / spacing_m, n).transpose();
-    let patch = Patch::new(
+    let patch = FaultPatch::new(
         points.iter().map(|&p| frame * (p - origin)).collect(),
         triangles.iter().map(|t| t.map(|v| v as u32)).collect(),
     );
@@ -177,7 +177,7 @@ fn smallest_eigenvector(m: DMat3) -> DVec3 {
 fn rasterise(
     fault: &Fault,
     geometry: &SurveyGeometry,
-    patch: &Patch,
+    patch: &FaultPatch,
     voxels: &[DVec3],
     origin: [i32; 2],
     size: [usize; 2],

@@ -20,7 +20,7 @@ pub use surface::FaultSurface;
 use crate::report::ModelError;
 use build::Built;
 use glam::{DVec3, Vec3};
-use outline::{Reach, Target};
+use outline::{Course, Reach};
 use rayon::prelude::*;
 use survey::fault::Fault;
 use survey::geometry::SurveyGeometry;
@@ -320,7 +320,7 @@ fn extent(
         };
         towards(voxels, inwards).filter(bridges)
     };
-    let mut boundary: Vec<Box<dyn Fn(DVec3, f64) -> Target>> = Vec::new();
+    let mut boundary: Vec<Box<dyn Fn(DVec3, f64) -> Course>> = Vec::new();
     for axis in 0..3 {
         let last = geometry.size()[axis] as f64 - 1.0;
         boundary.push(Box::new(move |q, spacing| to_border(voxel(q)[axis], DVec3::AXES[axis], spacing)));

@@ -16,19 +16,19 @@ const PROBE: f64 = 0.02;
 
 #[derive(Clone)]
 /// Triangles in the frame of a fault surface: (u cells, v cells, w m).
-pub(super) struct Patch {
+pub(super) struct FaultPatch {
     points: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
 }
 
 /// Something a rim may end at: from a rim point and the spacing of the picks towards the rim there (cells), the
 /// direction and the cells to go; `None` when it is too far or lies aside.
-pub(super) type Reach<'a> = &'a dyn Fn(DVec3, f64) -> Target;
+pub(super) type Reach<'a> = &'a dyn Fn(DVec3, f64) -> Course;
 
 /// Direction and cells to go, if the target is near.
-pub(super) type Target = Option<(DVec2, f64)>;
+pub(super) type Course = Option<(DVec2, f64)>;
 
-impl Patch {
+impl FaultPatch {
     pub fn new(points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
         Self { points, triangles }
     }
@@ -128,7 +128,7 @@ impl Patch {
             self.each_node(index, origin, size, |n, _| covered[n] = true);
         }
         let outside = flood(size, &covered);
-        let bins = Bins::new(self, origin, size);
+        let bins = TriangleBins::new(self, origin, size);
         let mut rim: Vec<DVec2> = Vec::new();
         for ([a, b], _) in self.rim() {
             let (a, b) = (self.points[a as usize].truncate(), self.points[b as usize].truncate());
@@ -202,14 +202,14 @@ fn touches(outside: &[bool], origin: [i32; 2], size: [usize; 2], p: DVec2) -> bo
 }
 
 /// Triangles by the unit cells they touch.
-struct Bins {
+struct TriangleBins {
     origin: [i32; 2],
     size: [usize; 2],
     cells: Vec<Vec<u32>>,
 }
 
-impl Bins {
-    fn new(patch: &Patch, origin: [i32; 2], size: [usize; 2]) -> Self {
+impl TriangleBins {
+    fn new(patch: &FaultPatch, origin: [i32; 2], size: [usize; 2]) -> Self {
         let mut cells = vec![Vec::new(); size[0] * size[1]];
         for (index, t) in patch.triangles.iter().enumerate() {
             let [a, b, c] = patch.corners(t);
@@ -228,7 +228,7 @@ impl Bins {
     }
 
     /// Whether some triangle holds `p`.
-    fn holds(&self, patch: &Patch, p: DVec2) -> bool {
+    fn holds(&self, patch: &FaultPatch, p: DVec2) -> bool {
         let clamp = |x: f64, origin: i32, n: usize| (x - f64::from(origin)).floor().clamp(0.0, n as f64 - 1.0) as usize;
         let cell = clamp(p.x, self.origin[0], self.size[0]) * self.size[1] + clamp(p.y, self.origin[1], self.size[1]);
         self.cells[cell].iter().any(|&t| {

@@ -24,7 +24,7 @@ pub fn band(
     has: impl Fn(usize, usize) -> bool,
     levels: [f64; 2],
 ) -> Vec<Vec<DVec2>> {
-    let mut edges: BTreeMap<(Key, Key), [DVec2; 2]> = BTreeMap::new();
+    let mut edges: BTreeMap<(ExactPlace, ExactPlace), [DVec2; 2]> = BTreeMap::new();
     for x in 0..cells[0] {
         for y in (0..cells[1]).filter(|y| has(x, *y)) {
             let node = |dx: usize, dy: usize| (DVec2::new((x + dx) as f64, (y + dy) as f64), value(x + dx, y + dy));
@@ -48,9 +48,9 @@ pub fn band(
 }
 
 /// A place, exactly.
-type Key = [u64; 2];
+type ExactPlace = [u64; 2];
 
-fn key(at: DVec2) -> Key {
+fn key(at: DVec2) -> ExactPlace {
     // Zero has one sign.
     [(at.x + 0.0).to_bits(), (at.y + 0.0).to_bits()]
 }
@@ -75,7 +75,7 @@ fn clipped(triangle: &[(DVec2, f64); 3], [low, high]: [f64; 2]) -> Vec<DVec2> {
 }
 
 /// Chains edges into rings; points on a straight line are left out.
-fn traced(mut edges: BTreeMap<(Key, Key), [DVec2; 2]>) -> Vec<Vec<DVec2>> {
+fn traced(mut edges: BTreeMap<(ExactPlace, ExactPlace), [DVec2; 2]>) -> Vec<Vec<DVec2>> {
     let mut rings = Vec::new();
     while let Some(((begin, mut at), [first, second])) = edges.pop_first() {
         let mut ring = vec![first, second];

@@ -48,7 +48,7 @@ struct CornerState {
 }
 
 #[derive(Clone, Copy)]
-struct Piece {
+struct ClippedPiece {
     v: [u32; 3],
     /// Tag of the edge from v\[i\] to v\[i + 1\].
     tag: [Tag; 3],
@@ -61,7 +61,7 @@ struct Piece {
 
 /// A surface to clip by.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
-enum Cut {
+enum ClipSurface {
     Fault(u8),
     Sheet { horizon: u16, block: u16 },
 }
@@ -77,13 +77,13 @@ struct Clipper<'a> {
     /// Below which sheets of a block a vertex after the corners lies.
     cut_below: HashMap<(u32, u16), Below>,
     /// The vertex where an edge (lower vertex first) meets a surface.
-    cuts: HashMap<(u32, u32, Cut), u32>,
+    cuts: HashMap<(u32, u32, ClipSurface), u32>,
     /// The chord between two vertices on a fault.
     chords: HashMap<(u32, u32), u32>,
     chord_ends: Vec<[u32; 2]>,
     /// Vertices where sheets meet a chord, with the sheet's block.
     crossings: HashMap<u32, Vec<(u32, u16)>>,
-    pieces: Vec<(Piece, Region)>,
+    pieces: Vec<(ClippedPiece, Region)>,
 }
 
 /// Divides the rectangle of `plane` into regions.
@@ -136,7 +136,7 @@ impl Clipper<'_> {
         let id = |i: usize, j: usize| (i * (nt + 1) + j) as u32;
         let (a, b, c, d) = (id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1));
         let frame = |on: bool| if on { Tag::Frame } else { Tag::Inner };
-        let whole = |v, tag| Piece { v, tag, bits: 0, below: Below::default(), next: None };
+        let whole = |v, tag| ClippedPiece { v, tag, bits: 0, below: Below::default(), next: None };
         let mut pieces = vec![
             whole([a, b, c], [frame(j == 0), frame(i + 1 == ns), Tag::Inner]),
             whole([a, c, d], [Tag::Inner, frame(j + 1 == nt), frame(i == 0)]),
@@ -144,7 +144,7 @@ impl Clipper<'_> {
         for fault in 0..self.model.faults().surfaces().len() as u8 {
             let mut next = Vec::with_capacity(pieces.len());
             for piece in pieces {
-                self.clip(piece, Cut::Fault(fault), &mut next);
+                self.clip(piece, ClipSurface::Fault(fault), &mut next);
             }
             pieces = next;
         }
@@ -157,7 +157,7 @@ impl Clipper<'_> {
                 for part in parts {
                     if part.next == Some(horizon) {
                         let first = divided.len();
-                        self.clip(part, Cut::Sheet { horizon: horizon as u16, block }, &mut divided);
+                        self.clip(part, ClipSurface::Sheet { horizon: horizon as u16, block }, &mut divided);
                         for new in &mut divided[first..] {
                             *new = self.up_to_next(*new, horizon + 1, block);
                         }
@@ -173,7 +173,7 @@ impl Clipper<'_> {
     }
 
     /// Finds the next horizon from `first` on that divides a piece; the piece lies on one side of those before it.
-    fn up_to_next(&mut self, mut piece: Piece, first: usize, block: u16) -> Piece {
+    fn up_to_next(&mut self, mut piece: ClippedPiece, first: usize, block: u16) -> ClippedPiece {
         let below = piece.v.map(|v| self.below(v, block));
         piece.below.take_from(first, &below[0]);
         piece.next = Below::first_between(below.each_ref(), first);
@@ -181,12 +181,12 @@ impl Clipper<'_> {
     }
 
     /// Appends the parts of `piece` on both sides of `cut`.
-    fn clip(&mut self, piece: Piece, cut: Cut, out: &mut Vec<Piece>) {
+    fn clip(&mut self, piece: ClippedPiece, cut: ClipSurface, out: &mut Vec<ClippedPiece>) {
         let side = piece.v.map(|v| self.is_positive(v, cut));
-        let marked = |mut piece: Piece, positive: bool| {
+        let marked = |mut piece: ClippedPiece, positive: bool| {
             match cut {
-                Cut::Fault(f) => piece.bits |= u64::from(positive) << f,
-                Cut::Sheet { horizon, .. } => piece.below = piece.below.with(usize::from(horizon), positive),
+                ClipSurface::Fault(f) => piece.bits |= u64::from(positive) << f,
+                ClipSurface::Sheet { horizon, .. } => piece.below = piece.below.with(usize::from(horizon), positive),
             }
             piece
         };
@@ -201,8 +201,8 @@ impl Clipper<'_> {
         let p = self.cut_edge(v[0], v[1], tag[0], cut);
         let q = self.cut_edge(v[2], v[0], tag[2], cut);
         let contour = match cut {
-            Cut::Sheet { horizon, .. } => Tag::Horizon { horizon },
-            Cut::Fault(fault) => {
+            ClipSurface::Sheet { horizon, .. } => Tag::Horizon { horizon },
+            ClipSurface::Fault(fault) => {
                 let count = self.chord_ends.len() as u32;
                 let chord = *self.chords.entry((p.min(q), p.max(q))).or_insert(count);
                 if chord == count {
@@ -211,7 +211,7 @@ impl Clipper<'_> {
                 Tag::Fault { fault, chord }
             }
         };
-        let part = |v, tag| Piece { v, tag, ..piece };
+        let part = |v, tag| ClippedPiece { v, tag, ..piece };
         out.push(marked(part([v[0], p, q], [tag[0], contour, tag[2]]), side[lone]));
         // The other side is a quadrilateral p, v1, v2, q.
         out.push(marked(part([p, v[1], v[2]], [tag[0], tag[1], Tag::Inner]), !side[lone]));
@@ -219,7 +219,7 @@ impl Clipper<'_> {
     }
 
     /// The vertex where edge (a, b) meets `cut`.
-    fn cut_edge(&mut self, a: u32, b: u32, tag: Tag, cut: Cut) -> u32 {
+    fn cut_edge(&mut self, a: u32, b: u32, tag: Tag, cut: ClipSurface) -> u32 {
         let (low, high) = (a.min(b), a.max(b));
         if let Some(&v) = self.cuts.get(&(low, high, cut)) {
             return v;
@@ -232,30 +232,30 @@ impl Clipper<'_> {
         self.positions.push(st);
         self.cut_bits.push(self.model.faults().bits_at(self.plane.voxel(st).as_vec3()));
         self.cuts.insert((low, high, cut), v);
-        if let (Tag::Fault { chord, .. }, Cut::Sheet { block, .. }) = (tag, cut) {
+        if let (Tag::Fault { chord, .. }, ClipSurface::Sheet { block, .. }) = (tag, cut) {
             self.crossings.entry(chord).or_default().push((v, block));
         }
         v
     }
 
     /// The function whose zero is the surface, at (s, t).
-    fn value(&self, st: DVec2, cut: Cut) -> f64 {
+    fn value(&self, st: DVec2, cut: ClipSurface) -> f64 {
         let p = self.plane.voxel(st);
         match cut {
-            Cut::Fault(f) => self.model.faults().surfaces()[usize::from(f)].side(p),
-            Cut::Sheet { horizon, block } => match self.model.level(usize::from(horizon), block) {
+            ClipSurface::Fault(f) => self.model.faults().surfaces()[usize::from(f)].side(p),
+            ClipSurface::Sheet { horizon, block } => match self.model.level(usize::from(horizon), block) {
                 Some(level) => f64::from(level.offset_m(p.as_vec3())),
                 None => p.z - f64::from(self.model.sheet(usize::from(horizon), block).z_at(p.x as f32, p.y as f32)),
             },
         }
     }
 
-    fn is_positive(&mut self, v: u32, cut: Cut) -> bool {
+    fn is_positive(&mut self, v: u32, cut: ClipSurface) -> bool {
         let corner = self.corners.get(v as usize);
         match (cut, corner) {
-            (Cut::Fault(f), Some(corner)) => corner.bits >> f & 1 == 1,
-            (Cut::Fault(f), None) => self.cut_bits[v as usize - self.corners.len()] >> f & 1 == 1,
-            (Cut::Sheet { horizon, block }, _) => self.below(v, block).has(usize::from(horizon)),
+            (ClipSurface::Fault(f), Some(corner)) => corner.bits >> f & 1 == 1,
+            (ClipSurface::Fault(f), None) => self.cut_bits[v as usize - self.corners.len()] >> f & 1 == 1,
+            (ClipSurface::Sheet { horizon, block }, _) => self.below(v, block).has(usize::from(horizon)),
         }
     }
 

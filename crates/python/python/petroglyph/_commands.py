@@ -6,14 +6,13 @@ Each method makes the object that :meth:`Commands.apply` takes; nothing else cha
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
-Path = str | os.PathLike[str]
-Progress = Callable[[str, int, int], object]
+from petroglyph._types import Options, Path, Progress
+
 Effect = dict[str, Any]
 Place = tuple[float, float, float]
-Options = Mapping[str, Any]
 Contact = Literal["conformable", "erosional", "onlap", "intrusive"]
 
 

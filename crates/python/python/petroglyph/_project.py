@@ -5,23 +5,24 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from petroglyph import _native
+from petroglyph._calls import run
 from petroglyph._commands import Commands, Effect
 from petroglyph._errors import PetroglyphError
+from petroglyph._folders import beside
 from petroglyph._geometry import Geometry
 from petroglyph._stored import described, open_volume, write_volume
+from petroglyph._types import Options, Path, Progress
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
     import xarray as xr
 
-Path = str | os.PathLike[str]
-Progress = Callable[[str, int, int], object]
 #: A value of an option, as :func:`petroglyph.program.run` takes it.
 Option = Any
 
@@ -112,9 +113,7 @@ class Volume:
 
     def live(self) -> npt.NDArray[np.bool_]:
         """Which traces were recorded, ``[inline][crossline]``."""
-        import numpy as np
-
-        return np.array(self._native.read_live(self.name), dtype=bool).reshape(self.shape[:2])
+        return self._native.read_live(self.name)
 
     def xarray(self, *, chunks: Mapping[str, int] | str | None = None) -> xr.DataArray:
         """The volume as a labelled array, read when it is used; see :func:`petroglyph.open_volume`."""
@@ -400,15 +399,13 @@ class Project(Commands):
             there = described(array, None, live)[1] if hasattr(array, "coords") else own
             # Places that were computed differ in their last digits.
             geometry = own if there.is_close(own) else there
-        made = _beside(self.path, name)
-        try:
+        with beside(self.path) as folder:
+            made = os.path.join(folder, "volume.zarr")
             write_volume(
                 made, array, geometry=geometry, live=live, quantity=quantity, unit=unit, source="an array of Python",
                 memory=memory, progress=progress,
             )  # fmt: skip
-            return self.apply({"import": {"path": os.fspath(made), "name": name}}, progress=progress, _moved=True)
-        finally:
-            _remove(made)
+            return self.apply({"import": {"path": made, "name": name}}, progress=progress, _moved=True)
 
     def add_horizon_array(self, name: str, depth: Any, **more: Any) -> Effect:
         """Adds a horizon from depths at the traces of the survey.
@@ -574,58 +571,42 @@ class Project(Commands):
         --------
         >>> project.render(cut="nearest,0.45,0.45", blend=0.5, size="800x600")     # doctest: +SKIP
         """
-        from petroglyph import program
-
         with tempfile.TemporaryDirectory() as folder:
             path = FilePath(folder) / "picture.png"
-            report = program.run("render", self.path, path, progress=progress, threads=threads, **options)
+            report = run("render", self.path, path, progress=progress, threads=threads, **options)
             return Picture(path.read_bytes(), report)
 
     def figure(self, out: Path, *, progress: Progress | None = None, **options: Option) -> dict[str, Any]:
         """Writes a figure, PNG, TIFF, SVG or PDF by the ending of `out`, by the options of ``petroglyph render``."""
-        from petroglyph import program
-
-        return program.run("render", self.path, out, progress=progress, **options)
+        return run("render", self.path, out, progress=progress, **options)
 
     def figures(self, out: Path, *, progress: Progress | None = None, **options: Option) -> dict[str, Any]:
         """Makes every figure that the project lists."""
-        from petroglyph import program
-
-        return program.run("figures", self.path, out, progress=progress, **options)
+        return run("figures", self.path, out, progress=progress, **options)
 
     def review(self, out: Path, *, progress: Progress | None = None, **options: Option) -> dict[str, Any]:
         """Writes a page for any browser, by the options of ``petroglyph review``."""
-        from petroglyph import program
-
-        return program.run("review", self.path, out, progress=progress, **options)
+        return run("review", self.path, out, progress=progress, **options)
 
     def export(self, out: Path, *, progress: Progress | None = None, **options: Option) -> dict[str, Any]:
         """Writes a horizon, a fault, candidates, a volume or a 3D model, by the options of ``petroglyph export``."""
-        from petroglyph import program
-
-        return program.run("export", self.path, out, progress=progress, **options)
+        return run("export", self.path, out, progress=progress, **options)
 
     def parameterize(self, *, progress: Progress | None = None, **options: Option) -> dict[str, Any]:
         """Computes i, j, k and keeps them in the project, by the options of ``petroglyph parameterize``."""
-        from petroglyph import program
-
-        done = program.run("parameterize", self.path, progress=progress, **options)
+        done = run("parameterize", self.path, progress=progress, **options)
         self.reload()
         return done
 
     def check(self, *, repair: bool = False) -> dict[str, Any]:
         """Checks that everything is there and undamaged, and repairs what can be repaired if told to."""
-        from petroglyph import program
-
-        done = program.run("check", self.path, repair=repair)
+        done = run("check", self.path, repair=repair)
         self.reload()
         return done
 
     def prune(self) -> None:
         """Deletes the history and the data that only it refers to."""
-        from petroglyph import program
-
-        program.run("prune", self.path)
+        run("prune", self.path)
         self.reload()
 
     def __repr__(self) -> str:
@@ -655,8 +636,8 @@ def import_segy(
     path: Path,
     *,
     name: str | None = None,
-    polarity: str = "normal",
-    options: Mapping[str, Any] | None = None,
+    polarity: Literal["normal", "reverse"] = "normal",
+    options: Options | None = None,
     memory: int | None = None,
     progress: Progress | None = None,
 ) -> Project:
@@ -671,40 +652,22 @@ def import_segy(
     name, polarity, options, memory, progress
         As of :meth:`Project.import_`.
     """
-    fields: dict[str, Any] = {"path": os.fspath(survey), "polarity": polarity}
-    fields.update({key: value for key, value in (("name", name), ("options", options)) if value is not None})
-    command = {"import": fields}
     if FilePath(path).exists():
         project = open(path)
-        project.apply(command, memory=memory, progress=progress)
+        project.import_(survey, name=name, polarity=polarity, options=options, memory=memory, progress=progress)
         return project
-    return Project(_native.Project.create(path, None, [json.dumps(command)], memory, False, progress))
+    fields = {"path": os.fspath(survey), "name": name, "polarity": polarity, "options": options}
+    command = json.dumps({"import": {field: value for field, value in fields.items() if value is not None}})
+    return Project(_native.Project.create(path, None, [command], memory, False, progress))
 
 
 def import_volume(array: Any, path: Path, *, name: str = "seismic", **more: Any) -> Project:
     """Makes a project of an array; `more` is as of :meth:`Project.add_volume`."""
-    made = _beside(FilePath(path), name)
-    described = {key: more[key] for key in ("geometry", "live", "quantity", "unit", "memory", "progress") if key in more}
-    unknown = set(more) - set(described)
-    if unknown:
-        raise TypeError(f"import_volume() got an unexpected argument {sorted(unknown)[0]!r}")
-    try:
-        write_volume(made, array, source="an array of Python", **described)
-        command = json.dumps({"import": {"path": os.fspath(made), "name": name}})
+    with beside(path) as folder:
+        made = os.path.join(folder, "volume.zarr")
+        write_volume(made, array, source="an array of Python", **more)
+        command = json.dumps({"import": {"path": made, "name": name}})
         return Project(_native.Project.create(path, None, [command], None, True, more.get("progress")))
-    finally:
-        _remove(made)
-
-
-def _beside(project: FilePath, name: str) -> FilePath:
-    """Where a volume is written that is then moved into a project: on the same disk."""
-    return project.parent / f".{project.name}.{_file_name(name)}.zarr"
-
-
-def _remove(folder: FilePath) -> None:
-    import shutil
-
-    shutil.rmtree(folder, ignore_errors=True)
 
 
 def _file_name(name: str) -> str:

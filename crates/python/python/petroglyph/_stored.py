@@ -5,23 +5,21 @@ from __future__ import annotations
 import json
 import os
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from petroglyph import _native
 from petroglyph._errors import PetroglyphError, PetroglyphWarning
 from petroglyph._geometry import VERTICAL_NAMES, Geometry
+from petroglyph._types import Path, Progress
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
     import xarray as xr
 
-    Progress = Callable[[str, int, int], object]
-
 #: What an array may be: NumPy, xarray, Dask or Zarr.
 Array = Any
-Path = str | os.PathLike[str]
 
 #: Types that can be stored; others are converted to the first that holds them.
 _TYPES = ("int8", "uint8", "int16", "uint16", "int32", "uint32", "float32")
@@ -45,7 +43,7 @@ def open_volume(path: Path, *, chunks: Mapping[str, int] | str | None = None) ->
     import xarray as xr
 
     info = json.loads(_native.volume_info(os.fspath(path)))["info"]
-    group: Any = xr.open_zarr(os.fspath(path), consolidated=False, chunks=_chunks(chunks))
+    group: Any = xr.open_zarr(os.fspath(path), consolidated=False, chunks=chunking(chunks))
     array: xr.DataArray = group["0"].rename(info.get("quantity") or "amplitude")
     if "cdp_x" not in group:
         array = array.assign_coords(Geometry.from_dict(info["geometry"]).coordinates())
@@ -55,7 +53,8 @@ def open_volume(path: Path, *, chunks: Mapping[str, int] | str | None = None) ->
     return array
 
 
-def _chunks(chunks: Mapping[str, int] | str | None) -> Any:
+def chunking(chunks: Mapping[str, int] | str | None) -> Any:
+    """What :func:`xarray.open_zarr` takes."""
     return dict(chunks) if isinstance(chunks, Mapping) else chunks
 
 

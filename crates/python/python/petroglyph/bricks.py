@@ -7,10 +7,10 @@ of what went in; its inner part, without the halo that :func:`halo` names, is th
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 from petroglyph import _native
+from petroglyph._types import Options
 
 if TYPE_CHECKING:
     import numpy as np
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
     Samples = npt.NDArray[np.float32]
     Mask = npt.NDArray[np.bool_]
-
-Options = Mapping[str, Any]
 
 #: Bytes that a stage holds for each sample of the brick with its halo: the brick, what is computed on the way, the result.
 #: The envelope of a trace is computed in little beside.

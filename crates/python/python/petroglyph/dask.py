@@ -12,20 +12,21 @@ Every function takes ``scheduler``, as of :func:`dask.compute` (``"threads"``, `
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 import os
-import shutil
 import socket
-import uuid
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, Literal
 
 from petroglyph import STORE_VERSION, __version__, _native, bricks
 from petroglyph._errors import PetroglyphError
+from petroglyph._folders import beside, written
 from petroglyph._geometry import Geometry
+from petroglyph._types import Options, Path
+from petroglyph.bricks import _json
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,12 +34,10 @@ if TYPE_CHECKING:
 
     from petroglyph._project import Project
 
-Path = str | os.PathLike[str]
-Options = Mapping[str, Any]
 #: A scheduler by its name, or a client of a cluster.
 Scheduler = Any
 Kind = Literal["envelope", "semblance", "dip"]
-Place = tuple[int, int, int]
+Three = tuple[int, int, int]
 #: What a task tells of the files that it wrote: numbers of bricks and their least and greatest samples.
 Ranges = tuple["npt.NDArray[np.uint64]", "npt.NDArray[np.float32]"]
 
@@ -77,8 +76,12 @@ class Plan:
 # What runs on workers. All arguments are small; all data are in the store.
 
 
+def _version() -> tuple[str, int]:
+    return __version__, STORE_VERSION
+
+
 def _same_version(client: tuple[str, int]) -> None:
-    here = (__version__, STORE_VERSION)
+    here = _version()
     if client != here:
         raise PetroglyphError(
             f"the worker on {socket.gethostname()} has petroglyph {here[0]} with store version {here[1]}, the client "
@@ -124,7 +127,7 @@ class _Stage:
     kind: str
     source: str
     targets: tuple[str, ...]
-    size: Place
+    size: Three
     lines: int
     dip: str | None
     semblance: str | None
@@ -142,8 +145,10 @@ def _compute(stage: _Stage, inputs: list[npt.NDArray[Any]], live: Any) -> list[n
     return [_native.dip_angle(inputs[0], inputs[1], stage.geometry, live)]
 
 
-def _column(stage: _Stage, sources: tuple[str, ...], start: tuple[int, int], count: tuple[int, int]) -> list[Ranges]:
-    """Computes a column of files, in pieces, and writes them."""
+def _column(
+    stage: _Stage, sources: tuple[str, ...], start: tuple[int, int], count: tuple[int, int], *_: Any
+) -> list[Ranges]:
+    """Computes a column of files, in pieces, and writes them; further arguments are what must be done before."""
     import numpy as np
 
     _same_version(stage.version)
@@ -151,7 +156,7 @@ def _column(stage: _Stage, sources: tuple[str, ...], start: tuple[int, int], cou
         _at_hand(path)
     nx, ny, nz = stage.size
     reach = _native.reach(stage.kind, stage.dip, stage.semblance)
-    live = np.array(_native.read_live(sources[0]), dtype=bool).reshape(nx, ny)
+    live = _native.read_live(sources[0])
     results = [np.empty((*count, nz), dtype=np.float32) for _ in stage.targets]
     for x in range(0, count[0], stage.lines):
         for y in range(0, count[1], stage.lines):
@@ -194,7 +199,7 @@ def _packed(found: Iterable[tuple[int, tuple[float, float]]]) -> Ranges:
     return numbers, np.array([ends for _, ends in found], dtype=np.float32).reshape(-1, 2)
 
 
-def _halve(path: str, level: int, places: list[Place], version: tuple[str, int], *_: Any) -> Ranges:
+def _halve(path: str, level: int, places: list[Three], version: tuple[str, int], *_: Any) -> Ranges:
     """Makes files of a further level of the pyramid; the other arguments are what must be done before."""
     _same_version(version)
     parts = _native.VolumeParts.open(_at_hand(path))
@@ -237,11 +242,11 @@ class _Graph:
 
     def pyramid(self, path: str, parts: _native.VolumeParts, columns: dict[tuple[int, int], Any], label: str) -> Any:
         """The further levels of a volume whose level 0 is written by `columns`, and its completion."""
-        version = (__version__, STORE_VERSION)
+        version = _version()
         before: dict[tuple[int, int], Any] = columns
         levels = [self.add(f"merge{label}", (0,), (_merge, list(columns.values())))]
         for level in range(1, parts.level_count()):
-            files: dict[tuple[int, int], list[Place]] = {}
+            files: dict[tuple[int, int], list[Three]] = {}
             spans: dict[tuple[int, int], tuple[list[int], list[int]]] = {}
             for place, first, part in parts.files(level):
                 files.setdefault((place[0], place[1]), []).append((place[0], place[1], place[2]))
@@ -282,15 +287,6 @@ def _run(graph: _Graph, wanted: list[Any], scheduler: Scheduler, retries: int) -
         return list(get(graph.tasks, wanted))
 
 
-def _target_info(source: str, quantity: str, unit: str | None) -> tuple[dict[str, Any], Geometry]:
-    info = json.loads(_native.volume_info(source))["info"]
-    name = FilePath(source).stem
-    made = {"geometry": info["geometry"], "quantity": quantity, "source": f"{quantity.split(' ')[0]} of {name}"}
-    if unit is not None:
-        made["unit"] = unit
-    return made, Geometry.from_dict(info["geometry"])
-
-
 def plan(source: Path, kind: Kind, *, memory: int = MEMORY, **settings: Options | None) -> Plan:
     """What :func:`attribute` of a stored volume will do.
 
@@ -313,14 +309,12 @@ def plan(source: Path, kind: Kind, *, memory: int = MEMORY, **settings: Options 
     own = min(FILE_LINES, nx) * min(FILE_LINES, ny)
     lines = _piece_lines(kind, nz, own, reach, memory)
     sample = np.dtype(found["dtype"]).itemsize
-    columns = [(x, y) for x in range(0, nx, FILE_LINES) for y in range(0, ny, FILE_LINES)]
+    columns = _columns(nx, ny)
     read = 0
-    for x, y in columns:
-        for px in range(x, min(x + FILE_LINES, nx), lines):
-            for py in range(y, min(y + FILE_LINES, ny), lines):
-                _, width, _ = _cut(px, min(lines, min(x + FILE_LINES, nx) - px), reach, nx)
-                _, depth, _ = _cut(py, min(lines, min(y + FILE_LINES, ny) - py), reach, ny)
-                read += width * depth * nz * sample
+    for _, (x, y), (width, depth) in columns:
+        across = [_cut(x + at, min(lines, width - at), reach, nx)[1] for at in range(0, width, lines)]
+        along = [_cut(y + at, min(lines, depth - at), reach, ny)[1] for at in range(0, depth, lines)]
+        read += sum(across) * sum(along) * nz * sample
     tasks: dict[str, int] = {kind: len(columns)}
     volumes = 3 if kind == "dip" else 1
     written = nx * ny * nz * 4 * volumes
@@ -380,89 +374,60 @@ def attribute(
     The bytes of the new volumes are those of :meth:`petroglyph.Project.attribute`. If a task fails for good, nothing is
     added, and what was written is removed.
     """
-    from petroglyph import _project
-
     source = volume or (project.volumes or [""])[0]
-    path = os.path.abspath(project._native.volume_path(source))
-    suffixes = {"dip": (("-inline", "samples per inline"), ("-crossline", "samples per crossline"))}
-    made = [(f"{name}{suffix}", suffix, unit) for suffix, unit in suffixes.get(kind, (("", None),))]
+    read = project.volume(source)
+    geometry = {**read.info["geometry"], "velocity_m_s": project.geometry.velocity_m_s}
+    live = read.live()
+    named: dict[str, tuple[str, str | None]] = {name: (kind, None)}
     if kind == "dip":
-        made.append((name, "", "degrees"))
-    folders = {new: os.path.abspath(_project._beside(project.path, new)) for new, _, _ in made}
-    found = json.loads(_native.volume_info(path))
-    size: Place = tuple(found["levels"][0])
-    live = project.volume(source).live()
-    try:
-        for new, suffix, unit in made:
-            shutil.rmtree(folders[new], ignore_errors=True)
-            info, geometry = _target_info(path, kind + suffix.replace("-", " "), unit)
-            info["source"] = f"{kind} of {source}"
-            info["geometry"]["velocity_m_s"] = project.geometry.velocity_m_s
+        named = {
+            f"{name}-inline": ("dip inline", "samples per inline"),
+            f"{name}-crossline": ("dip crossline", "samples per crossline"),
+            name: ("dip", "degrees"),
+        }
+    with beside(project.path) as folder:
+        folders = {new: os.path.join(folder, f"{n}.zarr") for n, new in enumerate(named)}
+        for new, (quantity, unit) in named.items():
+            info = {"geometry": geometry, "quantity": quantity, "unit": unit, "source": f"{kind} of {source}"}
             _native.VolumeParts.create(folders[new], json.dumps(info), "float32", None if live.all() else live)
-        graph, wanted = _attribute_graph(path, folders, made, kind, size, project.geometry, dip, semblance, memory)
+        settings = (_json(dip), _json(semblance), project.geometry.to_json(), _version())
+        path, targets = os.path.abspath(read.path), tuple(folders.values())
+        graph, wanted = _attribute_graph(path, targets, kind, read.shape, settings, memory)
         _run(graph, wanted, scheduler, retries)
-        done = {}
-        order = [made[-1], *made[:-1]] if kind == "dip" else made
-        for new, _, _ in order:
-            command = {"import": {"path": folders[new], "name": new}}
-            done[new] = project.apply(command, _moved=True)
-        return done
-    finally:
-        for folder in folders.values():
-            shutil.rmtree(folder, ignore_errors=True)
+        first = sorted(named, key=lambda new: new != name)
+        return {new: project.apply({"import": {"path": folders[new], "name": new}}, _moved=True) for new in first}
 
 
 def _attribute_graph(
     path: str,
-    folders: dict[str, str],
-    made: list[tuple[str, str, str | None]],
+    targets: tuple[str, ...],
     kind: str,
-    size: Place,
-    geometry: Geometry,
-    dip: Options | None,
-    semblance: Options | None,
+    size: Three,
+    settings: tuple[str | None, str | None, str, tuple[str, int]],
     memory: int,
 ) -> tuple[_Graph, list[Any]]:
-    from dask.base import tokenize
-
     nx, ny, nz = size
     own = min(FILE_LINES, nx) * min(FILE_LINES, ny)
-    computed = [folders[new] for new, suffix, _ in made if kind != "dip" or suffix]
-    reach = bricks.halo(kind, dip=dip, semblance=semblance)
-    lines = _piece_lines(kind, nz, own, reach, memory)
-    settings = (_as_json(dip), _as_json(semblance), geometry.to_json(), (__version__, STORE_VERSION))
-    stage = _Stage(kind, path, tuple(computed), size, lines, *settings)
-    graph = _Graph(tokenize(stage, folders))
-    columns = {
-        (x // FILE_LINES, y // FILE_LINES): ((x, y), (min(FILE_LINES, nx - x), min(FILE_LINES, ny - y)))
-        for x in range(0, nx, FILE_LINES)
-        for y in range(0, ny, FILE_LINES)
-    }
-    tasks = {at: graph.add(kind, at, (_column, stage, (path,), *place)) for at, place in columns.items()}
-    wanted = []
-    for n, target in enumerate(computed):
-        label = f"-{n}" if len(computed) > 1 else ""
-        ranges = {at: graph.add(f"ranges{label}", at, (_part, key, n)) for at, key in tasks.items()}
-        parts = _native.VolumeParts.open(target)
-        wanted.append(graph.pyramid(target, parts, ranges, label))
-    if kind == "dip":
-        angle_lines = _piece_lines("dip-angle", nz, own, 0, memory)
-        angle = folders[made[-1][0]]
-        stage = _Stage("dip-angle", path, (angle,), size, angle_lines, *settings)
-        sources = (computed[0], computed[1])
-        # Complete volumes alone can be read.
-        tasks = {
-            at: graph.add("dip-angle", at, (_after, _column, stage, sources, *place, *wanted))
-            for at, place in columns.items()
-        }
-        ranges = {at: graph.add("ranges-angle", at, (_part, key, 0)) for at, key in tasks.items()}
-        wanted.append(graph.pyramid(angle, _native.VolumeParts.open(angle), ranges, "-angle"))
-    return graph, wanted
+    columns = _columns(nx, ny)
+    graph = _Graph(_token(path, targets, kind, settings, memory))
 
+    def computed(kind: str, targets: tuple[str, ...], sources: tuple[str, ...], *before: Any) -> list[Any]:
+        """Tasks that compute volumes, and those that complete them."""
+        lines = _piece_lines(kind, nz, own, _native.reach(kind, *settings[:2]), memory)
+        stage = _Stage(kind, path, targets, size, lines, *settings)
+        tasks = {at: graph.add(kind, at, (_column, stage, sources, start, count, *before)) for at, start, count in columns}
+        completed = []
+        for n, target in enumerate(targets):
+            label = f"-{n}" if len(targets) > 1 else "-angle" if before else ""
+            ranges = {at: graph.add(f"ranges{label}", at, (_part, key, n)) for at, key in tasks.items()}
+            completed.append(graph.pyramid(target, _native.VolumeParts.open(target), ranges, label))
+        return completed
 
-def _after(function: Callable[..., Any], stage: _Stage, sources: Any, start: Any, count: Any, *_: Any) -> Any:
-    """Calls a function once what else is in the arguments is done."""
-    return function(stage, sources, start, count)
+    if kind != "dip":
+        return graph, computed(kind, targets, (path,))
+    wanted = computed(kind, targets[:2], (path,))
+    # Complete volumes alone can be read.
+    return graph, [*wanted, *computed("dip-angle", targets[2:], targets[:2], *wanted)]
 
 
 # Horizon candidates.
@@ -490,7 +455,7 @@ def _candidates(plan: str, version: tuple[str, int]) -> _native.ExtractionTasks:
 
 def _candidates_graph(plan: str, told: Any = None) -> tuple[_Graph, list[Any]]:
     """Stages one after the other; of each, one task for each brick, column, file or slot. `told` stands for the plan."""
-    version = (__version__, STORE_VERSION)
+    version = _version()
     stages = _native.ExtractionTasks(plan).stages()
     graph = _Graph(_token(plan))
     told = plan if told is None else told
@@ -551,7 +516,7 @@ def plan_extraction(
     levels: list[tuple[int, int, int]] = [tuple(size) for size in found["levels"]]
     if edge is None:
         edge = _brick_edge(levels[0], os.cpu_count() or 1)
-    _, stages = _native.extraction_stages(source, _as_json(settings), memory, edge)
+    _, stages = _native.extraction_stages(source, _json(settings), memory, edge)
     slots = _slots(stages)
     tasks = {stage: slots if count is None else count for stage, count in stages}
     voxels = [size[0] * size[1] * size[2] for size in levels]
@@ -609,7 +574,7 @@ def extract(
         edge = _brick_edge(project.geometry.shape, _threads(scheduler))
     change = {"volume": volume, "settings": None if settings is None else dict(settings)}
     command = {"extract": {name: value for name, value in change.items() if value is not None}}
-    shared = _native.Extraction.begin(project._native, volume, _as_json(settings), memory, edge)
+    shared = _native.Extraction.begin(project._native, volume, _json(settings), memory, edge)
     if shared is None:
         return project.apply(command)
     try:
@@ -626,10 +591,6 @@ def extract(
     return project.apply(command, _moved=True)
 
 
-def _as_json(options: Options | None) -> str | None:
-    return None if options is None else json.dumps(dict(options))
-
-
 # Geologic time.
 
 
@@ -637,15 +598,10 @@ def _keep(folder: str, name: str, values: npt.NDArray[Any]) -> None:
     """Writes a named array, which is whole or not there."""
     import zarr
 
-    partial = os.path.join(folder, f"{name}.{uuid.uuid4().hex}.part")
     chunks = tuple(max(min(edge, count), 1) for edge, count in zip((FILE_LINES,) * 2 + (1 << 20,), values.shape, strict=True))
-    array = zarr.create_array(partial, shape=values.shape, chunks=chunks, dtype=values.dtype)
-    array[...] = values
-    try:
-        os.rename(partial, os.path.join(folder, name))
-    except OSError:
-        # A task that ran twice has written the same.
-        shutil.rmtree(partial, ignore_errors=True)
+    # A task that ran twice has written the same.
+    with contextlib.suppress(PetroglyphError), written(os.path.join(folder, name)) as partial:
+        zarr.create_array(partial, shape=values.shape, chunks=chunks, dtype=values.dtype)[...] = values
 
 
 def _kept(folder: str, name: str) -> Any:
@@ -728,19 +684,15 @@ def time(
     The bytes are those of :meth:`petroglyph.Project.time` with the same memory. Slabs are solved independently; joining them
     goes from one to the next and takes little. If a task fails for good, nothing is added, and what was written is removed.
     """
-    from petroglyph import _project
-
     options = json.dumps(dict(settings or {}))
     source, info, ranges = _native.time_slabs(project._native, memory, options)
-    path, target = os.path.abspath(project.path), os.path.abspath(_project._beside(project.path, name))
-    arrays = f"{target}.slabs"
+    path = os.path.abspath(project.path)
     nx, ny, nz = project.volume(source).shape
-    try:
-        for folder in (target, arrays):
-            shutil.rmtree(folder, ignore_errors=True)
+    with beside(path) as folder:
+        target, arrays = os.path.join(folder, "time.zarr"), os.path.join(folder, "slabs")
         os.mkdir(arrays)
         parts = _native.VolumeParts.create(target, info, "float32", None)
-        graph, version = _Graph(_token(path, target, memory, options)), (__version__, STORE_VERSION)
+        graph, version = _Graph(_token(path, target, memory, options)), _version()
         solved: list[Any] = []
         joined: list[Any] = []
         for n in range(len(ranges)):
@@ -755,11 +707,8 @@ def time(
         wanted = [graph.pyramid(target, parts, columns, "-time"), *solved, *joined]
         _, *counts = _run(graph, wanted, scheduler, retries)
         done = project.apply({"import": {"path": target, "name": name}}, _moved=True)
-        found, known = counts[: len(ranges)], counts[len(ranges) :]
-        return {**done, "slabs": len(ranges), "found": sum(found), "known": sum(known) / (nx * ny * nz)}
-    finally:
-        for folder in (target, arrays):
-            shutil.rmtree(folder, ignore_errors=True)
+    found, known = counts[: len(ranges)], counts[len(ranges) :]
+    return {**done, "slabs": len(ranges), "found": sum(found), "known": sum(known) / (nx * ny * nz)}
 
 
 # Extrema, i, j, k and pictures.
@@ -775,7 +724,7 @@ def _extrema_brick(
     group = zarr.open_group(_at_hand(out), mode="r+")
     nx, ny, nz = json.loads(_native.volume_info(_at_hand(path)))["levels"][0]
     samples = _native.read_box(path, 0, (*start, 0), (*count, nz)).astype(np.float32)
-    live = np.array(_native.read_live(path), dtype=bool).reshape(nx, ny)
+    live = _native.read_live(path)
     box = (slice(start[0], start[0] + count[0]), slice(start[1], start[1] + count[1]))
     counts, z, amplitude = _native.extrema(samples, kind, np.ascontiguousarray(live[box]))
     most = group["z"].shape[2]
@@ -822,12 +771,10 @@ def extrema(
     nx, ny, nz = found["levels"][0]
     geometry = Geometry.from_dict(found["info"]["geometry"])
     most = nz // 2 + 1
-    path, folder = os.path.abspath(volume), os.path.abspath(out)
-    partial = _fresh(folder)
-    try:
+    path, lines = os.path.abspath(volume), (min(FILE_LINES, nx), min(FILE_LINES, ny))
+    axes = ("inline", "crossline", "extremum")
+    with written(out) as partial:
         group = zarr.create_group(partial)
-        lines = (min(FILE_LINES, nx), min(FILE_LINES, ny))
-        axes = ("inline", "crossline", "extremum")
         for name in ("z", "amplitude"):
             group.create_array(
                 name, shape=(nx, ny, most), chunks=(*lines, most), dtype=np.float32, fill_value=np.nan,
@@ -836,16 +783,11 @@ def extrema(
         group.create_array("count", shape=(nx, ny), chunks=lines, dtype=np.uint32, dimension_names=axes[:2])
         _write_lines(group, geometry)
         graph = _Graph(_token(path, partial, kind))
-        version = (__version__, STORE_VERSION)
         tasks = [
-            graph.add(f"extrema-{kind}", at, (_extrema_brick, path, partial, kind, start, count, version))
+            graph.add(f"extrema-{kind}", at, (_extrema_brick, path, partial, kind, start, count, _version()))
             for at, start, count in _columns(nx, ny)
         ]
-        total = int(sum(_run(graph, tasks, scheduler, retries)))
-        _publish(partial, folder)
-        return total
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
+        return int(sum(_run(graph, tasks, scheduler, retries)))
 
 
 def _parameters_column(
@@ -862,7 +804,7 @@ def parameterize(
     project: Project,
     out: Path,
     *,
-    size: Place | None = None,
+    size: Three | None = None,
     scheduler: Scheduler = None,
     retries: int = RETRIES,
 ) -> Path:
@@ -888,26 +830,20 @@ def parameterize(
     import zarr
 
     size = size or project.geometry.shape
-    folder = os.path.abspath(out)
-    partial = _fresh(folder)
-    try:
-        columns = project._native.begin_parameterization(partial, size)[:2]
+    path = os.path.abspath(project.path)
+    with written(out) as partial:
+        nx, ny, _ = project._native.begin_parameterization(partial, size)
         if size == project.geometry.shape:
             _write_lines(zarr.open_group(partial, mode="r+"), project.geometry)
-        path = os.path.abspath(project.path)
         graph = _Graph(_token(path, partial, size))
-        version = (__version__, STORE_VERSION)
         tasks = [
-            graph.add("sample-ijk", (x, y), (_parameters_column, path, partial, (x, y), version))
-            for x in range(columns[0])
-            for y in range(columns[1])
+            graph.add("sample-ijk", (x, y), (_parameters_column, path, partial, (x, y), _version()))
+            for x in range(nx)
+            for y in range(ny)
         ]
         _run(graph, tasks, scheduler, retries)
         _native.finish_parameterization(partial)
-        _publish(partial, folder)
-        return out
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
+    return out
 
 
 def _picture(path: str, options: dict[str, Any], version: tuple[str, int]) -> bytes:
@@ -941,7 +877,7 @@ def render(
     path = os.path.abspath(project.path)
     wanted = [dict(options) for options in pictures]
     graph = _Graph(_token(path, wanted, len(project.history)))
-    version = (__version__, STORE_VERSION)
+    version = _version()
     tasks = [graph.add("render", (n,), (_picture, path, options, version)) for n, options in enumerate(wanted)]
     return [Picture(png, {}) for png in _run(graph, tasks, scheduler, retries)]
 
@@ -960,29 +896,13 @@ def _token(*of: Any) -> str:
     return str(tokenize(*of))
 
 
-def _fresh(folder: str) -> str:
-    """Where a group is written until it is complete."""
-    if os.path.exists(folder):
-        raise PetroglyphError(f"{folder} exists already", "remove it first, or write elsewhere")
-    partial = f"{folder}.part"
-    shutil.rmtree(partial, ignore_errors=True)
-    return partial
-
-
-def _publish(partial: str, folder: str) -> None:
-    os.rename(partial, folder)
-
-
 def _write_lines(group: Any, geometry: Geometry) -> None:
     """Writes the coordinates of the traces into a group."""
     import numpy as np
 
-    names = ("inline", "crossline", "sample", "cdp_x", "cdp_y")
     for name, (dims, values, attributes) in geometry.coordinates().items():
-        if name in names:
-            values = np.asarray(values)
-            made = group.create_array(
-                name, shape=values.shape, chunks=values.shape, dtype=values.dtype, dimension_names=dims,
-                attributes=attributes,
-            )  # fmt: skip
-            made[...] = values
+        values = np.asarray(values)
+        made = group.create_array(
+            name, shape=values.shape, chunks=values.shape, dtype=values.dtype, dimension_names=dims, attributes=attributes
+        )
+        made[...] = values

@@ -8,23 +8,20 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any
 
 from petroglyph._errors import PetroglyphError
+from petroglyph._folders import written
 from petroglyph._geometry import VERTICAL_NAMES
-from petroglyph._stored import _chunks
+from petroglyph._stored import chunking, described
+from petroglyph._types import Path, Progress
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from petroglyph._commands import Effect
     from petroglyph._project import Project
-
-Path = str | os.PathLike[str]
-Progress = Callable[[str, int, int], object]
 
 #: The version of the layout that is written.
 API_VERSION = "1.1.3"
@@ -57,7 +54,7 @@ def open(path: Path, *, variable: str | None = None, chunks: Mapping[str, int] |
     if not os.path.isdir(path):
         raise PetroglyphError(f"{os.fspath(path)} does not exist", "check the name")
     try:
-        found: Any = xr.open_zarr(os.fspath(path), consolidated=False, chunks=_chunks(chunks))
+        found: Any = xr.open_zarr(os.fspath(path), consolidated=False, chunks=chunking(chunks))
     except Exception as error:
         raise PetroglyphError(
             f"{os.fspath(path)} cannot be read as a Zarr group: {error}", "check that it is an MDIO v1 dataset"
@@ -71,7 +68,7 @@ def open(path: Path, *, variable: str | None = None, chunks: Mapping[str, int] |
     name = variable or about.get("defaultVariableName") or "amplitude"
     if name not in found:
         raise PetroglyphError(
-            f"{os.fspath(path)} has no variable {name!r}", f"choose one of {', '.join(map(str, found.data_vars))}"
+            f"{os.fspath(path)} has no variable {name!r}", f"choose one of {', '.join(sorted(map(str, found.data_vars)))}"
         )
     array: xr.DataArray = found[name]
     vertical = [str(axis) for axis in array.dims if str(axis) in VERTICAL_NAMES]
@@ -124,7 +121,7 @@ def import_volume(
         into = _project.open(project)
     else:
         return _project.import_volume(array, project, name=name, memory=memory, progress=progress)
-    _: Effect = into.add_volume(name, array, memory=memory, progress=progress)
+    into.add_volume(name, array, memory=memory, progress=progress)
     return into
 
 
@@ -149,17 +146,11 @@ def write(
     import xarray as xr
     import zarr
 
-    from petroglyph._stored import described
-
     values, geometry, live = described(array, None, None)
-    if os.path.exists(path):
-        raise PetroglyphError(f"{os.fspath(path)} exists already", "remove it first, or write elsewhere")
-    partial = f"{os.fspath(path)}.part"
-    shutil.rmtree(partial, ignore_errors=True)
     mask = np.ones(geometry.shape[:2], dtype=bool) if live is None else live
     lines = geometry.coordinates()
     axis, measure = ("time", "time") if geometry.unit == "ms" else ("depth", "length")
-    try:
+    with written(path) as partial:
         group = zarr.create_group(
             partial,
             attributes={
@@ -205,9 +196,6 @@ def write(
             stats = {**dict(zip(keys, total, strict=True)), "histogram": {"counts": [], "binCenters": []}}
             made.update_attributes({**attributes, "statsV1": json.dumps(stats)})
         xr.open_zarr(partial, consolidated=False).close()
-        os.rename(partial, path)
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
 
 
 def _put(

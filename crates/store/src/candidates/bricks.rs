@@ -65,7 +65,7 @@ impl CandidateWriter {
         }
         write_group(group, "forest", serde_json::Map::new())?;
         let counts = forest.counts();
-        for table in Table::ALL {
+        for table in CandidateTable::ALL {
             table.create(group, counts)?;
             let count = table.file_count(counts);
             progress.begin(&format!("writing {}", table.name()), count as u64);
@@ -195,7 +195,7 @@ impl LevelFiles {
 
 /// A table of surfaces and trees, in files of some rows each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Table {
+pub(super) enum CandidateTable {
     Trace,
     Z,
     Triangles,
@@ -203,7 +203,7 @@ pub(super) enum Table {
     Nodes,
 }
 
-impl Table {
+impl CandidateTable {
     pub(super) const ALL: [Self; 5] = [Self::Trace, Self::Z, Self::Triangles, Self::Surfaces, Self::Nodes];
 
     fn name(self) -> &'static str {

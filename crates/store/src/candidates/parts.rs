@@ -1,4 +1,4 @@
-//! Candidates that several processes write together, each the files that it is told to: the bytes are those of
+//! Candidates that several processes write together, each the files that are assigned to it: the bytes are those of
 //! [`CandidateWriter`](super::CandidateWriter), whoever writes what, in whatever order and however often.
 //!
 //! ```text
@@ -16,7 +16,7 @@ use super::super::array::{APART, ArrayWriter, new_apart, write_group};
 use super::super::error::StoreError;
 use super::super::header::write_header;
 use super::super::layout::{ArrayLayout, grid_index};
-use super::bricks::{LevelFiles, Table, create_level, size_of_level, write_column};
+use super::bricks::{CandidateTable, LevelFiles, create_level, size_of_level, write_column};
 use super::{KIND, LeafWriter, level_name, levels};
 use serde::Serialize;
 use std::fs;
@@ -53,7 +53,7 @@ impl CandidateParts {
         write_group(group, "pyramid", serde_json::Map::new())?;
         (1..self.level_count()).try_for_each(|level| create_level(group, level, self.size, self.leaves))?;
         write_group(group, "forest", serde_json::Map::new())?;
-        Table::ALL.into_iter().try_for_each(|table| table.create(group, self.counts))
+        CandidateTable::ALL.into_iter().try_for_each(|table| table.create(group, self.counts))
     }
 
     /// Levels of the pyramid, the full one included.
@@ -92,7 +92,7 @@ impl CandidateParts {
 
     /// Count of files of all tables.
     pub fn table_files(&self) -> usize {
-        Table::ALL.into_iter().map(|table| table.file_count(self.counts)).sum()
+        CandidateTable::ALL.into_iter().map(|table| table.file_count(self.counts)).sum()
     }
 
     /// Writes a file of the tables.
@@ -101,7 +101,7 @@ impl CandidateParts {
     /// The rows cannot be read, or the disk does not take them.
     pub fn write_rows(&self, mut file: usize, forest: &dyn ForestRows) -> Result<(), StoreError> {
         let apart = new_apart(&self.path);
-        for table in Table::ALL {
+        for table in CandidateTable::ALL {
             let count = table.file_count(self.counts);
             if file < count {
                 table.write(&self.path, file, forest, Some(&apart))?;

@@ -1,9 +1,9 @@
 //! Boxes of an array, out of its shard files.
 
 use super::super::error::StoreError;
-use super::super::placed::{ArrayFiles, Folder};
+use super::super::file_place::{ArrayFiles, FolderFiles};
 use super::super::sample::StoredSample;
-use super::file::{Lines, Shard, Trouble};
+use super::file::{ChunkLines, Shard, Trouble};
 use super::{ShardGrid, Span};
 use rayon::prelude::*;
 use std::io::ErrorKind;
@@ -27,7 +27,7 @@ pub(in super::super) struct Shards {
 
 impl Shards {
     pub fn new(grid: ShardGrid, group: &Path, name: &str) -> Self {
-        let files = Arc::new(Folder(grid.folder.clone()));
+        let files = Arc::new(FolderFiles(grid.folder.clone()));
         Self::of_files(grid, files, group, name)
     }
 
@@ -82,7 +82,7 @@ impl Shards {
     /// Reads all of the shard and verifies every checksum in it; returns an error for each brick that does not fit, or
     /// one for the shard.
     pub fn damage<T: StoredSample>(&self, index: [usize; 3]) -> Vec<StoreError> {
-        let all = Lines { x: 0..self.grid.chunk[0], y: 0..self.grid.chunk[1] };
+        let all = ChunkLines { x: 0..self.grid.chunk[0], y: 0..self.grid.chunk[1] };
         let mut room = Vec::new();
         let shard = match self.shard::<T>(index) {
             Ok(shard) => shard,
@@ -177,7 +177,7 @@ impl Shards {
                     let common = extent.common(span, axis);
                     common.start - extent.start[axis]..common.end - extent.start[axis]
                 });
-                let wanted = Lines { x, y };
+                let wanted = ChunkLines { x, y };
                 let lines = match shard.is_absent(number) {
                     false => reader.read(number, &wanted, &mut room).map_err(explain)?,
                     true => {
@@ -203,7 +203,14 @@ fn places(span: &Span, edges: [usize; 3]) -> impl Iterator<Item = [usize; 3]> + 
 
 /// Copies what a span has in common with a chunk at `extent`, of which `lines` were read, with `depth` samples
 /// a trace.
-fn copy_lines<T: StoredSample>(samples: &[T], lines: &Lines, depth: usize, extent: &Span, span: &Span, out: &mut [T]) {
+fn copy_lines<T: StoredSample>(
+    samples: &[T],
+    lines: &ChunkLines,
+    depth: usize,
+    extent: &Span,
+    span: &Span,
+    out: &mut [T],
+) {
     let [xs, ys, zs] = [0, 1, 2].map(|axis| extent.common(span, axis));
     for x in xs {
         let row = (x - extent.start[0] - lines.x.start) * lines.y.len() + ys.start - extent.start[1] - lines.y.start;

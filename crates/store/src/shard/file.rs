@@ -1,6 +1,6 @@
 //! One shard file: its index, and verified parts of its chunks.
 
-use super::super::placed::{ArrayFiles, PlacedBytes};
+use super::super::file_place::{ArrayFiles, PlacedBytes};
 use super::super::sample::StoredSample;
 use super::{CROSSLINES_TOGETHER, sums_of};
 use bytemuck::cast_slice_mut;
@@ -117,7 +117,7 @@ impl Shard {
 
 /// Inlines and crosslines of a chunk, with all their samples.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Lines {
+pub(super) struct ChunkLines {
     pub x: Range<usize>,
     pub y: Range<usize>,
 }
@@ -131,16 +131,21 @@ pub(super) struct ShardReader<'a> {
 impl ShardReader<'_> {
     /// Reads and verifies at least the lines `wanted` of a chunk that is not absent into the beginning of
     /// `room`, `[x][y][z]`; returns the lines that are there.
-    pub fn read<T: StoredSample>(&self, chunk: usize, wanted: &Lines, room: &mut Vec<T>) -> Result<Lines, Trouble> {
+    pub fn read<T: StoredSample>(
+        &self,
+        chunk: usize,
+        wanted: &ChunkLines,
+        room: &mut Vec<T>,
+    ) -> Result<ChunkLines, Trouble> {
         let [nx, ny, nz] = self.shard.edges;
         let (row, plane) = (nz * size_of::<T>(), ny * nz * size_of::<T>());
         let first = wanted.y.start / CROSSLINES_TOGETHER * CROSSLINES_TOGETHER;
         let fours = first..wanted.y.end.next_multiple_of(CROSSLINES_TOGETHER).min(ny);
         let costs = [wanted.x.len() * plane, nx * (CALL_BYTES + fours.len() * row), nx * plane];
         let lines = match &self.shard.sums {
-            Some(_) if costs[0] < costs[1].min(costs[2]) => Lines { x: wanted.x.clone(), y: 0..ny },
-            Some(_) if costs[1] < costs[2] => Lines { x: 0..nx, y: fours },
-            _ => Lines { x: 0..nx, y: 0..ny },
+            Some(_) if costs[0] < costs[1].min(costs[2]) => ChunkLines { x: wanted.x.clone(), y: 0..ny },
+            Some(_) if costs[1] < costs[2] => ChunkLines { x: 0..nx, y: fours },
+            _ => ChunkLines { x: 0..nx, y: 0..ny },
         };
         let samples = lines.x.len() * lines.y.len() * nz;
         if room.len() < samples {
@@ -159,9 +164,9 @@ impl ShardReader<'_> {
     }
 
     /// Whether the lines of a chunk are those that were written.
-    fn is_whole(&self, chunk: usize, lines: &Lines, bytes: &[u8], row: usize) -> Result<bool, Trouble> {
+    fn is_whole(&self, chunk: usize, lines: &ChunkLines, bytes: &[u8], row: usize) -> Result<bool, Trouble> {
         let [nx, ny, _] = self.shard.edges;
-        let whole = *lines == (Lines { x: 0..nx, y: 0..ny });
+        let whole = *lines == (ChunkLines { x: 0..nx, y: 0..ny });
         let Some(sums) = self.shard.sums.as_ref().filter(|_| !whole) else {
             return Ok(crc32c::crc32c(bytes) == self.checksum(chunk)?);
         };

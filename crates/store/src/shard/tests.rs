@@ -128,7 +128,7 @@ fn shards_without_sums_are_read_and_verified() {
 fn a_checksum_advances_as_if_it_were_taken_of_all_bytes() {
     let bytes: Vec<u8> = (0..4000_u32).map(|n| (n * 31 % 251) as u8).collect();
     for length in [1, 7, 256, 1000] {
-        let advance = super::Advance::by(length);
+        let advance = super::CrcAdvance::by(length);
         let whole = bytes.chunks_exact(length).fold(0, |sum, part| advance.apply(sum) ^ crc32c::crc32c(part));
         assert_eq!(whole, crc32c::crc32c(&bytes[..bytes.len() / length * length]), "{length}");
     }

@@ -41,28 +41,28 @@ pub struct Station {
 
 /// A well's path: at least two stations, measured depths increasing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Stored", into = "Stored")]
+#[serde(try_from = "StoredPath", into = "StoredPath")]
 pub struct WellPath {
     datum_m: f64,
     stations: Vec<Station>,
 }
 
 #[derive(Serialize, Deserialize)]
-struct Stored {
+struct StoredPath {
     datum_m: f64,
     stations: Vec<Station>,
 }
 
-impl From<WellPath> for Stored {
+impl From<WellPath> for StoredPath {
     fn from(path: WellPath) -> Self {
         Self { datum_m: path.datum_m, stations: path.stations }
     }
 }
 
-impl TryFrom<Stored> for WellPath {
+impl TryFrom<StoredPath> for WellPath {
     type Error = WellError;
 
-    fn try_from(stored: Stored) -> Result<Self, WellError> {
+    fn try_from(stored: StoredPath) -> Result<Self, WellError> {
         Self::of_stations(stored.datum_m, stored.stations)
     }
 }

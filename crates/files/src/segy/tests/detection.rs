@@ -126,7 +126,7 @@ fn bytes_of_lines_that_the_text_header_names_are_followed_or_contradicted() {
     let mut swapped = grid();
     swapped.say(3, "INLINE BYTES 193-196, XLINE BYTES 189-192");
     assert_eq!(counts(&swapped.info()), [6, 4]);
-    // What is named and holds no lines is told; what holds them is taken.
+    // What is named and holds no lines is reported; what holds them is taken.
     let mut wrong = grid();
     wrong.say(3, "INLINE BYTES 9-12, CROSSLINE BYTES 21-24");
     let info = wrong.info();

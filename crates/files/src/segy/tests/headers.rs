@@ -362,11 +362,11 @@ fn the_length_of_a_trace_tells_depth_from_time_where_words_do_not() {
     let both = of(4_000, 1500, "PROJECT NORTH");
     assert_eq!(both.vertical_unit, FileUnit::Milliseconds);
     assert!(has(&both.evidence, "span 5996 ms (plausible), or as a depth"), "{:?}", both.evidence);
-    // Words that contradict one another are weighed by it, and the contradiction is told.
+    // Words that contradict one another are weighed by it, and the contradiction is reported.
     let torn = of(25_000, 400, "PSDM STACK, TIME DOMAIN");
     assert_eq!(torn.vertical_unit, FileUnit::Metres);
     assert!(has(&torn.warnings, "for which alone the length of a trace is plausible"), "{:?}", torn.warnings);
-    // One word alone is followed, and its unlikely length is told.
+    // One word alone is followed, and its unlikely length is reported.
     let unlikely = of(25_000, 400, "TWT");
     assert_eq!(unlikely.vertical_unit, FileUnit::Milliseconds);
     assert!(has(&unlikely.warnings, "which is unlikely"), "{:?}", unlikely.warnings);

@@ -35,14 +35,14 @@ const SHARE_A_MISFIT: f64 = 0.5;
 
 /// A point in a view: how far it lies off the plane through its neighbours, m, and the vertical part of its normal.
 #[derive(Clone, Copy)]
-struct Seen {
+struct ViewedPoint {
     off: f64,
     normal_z: f64,
 }
 
 /// What points say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Told {
+pub(super) enum SeenSideways {
     /// They are those of a map.
     Map,
     /// Some of them seem to lie upside down, too few or too loosely to be sure.
@@ -52,13 +52,13 @@ pub(super) enum Told {
 }
 
 /// What points (metric, z vertical) say. They are compared in pairs, in each of [`DIRECTIONS`] views.
-pub(super) fn told(points: &[DVec3]) -> Told {
+pub(super) fn told(points: &[DVec3]) -> SeenSideways {
     if points.len() <= NEIGHBOURS {
-        return Told::Map;
+        return SeenSideways::Map;
     }
     let spacing = spacing(points);
-    let misfit = |seen: &[Seen]| seen.iter().map(|s| s.off.min(spacing)).sum::<f64>() / seen.len() as f64;
-    let turned = |seen: &[Seen], tells: f64| {
+    let misfit = |seen: &[ViewedPoint]| seen.iter().map(|s| s.off.min(spacing)).sum::<f64>() / seen.len() as f64;
+    let turned = |seen: &[ViewedPoint], tells: f64| {
         let share = |up: f64| {
             let tells = seen.iter().filter(|s| s.off < tells * spacing && s.normal_z * up > CLEAR);
             tells.count() as f64 / seen.len() as f64
@@ -79,13 +79,13 @@ pub(super) fn told(points: &[DVec3]) -> Told {
         })
         .collect();
     let best = from_aside.iter().min_by(|a, b| a.0.total_cmp(&b.0));
-    let Some(&(misfit, turned, _)) = best else { return Told::Map };
+    let Some(&(misfit, turned, _)) = best else { return SeenSideways::Map };
     if misfit < BETTER && turned > SHARE.max(SHARE_A_MISFIT * misfit) {
-        Told::Overturned
+        SeenSideways::Overturned
     } else if misfit < DOUBTED && turned > SHARE || from_aside.iter().any(|v| v.0 < DOUBTED && v.2 > SHARE) {
-        Told::Unclear
+        SeenSideways::Unclear
     } else {
-        Told::Map
+        SeenSideways::Map
     }
 }
 
@@ -101,7 +101,7 @@ fn spacing(points: &[DVec3]) -> f64 {
 }
 
 /// The points as seen along a direction.
-fn view(points: &[DVec3], direction: DVec3) -> Vec<Seen> {
+fn view(points: &[DVec3], direction: DVec3) -> Vec<ViewedPoint> {
     let (right, up) = direction.any_orthonormal_pair();
     let places: Vec<(DVec2, f64)> =
         points.iter().map(|p| (DVec2::new(p.dot(right), p.dot(up)), p.dot(direction))).collect();
@@ -115,7 +115,7 @@ fn view(points: &[DVec3], direction: DVec3) -> Vec<Seen> {
         let [off, east, north] = plane(around);
         let normal = direction - right * east - up * north;
         let facing = normal.length().recip();
-        Seen { off: off.abs() * facing.max(EDGE_ON), normal_z: normal.z * facing }
+        ViewedPoint { off: off.abs() * facing.max(EDGE_ON), normal_z: normal.z * facing }
     };
     (0..points.len()).map(seen).collect()
 }
@@ -171,11 +171,11 @@ mod tests {
                     let points: Vec<DVec3> = places.map(|&p| metric * made.geometry.voxel_from_world(p)).collect();
                     let turned = points.iter().filter(|p| made.truth.is_overturned(**p)).count() as f64;
                     let told = told(&points);
-                    assert!(turned > 0.0 || told == Told::Map, "seed {seed}, {}: {told:?}", horizon.name);
+                    assert!(turned > 0.0 || told == SeenSideways::Map, "seed {seed}, {}: {told:?}", horizon.name);
                     if turned > 0.1 * points.len() as f64 {
                         overturned += 1;
-                        missed += usize::from(told != Told::Overturned);
-                        silent += usize::from(told == Told::Map);
+                        missed += usize::from(told != SeenSideways::Overturned);
+                        silent += usize::from(told == SeenSideways::Map);
                     }
                 }
             }
@@ -201,7 +201,7 @@ mod tests {
                     for (count, seed) in [(50, 1), (50, 2), (50, 3), (100, 1), (150, 1)] {
                         let points = scattered(count, seed, map);
                         assert!(
-                            told(&points) != Told::Overturned,
+                            told(&points) != SeenSideways::Overturned,
                             "{kind}: {count} points, {wavelength} m, {height} m"
                         );
                     }
@@ -211,7 +211,7 @@ mod tests {
         // Gentle ones are not even doubted.
         for (count, seed) in [(50, 3), (100, 4), (150, 5), (400, 6)] {
             let gentle = scattered(count, seed, &|x, y| 40.0 * (x / 90.0).sin() + if x > 0.3 * y { 30.0 } else { 0.0 });
-            assert_eq!(told(&gentle), Told::Map, "{count}");
+            assert_eq!(told(&gentle), SeenSideways::Map, "{count}");
         }
     }
 }

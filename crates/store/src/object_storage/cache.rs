@@ -6,7 +6,7 @@
 //! verified by the checksums of bricks like everything else.
 
 use super::super::error::StoreError;
-use super::super::placed::{ArrayFiles, PlacedBytes};
+use super::super::file_place::{ArrayFiles, PlacedBytes};
 use super::remote::Remote;
 use rayon::prelude::*;
 use std::collections::HashMap;

@@ -1,8 +1,8 @@
 //! Tells which horizons are no height fields: triangles with an overturned limb or around a body, scattered points whose
 //! neighbours on the map lie far from their neighbours in space, or that are a height field only as seen from aside.
 
+use super::overturned_points::{self, SeenSideways};
 use super::placement::world_xy;
-use super::sideways::{self, Told};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use survey::geometry::SurveyGeometry;
@@ -27,7 +27,7 @@ const FEWEST_POINTS: usize = 12;
 
 /// What a mesh is when it is no height field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Shape {
+pub(super) enum MeshKind {
     /// It encloses a body.
     Body,
     /// A part of it lies above another.
@@ -35,28 +35,28 @@ pub(super) enum Shape {
 }
 
 /// What triangles are, if no height field.
-pub(super) fn of_mesh(mesh: &TriangleMesh) -> Option<Shape> {
+pub(super) fn of_mesh(mesh: &TriangleMesh) -> Option<MeshKind> {
     let oriented = OrientedMesh::of(mesh, WELD).ok()?;
     if oriented.is_closed() {
-        Some(Shape::Body)
+        Some(MeshKind::Body)
     } else {
-        (oriented.overturned_share() > OVERTURNED).then_some(Shape::Overturned)
+        (oriented.overturned_share() > OVERTURNED).then_some(MeshKind::Overturned)
     }
 }
 
 /// Whether scattered points (voxel x and y, vertical value) are overturned: their neighbours on the map lie on other
 /// limbs, or they are a height field as seen from aside that turns its underside up.
-pub(super) fn of_points(points: &[(DVec2, f32)], geometry: &SurveyGeometry) -> Told {
+pub(super) fn of_points(points: &[(DVec2, f32)], geometry: &SurveyGeometry) -> SeenSideways {
     let vertical = geometry.metric_from_voxel().z_axis.length() / geometry.vertical.interval;
     let place = |(voxel, z): &(DVec2, f32)| world_xy(geometry, *voxel).extend(f64::from(*z) * vertical);
     let places =
         |most: usize| -> Vec<DVec3> { points.iter().step_by(points.len().div_ceil(most).max(1)).map(place).collect() };
     if points.len() < FEWEST_POINTS {
-        Told::Map
+        SeenSideways::Map
     } else if is_torn(&places(MOST_POINTS)) {
-        Told::Overturned
+        SeenSideways::Overturned
     } else {
-        sideways::told(&places(MOST_SEEN))
+        overturned_points::told(&places(MOST_SEEN))
     }
 }
 
@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn steep_and_faulted_points_are_height_fields_and_overturned_ones_are_not() {
         for count in [50, 90, 150, 600] {
-            let is_map = |points: &[(DVec2, f32)]| of_points(points, &geometry()) == Told::Map;
+            let is_map = |points: &[(DVec2, f32)]| of_points(points, &geometry()) == SeenSideways::Map;
             assert!(is_map(&scattered(count, |x, _| 100.0 + 1.7 * x)), "a dip of 60 degrees");
             let fault = |x: f64, y: f64| 300.0 + if x > 700.0 + 0.2 * y { 150.0 } else { 0.0 };
             assert!(is_map(&scattered(count, fault)), "a throw of 150 m");
@@ -111,7 +111,7 @@ mod tests {
                 (DVec2::new(fold.x_of(-250.0, z), y) / 25.0, z as f32)
             };
             let found = of_points(&(0..count).map(point).collect::<Vec<_>>(), &geometry());
-            assert_eq!(found, Told::Overturned, "{count}");
+            assert_eq!(found, SeenSideways::Overturned, "{count}");
         }
     }
 }

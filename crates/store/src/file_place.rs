@@ -35,9 +35,9 @@ pub(super) trait ArrayFiles: Debug + Send + Sync {
 
 /// Files in a folder.
 #[derive(Debug)]
-pub(super) struct Folder(pub(super) PathBuf);
+pub(super) struct FolderFiles(pub(super) PathBuf);
 
-impl ArrayFiles for Folder {
+impl ArrayFiles for FolderFiles {
     fn open(&self, key: &str) -> io::Result<Box<dyn PlacedBytes + '_>> {
         Ok(Box::new(PlacedFile::open(&self.0.join(key))?))
     }

@@ -2,7 +2,7 @@
 
 use super::error::StoreError;
 #[cfg(feature = "remote")]
-use super::linked;
+use super::object_storage;
 #[cfg(feature = "remote")]
 use super::replacement::Replacement;
 use super::volume::StoredVolume;
@@ -17,7 +17,7 @@ use survey::progress::Progress;
 #[cfg(feature = "remote")]
 pub fn link_volume(path: &Path, url: &str, progress: &Progress) -> Result<StoredVolume, StoreError> {
     let replacement = Replacement::of(path)?;
-    linked::copy_small(replacement.path(), url, progress)?;
+    object_storage::copy_small(replacement.path(), url, progress)?;
     // Whether it is a volume, of bricks that can be read.
     drop(StoredVolume::open(replacement.path())?);
     replacement.commit()?;
@@ -46,7 +46,7 @@ impl StoredVolume {
             return Err(StoreError::RemoteWrite { url: url.to_owned(), reason });
         }
         self.verify(progress)?;
-        linked::upload(self.path(), url.trim_end_matches('/'), progress)
+        object_storage::upload(self.path(), url.trim_end_matches('/'), progress)
     }
 
     /// Says that the program was built without object storage.

@@ -21,7 +21,7 @@ mod tests;
 mod upload;
 
 use super::error::StoreError;
-use super::placed::ArrayFiles;
+use super::file_place::ArrayFiles;
 use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
 use std::path::Path;
