@@ -5,6 +5,7 @@ use super::leaf_of;
 use super::selection::Selection;
 use crate::forest::Forest;
 use crate::reassembly::VoxelSheet;
+use serde::Serialize;
 
 /// A horizon to compare with others.
 #[derive(Debug, Clone)]
@@ -32,9 +33,10 @@ impl Default for ConflictSettings {
     }
 }
 
-/// A contradiction between two horizons.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Conflict {
+/// A contradiction between two horizons. A place is the indices of an inline and a crossline, or in a report their numbers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "conflict", rename_all = "kebab-case")]
+pub enum Conflict<Place = [usize; 2]> {
     /// Both contain triangles of the same leaves.
     SharedLeaves {
         /// The two horizons.
@@ -54,8 +56,8 @@ pub enum Conflict {
         below: usize,
         /// The largest distance by which it is below, samples.
         worst: f32,
-        /// Inline and crossline index of the trace with that distance.
-        at_voxel: [usize; 2],
+        /// The trace with that distance.
+        at: Place,
     },
     /// The younger horizon lies below the older one.
     Swapped {
@@ -66,13 +68,26 @@ pub enum Conflict {
     },
 }
 
-impl Conflict {
+impl<Place> Conflict<Place> {
     /// The two horizons.
     pub fn horizons(&self) -> &[String; 2] {
         match self {
             Self::SharedLeaves { horizons, .. } | Self::Crossing { horizons, .. } | Self::Swapped { horizons, .. } => {
                 horizons
             }
+        }
+    }
+
+    /// The same with its place stated otherwise.
+    pub fn placed<Other>(self, place: impl FnOnce(Place) -> Other) -> Conflict<Other> {
+        match self {
+            Self::SharedLeaves { horizons, leaves, triangles } => {
+                Conflict::SharedLeaves { horizons, leaves, triangles }
+            }
+            Self::Crossing { horizons, above, below, worst, at } => {
+                Conflict::Crossing { horizons, above, below, worst, at: place(at) }
+            }
+            Self::Swapped { horizons, traces } => Conflict::Swapped { horizons, traces },
         }
     }
 }
@@ -153,11 +168,11 @@ impl RelativeDepth {
 
     fn crossing(&self, [a, b]: [String; 2]) -> Conflict {
         if self.above >= self.below {
-            let (worst, at_voxel) = self.most_below;
-            Conflict::Crossing { horizons: [a, b], above: self.above, below: self.below, worst, at_voxel }
+            let (worst, at) = self.most_below;
+            Conflict::Crossing { horizons: [a, b], above: self.above, below: self.below, worst, at }
         } else {
-            let (worst, at_voxel) = self.most_above;
-            Conflict::Crossing { horizons: [b, a], above: self.below, below: self.above, worst, at_voxel }
+            let (worst, at) = self.most_above;
+            Conflict::Crossing { horizons: [b, a], above: self.below, below: self.above, worst, at }
         }
     }
 }

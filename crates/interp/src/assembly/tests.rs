@@ -362,10 +362,8 @@ fn contradictions_between_horizons_are_found() {
     let steep_sheets = reassemble(&steep, &upper, &[], &none).sheets;
     let steep = NamedSheets { name: "s", sheets: &steep_sheets, selection: None };
     let crossing = find(&[steep.clone(), named("l", &lower, &lower_sheets)]);
-    let [Conflict::Crossing { horizons, above, below, worst, at_voxel }] = &crossing[..] else {
-        panic!("{crossing:?}")
-    };
-    assert_eq!((horizons, *worst, at_voxel[0]), (&["l".to_owned(), "s".to_owned()], 10.0, 0));
+    let [Conflict::Crossing { horizons, above, below, worst, at }] = &crossing[..] else { panic!("{crossing:?}") };
+    assert_eq!((horizons, *worst, at[0]), (&["l".to_owned(), "s".to_owned()], 10.0, 0));
     assert_eq!((*above, *below), (18 * 17, 13 * 17));
     assert!(
         conflicts(None, size, &[steep, named("l", &lower, &lower_sheets)], |_, _| true, &ConflictSettings::default())

@@ -79,65 +79,15 @@ impl ReportedOverlap {
     }
 }
 
-/// A conflict ([`Conflict`]) with its place in line numbers.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(tag = "conflict", rename_all = "kebab-case")]
-pub enum ReportedConflict {
-    /// Both horizons contain triangles of the same leaves.
-    SharedLeaves {
-        /// The two horizons.
-        horizons: [String; 2],
-        /// Ids of the leaves.
-        leaves: Vec<u32>,
-        /// Count of triangles in both.
-        triangles: usize,
-    },
-    /// One horizon is above the other at some traces and below it at others.
-    Crossing {
-        /// The two horizons; the first is above at more traces.
-        horizons: [String; 2],
-        /// Count of traces at which the first is above.
-        above: usize,
-        /// Count of traces at which it is below.
-        below: usize,
-        /// The largest distance by which it is below, samples.
-        worst: f32,
-        /// Inline and crossline number of the trace with that distance.
-        at: [i32; 2],
-    },
-    /// The younger horizon lies below the older one.
-    Swapped {
-        /// The younger and the older horizon, by the stratigraphy.
-        horizons: [String; 2],
-        /// Count of traces at which the younger one is below.
-        traces: usize,
-    },
-}
+/// A conflict whose place is in line numbers.
+pub type ReportedConflict = Conflict<[i32; 2]>;
 
-impl ReportedConflict {
-    /// The conflict in line numbers.
-    fn new(conflict: Conflict, geometry: &SurveyGeometry) -> Self {
-        match conflict {
-            Conflict::SharedLeaves { horizons, leaves, triangles } => {
-                Self::SharedLeaves { horizons, leaves, triangles }
-            }
-            Conflict::Crossing { horizons, above, below, worst, at_voxel: [x, y] } => {
-                let lines = geometry.lines_from_voxel(glam::DVec2::new(x as f64, y as f64));
-                let at = [lines.x.round() as i32, lines.y.round() as i32];
-                Self::Crossing { horizons, above, below, worst, at }
-            }
-            Conflict::Swapped { horizons, traces } => Self::Swapped { horizons, traces },
-        }
-    }
-
-    /// The two horizons.
-    pub fn horizons(&self) -> &[String; 2] {
-        match self {
-            Self::SharedLeaves { horizons, .. } | Self::Crossing { horizons, .. } | Self::Swapped { horizons, .. } => {
-                horizons
-            }
-        }
-    }
+/// The conflict in line numbers.
+fn in_lines(conflict: Conflict, geometry: &SurveyGeometry) -> ReportedConflict {
+    conflict.placed(|[x, y]| {
+        let lines = geometry.lines_from_voxel(glam::DVec2::new(x as f64, y as f64));
+        [lines.x.round() as i32, lines.y.round() as i32]
+    })
 }
 
 fn is_zero(count: &usize) -> bool {
@@ -494,7 +444,7 @@ pub fn conflicts_of(
     let may_cross = |young: usize, old: usize| rules.may_cross(young, old);
     let forest = candidates.map(|candidates| &candidates.forest);
     let found = conflicts(forest, [nx, ny], &named, may_cross, &ConflictSettings::default());
-    Ok(found.into_iter().map(|conflict| ReportedConflict::new(conflict, geometry)).collect())
+    Ok(found.into_iter().map(|conflict| in_lines(conflict, geometry)).collect())
 }
 
 /// Assembles all horizons with picks again after the faults have changed. Horizons whose picks were made on another
@@ -559,8 +509,8 @@ mod tests {
         (geometry.inlines.first, geometry.inlines.step) = (-40, 2);
         (geometry.crosslines.first, geometry.crosslines.step) = (-7, 1);
         let horizons = ["a".to_owned(), "b".to_owned()];
-        let crossing = Conflict::Crossing { horizons, above: 9, below: 4, worst: 2.0, at_voxel: [3, 5] };
-        let reported = ReportedConflict::new(crossing, &geometry);
+        let crossing = Conflict::Crossing { horizons, above: 9, below: 4, worst: 2.0, at: [3, 5] };
+        let reported = in_lines(crossing, &geometry);
         assert!(matches!(reported, ReportedConflict::Crossing { at: [-34, -2], .. }), "{reported:?}");
         let json = serde_json::to_value(&reported).unwrap();
         assert_eq!((&json["conflict"], &json["at"]), (&"crossing".into(), &serde_json::json!([-34, -2])));
