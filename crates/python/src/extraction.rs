@@ -234,7 +234,7 @@ impl ExtractionTasks {
     /// Does a task of a stage, unless it is done.
     fn run(&self, py: Python<'_>, stage: &str, number: usize) -> PyResult<()> {
         task(py, || -> Result<(), ProjectError> {
-            let _keeping = system::kept_memory::keep_freed(self.plan.memory_bytes / 2);
+            system::memory::share_freed_memory(rayon::current_num_threads(), self.plan.memory_bytes / 2);
             let bricks = self.bricks()?;
             match named(&bricks, stage) {
                 Some(stage) => Ok(bricks.do_task(stage, number, &Progress::silent())?),

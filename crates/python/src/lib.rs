@@ -30,9 +30,6 @@ mod work;
 
 use pyo3::prelude::*;
 
-#[global_allocator]
-static MEMORY: system::kept_memory::ProgramMemory = system::kept_memory::ProgramMemory;
-
 /// The module that Python imports.
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {

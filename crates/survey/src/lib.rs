@@ -10,11 +10,7 @@
 //! - horizon candidates extracted from a volume: [`candidates`];
 //! - progress and cancellation of long computations: [`progress`];
 //! - what a user can state about a file: [`remedy`];
-//! - volumes that do not fit into memory: [`source`], [`sparse_volume`];
-//!
-//! - what may be read and what fits into memory, and memory that is kept for what comes next: [`mod@file`], [`memory`],
-//!   [`kept_memory`];
-//! - loops for wide registers: [`wide`].
+//! - volumes that do not fit into memory: [`source`], [`sparse_volume`].
 //!
 //! Deliberately absent: formats of files, the store, and any algorithm that combines several of these types.
 //!

@@ -13,15 +13,11 @@ pub fn zeroed<T: Clone + Default>(count: usize) -> Vec<T> {
 }
 
 /// Asks the system for huge pages. Where it refuses, the program works as before.
-fn advise<T>(samples: &[T]) {
-    advise_at(samples.as_ptr() as usize, size_of_val(samples));
-}
-
-/// Asks the system for huge pages for memory that the caller owns.
 #[cfg(target_os = "linux")]
-pub(crate) fn advise_at(start: usize, bytes: usize) {
+fn advise<T>(samples: &[T]) {
     /// The advice must begin at a page boundary; no system has smaller pages than this.
     const PAGE: usize = 4096;
+    let (start, bytes) = (samples.as_ptr() as usize, size_of_val(samples));
     let first = start.next_multiple_of(PAGE);
     let end = (start + bytes) / PAGE * PAGE;
     if end <= first {
@@ -35,7 +31,7 @@ pub(crate) fn advise_at(start: usize, bytes: usize) {
 }
 
 #[cfg(not(target_os = "linux"))]
-pub(crate) fn advise_at(_start: usize, _bytes: usize) {}
+fn advise<T>(_samples: &[T]) {}
 
 #[cfg(test)]
 mod tests {

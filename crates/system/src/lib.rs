@@ -3,8 +3,8 @@
 //!
 //! - files that may be anything: [`mod@file`] reads ordinary ones of a stated size and makes sure that what was written is
 //!   on the disk, [`positional`] reads bytes at a place;
-//! - memory: how much there is and whether something fits ([`memory`]), volumes in huge pages ([`huge_pages`]), freed blocks
-//!   that are kept for what comes next ([`kept_memory`]);
+//! - memory: how much there is, whether something fits, and how much of what was freed is kept for what comes next
+//!   ([`memory`]); volumes in huge pages ([`huge_pages`]);
 //! - loops compiled for wide registers too: [`wide`];
 //! - lines that people paste into a shell: [`command_line`].
 //!
@@ -13,7 +13,6 @@
 pub mod command_line;
 pub mod file;
 pub mod huge_pages;
-pub mod kept_memory;
 pub mod memory;
 pub mod positional;
 pub mod wide;

@@ -36,8 +36,7 @@ impl BrickedExtraction<'_> {
         let size = self.source.info().geometry.size();
         let stated = memory_bytes.saturating_sub(PROGRAM_BYTES);
         let cut = BrickSettings::within(stated, size, rayon::current_num_threads())?;
-        system::memory::share_freed_memory(cut.workers);
-        let _keeping = system::kept_memory::keep_freed(stated / 2);
+        system::memory::share_freed_memory(cut.workers, stated / 2);
         let scratch = self.scratch(&cut)?;
         let done = self.extract(&scratch, &cut, progress);
         match &done {

@@ -18,6 +18,9 @@ use system::memory;
 /// compression, with what compresses it.
 const BYTES_A_SAMPLE: u64 = 32;
 
+/// Bytes that are freed and kept for what comes next, where memory is stated.
+const KEPT_BYTES: u64 = 16 << 20;
+
 impl Rock {
     /// Samples the parameterization on a lattice of `size` that spans the survey, in at most so many bytes of memory
     /// (without a bound, as all threads need), and keeps it in the project.
@@ -43,7 +46,7 @@ impl Rock {
             let threads = sampling_threads(size, memory_bytes)?;
             let writer = self.begin_voxels(group, size)?;
             if memory_bytes.is_some() {
-                memory::share_freed_memory(threads);
+                memory::share_freed_memory(threads, KEPT_BYTES);
             }
             let write = || self.write_all(&writer, threads, progress);
             match ThreadPoolBuilder::new().num_threads(threads).build() {
