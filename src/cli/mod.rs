@@ -69,7 +69,8 @@ pub fn main() -> ExitCode {
 /// # Errors
 /// The words are no command, or it could not be carried out.
 pub fn answer(typed: &[OsString], progress: &Progress) -> Result<serde_json::Value, Refusal> {
-    let asked = Asked::of(typed);
+    // Whoever calls has no shell before it, and other functions know no project: their hints are the same.
+    let asked = Asked { project: Asked::default().project, ..Asked::of(typed) };
     let line = [OsString::from("petroglyph")].into_iter().chain(typed.iter().cloned());
     let typed = args::Arguments::try_parse_from(line).map_err(|told| Refusal::of_usage(&told, &asked))?;
     let outcome = request::seconds("--wait", typed.wait)
