@@ -11,7 +11,6 @@ use crate::state::{How, Notice, PickingStep, Place};
 use glam::DVec2;
 use image::RgbaImage;
 use page::list::POINTS_PER_INCH;
-use project::pictures::load::Loaded;
 use project::pictures::{Device, Painter};
 use render::{Media, RenderError, Scene, Shading};
 use std::path::PathBuf;

@@ -8,7 +8,6 @@
 
 use super::block::pixels_per_metre;
 use super::seen::Sight;
-use crate::FigureError;
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use model::StructuralModel;

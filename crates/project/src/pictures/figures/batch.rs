@@ -71,7 +71,7 @@ fn stage(
 ) -> Result<Vec<WrittenFigure>, ProjectError> {
     let mut staged = Vec::new();
     let mut rock = None;
-    for (file, format, figure) in meant {
+    for &(file, format, ref figure) in meant {
         let fonts = fonts.to_vec();
         let settings = FigureSettings { format, device, volume_bytes, fonts, picture_dpi: None, rock };
         let made = make(project, figure, &InterpreterView::default(), &settings, progress).map_err(of_figure(file))?;
