@@ -10,7 +10,8 @@ use super::request::{Usage, drawing};
 use super::view::ViewChanges;
 use anyhow::Context;
 use image::RgbaImage;
-use page::animation::{AnimationFormat, AnimationShape, AnimationWriter};
+use page::FileFormat;
+use page::animation::{AnimationShape, AnimationWriter};
 use project::folder::refuse_inside_project;
 use project::pictures::{Device, Motion, Painter, load, scene, write_png};
 use project::{Project, memory_budget};
@@ -36,7 +37,7 @@ const FRAME_DPI: f64 = 150.0;
 /// Where frames go.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Target {
-    File(AnimationFormat),
+    File(&'static FileFormat),
     Folder,
 }
 
@@ -121,18 +122,20 @@ impl TryFrom<AnimateArgs> for AnimateRequest {
 
 /// Where frames go, by the name of what is written.
 fn target(out: &Path) -> Result<Target, Usage> {
+    if let Some(format) = FileFormat::of_animation(out) {
+        return Ok(Target::File(format));
+    }
+    let usual = page::endings(FileFormat::animations());
     let ending = out.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
     match ending.as_deref() {
         None => Ok(Target::Folder),
-        Some("png" | "apng") => Ok(Target::File(AnimationFormat::Png)),
-        Some("gif") => Ok(Target::File(AnimationFormat::Gif)),
         Some("webp" | "mp4" | "webm" | "avif" | "mov" | "avi" | "mkv") => Err(format!(
-            "{}: films and animated WebP or AVIF are not written; write .png or .gif, or a folder of numbered frames and \
+            "{}: films and animated WebP or AVIF are not written; write {usual}, or a folder of numbered frames and \
              make the film from it, for example with `ffmpeg -framerate 12 -i FOLDER/%04d.png film.mp4`",
             out.display()
         )),
         Some(_) => Err(format!(
-            "{}: animations are written as .png or .gif, or as numbered frames into a folder whose name has no ending",
+            "{}: animations are written as {usual}, or as numbered frames into a folder whose name has no ending",
             out.display()
         )),
     }
@@ -196,7 +199,7 @@ pub(super) fn animate(request: &AnimateRequest, progress: &Progress) -> anyhow::
         let at = share(frame, request.frames, motion.is_closed(), request.is_once);
         let scene = motion.scene(&start, geometry, at);
         // The bar counts frames, not what is drawn in one.
-        Ok(painter.draw(&scene, &loaded, &progress.muted())?.0)
+        Ok(painter.picture(&scene, &loaded, FRAME_DPI, &progress.muted())?)
     };
     progress.begin("frames", u64::from(request.frames));
     let shape = AnimationShape { size_px: start.size_px, frames: request.frames, rate: request.rate };
@@ -262,7 +265,7 @@ fn write(
             fs::create_dir(replacement.path()).with_context(cannot)?;
             let mut bytes = 0;
             for frame in 0..shape.frames {
-                let path = replacement.path().join(format!("{:04}.png", frame + 1));
+                let path = replacement.path().join(format!("{:04}.{}", frame + 1, FileFormat::usual().ending()));
                 write_png(&path, &draw(frame)?, FRAME_DPI)?;
                 bytes += fs::metadata(&path).with_context(cannot)?.len();
                 progress.step(1)?;
@@ -300,13 +303,13 @@ mod tests {
     #[test]
     fn a_name_says_what_is_written_and_films_are_refused_with_a_way_out() {
         let of = |name: &str| target(Path::new(name));
-        assert_eq!(of("a.PNG"), Ok(Target::File(AnimationFormat::Png)));
-        assert_eq!(of("out/a.gif"), Ok(Target::File(AnimationFormat::Gif)));
+        assert_eq!(of("a.PNG"), Ok(Target::File(FileFormat::of_animation("a.png".as_ref()).unwrap())));
+        assert_eq!(of("out/a.gif"), Ok(Target::File(FileFormat::of_animation("a.gif".as_ref()).unwrap())));
         assert_eq!(of("out/frames"), Ok(Target::Folder));
         for film in ["a.webp", "a.mp4", "a.avif"] {
             assert!(of(film).unwrap_err().contains("numbered frames"), "{film}");
         }
-        assert!(of("a.svg").unwrap_err().contains(".png or .gif"));
+        assert!(of("a.svg").unwrap_err().contains(&page::endings(FileFormat::animations())));
     }
 
     #[test]
@@ -321,7 +324,7 @@ mod tests {
     fn a_file_that_is_stopped_leaves_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let shape = AnimationShape { size_px: [5, 4], frames: 3, rate: 10.0 };
-        for (name, kind) in [("a.gif", Target::File(AnimationFormat::Gif)), ("frames", Target::Folder)] {
+        for (name, kind) in [("a.gif", target(Path::new("a.gif")).unwrap()), ("frames", Target::Folder)] {
             let out = folder.path().join(name);
             let progress = Progress::silent();
             let stopped = |frame: u32| {

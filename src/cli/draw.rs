@@ -1,6 +1,5 @@
 //! `petroglyph render`: draws a picture, and reports the assumptions behind it.
 
-use super::page::PageRequest;
 use super::report::Report;
 use super::request::RenderRequest;
 use super::run::scene_file;
@@ -8,9 +7,9 @@ use project::Project;
 use project::folder::refuse_inside_project;
 use project::memory_budget;
 use project::pictures::figures::NamedConfusion;
-use project::pictures::{Device, Painter, figures};
-use project::pictures::{load, scene};
-use render::{FaceData, Scene};
+use project::pictures::scene;
+use project::pictures::{Device, figures};
+use render::Scene;
 use std::path::{Path, PathBuf};
 use survey::{Progress, VerticalUnit};
 use system::command_line::CommandLine;
@@ -45,46 +44,7 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     }
     scene::prepare(document, &mut scene, progress)?;
     memory::check("the picture", &scene.size_px.map(|side| side as usize), PIXEL_BYTES)?;
-    // Water is drawn by pages.
-    let bare = PageRequest::default();
-    if let Some(page) = request.figure.as_ref().or(scene.water.map(|_| &bare)) {
-        return super::page::draw(request, page, &project, &scene, progress);
-    }
-    let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
-    let mut painter = Painter::new(request.device, progress)?;
-    let read = if painter.is_processor() { load::load_faces } else { load::load_within };
-    let mut loaded = read(&project, &scene, volume_bytes, progress)?;
-    let (mut image, mut stage) = painter.draw(&scene, &loaded, progress)?;
-    if loaded.has_missed() {
-        loaded = load::load_within(&project, &scene, volume_bytes, progress)?;
-        (image, stage) = painter.draw(&scene, &loaded, progress)?;
-    }
-    project::pictures::write_png(&request.out, &image, request.dpi)?;
-
-    let distortion = match scene.face_data {
-        FaceData::Distortion => loaded.distortion(&scene, progress)?,
-        _ => Vec::new(),
-    };
-    let look_alikes = figures::confusions(project.root(), document, loaded.rock.as_deref(), &scene)?;
-    let mut stages = loaded.rock.as_ref().map(|rock| rock.stages.clone()).unwrap_or_default();
-    stages.push(stage);
-    let mut report = Report::line(written(&request.out, scene.size_px, request.dpi));
-    advise(&request.project, look_alikes, &mut report);
-    super::distortion::say(document, &distortion, &mut report);
-    let assumed = assumptions(&project, &scene);
-    assumed.iter().for_each(|line| {
-        report.say(format!("  {line}"));
-    });
-    report
-        .field("file", &request.out)
-        .field("size_px", scene.size_px)
-        .field("dpi", request.dpi)
-        .field("exaggeration", scene.exaggeration)
-        .field("blend", scene.blend)
-        .field("device", painter.device())
-        .field("assumptions", assumed)
-        .field("stages", stages);
-    Ok(report)
+    super::page::draw(request, &project, &scene, progress)
 }
 
 /// Makes all figures of a project.

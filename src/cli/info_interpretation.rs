@@ -39,7 +39,7 @@ pub(super) fn describe(path: &Path, options: &ImportOptions) -> anyhow::Result<O
 fn is_volume(path: &Path) -> bool {
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let long = std::fs::metadata(path).is_ok_and(|facts| facts.len() > LARGEST);
-    ["sgy", "segy", "seg"].contains(&extension.as_str()) || long || begin(path).is_some_and(|b| b[..2] == [0xC3, 0x40])
+    files::segy::ENDINGS.contains(&extension.as_str()) || long || begin(path).is_some_and(|b| b[..2] == [0xC3, 0x40])
 }
 
 /// Whether a file is as long as the headers of SEG-Y at least; shorter ones get the error for interpretation files.

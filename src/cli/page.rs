@@ -1,5 +1,4 @@
-//! `petroglyph render` with more on the page than a picture of the block: sections, fences, maps, compared
-//! blocks, a legend.
+//! The page of `petroglyph render`: a block alone, or sections, fences, maps, compared blocks, a legend.
 
 use super::args::FigureArgs;
 use super::draw::{advise, assumptions, written};
@@ -45,8 +44,8 @@ pub(super) struct PageRequest {
 }
 
 impl PageRequest {
-    /// Parses the options of the page; `None` where only a picture of the block was asked for.
-    pub(super) fn meant(typed: FigureArgs, is_map: bool) -> Result<Option<Self>, Usage> {
+    /// Parses the options of the page.
+    pub(super) fn meant(typed: FigureArgs, is_map: bool) -> Result<Self, Usage> {
         let correlation = correlation(&typed)?.map(Box::new);
         let kinds = [
             (SectionKind::Inline, typed.inline),
@@ -95,18 +94,7 @@ impl PageRequest {
         if parts > 4 {
             return Err(format!("a page holds at most four parts, these are {parts}: leave some out"));
         }
-        Ok(meant.is_page().then_some(meant))
-    }
-
-    /// Whether more was asked for than a picture of the block.
-    fn is_page(&self) -> bool {
-        let has_lines = !self.sections.is_empty() || !self.fence.is_empty();
-        let has_parts = has_lines || self.map.is_some() || self.correlation.is_some() || self.has_block;
-        let has_words = self.title.is_some() || self.caption.is_some() || !self.annotations.is_empty();
-        let has_more =
-            self.is_interpretation || self.has_legend || self.has_scale_bar || self.has_north_arrow || has_words;
-        let is_paper = self.size_cm.is_some() || self.file.is_some();
-        has_parts || has_more || is_paper || self.comparison != Comparison::None
+        Ok(meant)
     }
 
     /// The figure, with this scene for its block.
@@ -226,17 +214,17 @@ fn comparison(blends: Option<&str>, wipe: Option<f64>) -> Result<Comparison, Usa
 /// Makes the page and writes it.
 pub(super) fn draw(
     request: &RenderRequest,
-    page: &PageRequest,
     project: &Project,
     scene: &Scene,
     progress: &Progress,
 ) -> anyhow::Result<Report> {
+    let RenderRequest { page, format, device, .. } = request;
     let figure = page.figure(scene, request.dpi, project)?;
     let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
-    let device = request.device;
-    let settings = FigureSettings { device, volume_bytes, fonts: page.fonts.clone(), picture_dpi: None, rock: None };
+    let (format, device, fonts) = (*format, *device, page.fonts.clone());
+    let settings = FigureSettings { format, device, volume_bytes, fonts, picture_dpi: None, rock: None };
     let made = figures::make(project, &figure, &InterpreterView::default(), &settings, progress)?;
-    figures::write(&made.page, request.format, &request.out, figure.dpi, &figures::title(project))?;
+    figures::write(&made.page, format, &request.out, figure.dpi, &figures::title(project))?;
     let mut report = Report::line(written(&request.out, figure.size_px(), figure.dpi));
     advise(&request.project, made.confusions, &mut report);
     let blocks = figure.parts.iter().filter_map(|part| match part {
@@ -247,7 +235,7 @@ pub(super) fn draw(
         let loaded = load::load_with(project, made.rock.clone(), scene, volume_bytes, progress)?;
         super::distortion::say(project.document(), &loaded.distortion(scene, progress)?, &mut report);
     }
-    let shown = blocks.map(|scene| assumptions(project, scene)).next().unwrap_or_default();
+    let shown = blocks.clone().map(|scene| assumptions(project, scene)).next().unwrap_or_default();
     shown.iter().for_each(|line| {
         report.say(format!("  {line}"));
     });
@@ -259,20 +247,15 @@ pub(super) fn draw(
         .field("device", made.device)
         .field("assumptions", shown)
         .field("stages", made.stages);
+    if let Some(scene) = blocks.clone().next() {
+        report.field("exaggeration", scene.exaggeration).field("blend", scene.blend);
+    }
     Ok(report)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_picture_of_the_block_alone_is_no_page() {
-        assert!(PageRequest::meant(FigureArgs::default(), false).unwrap().is_none());
-        assert!(PageRequest::meant(FigureArgs::default(), true).unwrap().is_some());
-        let typed = FigureArgs { legend: true, ..FigureArgs::default() };
-        assert!(PageRequest::meant(typed, false).unwrap().is_some());
-    }
 
     #[test]
     fn nonsense_is_a_usage_error() {

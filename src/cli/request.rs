@@ -15,6 +15,7 @@ use crate::bench;
 use files::segy::{SegyOptions, WriteFormat};
 use files::{ExportOptions, Format, ImportOptions, SurfaceKind};
 use interp::faults::ProposeSettings;
+use page::FileFormat;
 use param::KDefinition;
 use project::chains::illustrate::IllustrateSettings;
 use project::command::{
@@ -24,10 +25,9 @@ use project::command::{
 use project::document::{NoteEntry, Polarity};
 use project::memory_budget;
 use project::pictures::Device;
-use project::pictures::figures::FigureFormat;
 use project::pictures::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use render::{IsosurfaceSource, Scope};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 use survey::SurveyGeometry;
 use synth::SynthSettings;
@@ -125,10 +125,10 @@ pub(super) struct RenderRequest {
     pub(super) volume_bytes: Option<u64>,
     /// The options of volume rendering, if any were given.
     pub(super) volume_rendering: VolumeRendering,
-    /// The page, if more was asked for than a picture of the block.
-    pub(super) figure: Option<PageRequest>,
+    /// What is on the page; by default the block alone.
+    pub(super) page: PageRequest,
     /// The format of the file.
-    pub(super) format: FigureFormat,
+    pub(super) format: &'static FileFormat,
 }
 
 /// What to list of a project.
@@ -316,9 +316,7 @@ fn illustrate(typed: IllustrateArgs) -> Result<Request, Usage> {
     if typed.layers < 2 {
         return Err(format!("--layers {}: expected at least 2", typed.layers));
     }
-    if FigureFormat::of(&typed.out).is_none() {
-        return Err(format!("{}: expected a file that ends in .png, .tif, .svg or .pdf", typed.out.display()));
-    }
+    page_format(&typed.out)?;
     let (device, volume_bytes) = drawing(&typed.drawing)?;
     let settings = IllustrateSettings {
         layers: typed.layers,
@@ -372,18 +370,10 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
     if !(typed.dpi >= 1.0 && typed.dpi <= 10_000.0) {
         return Err(format!("--dpi {}: expected 1 to 10000", typed.dpi));
     }
-    let Some(format) = FigureFormat::of(&typed.out) else {
-        return Err(format!(
-            "{}: pictures are written as .png or .tif, pictures of paths as .svg or .pdf",
-            typed.out.display()
-        ));
-    };
     let is_map = typed.technique.as_deref() == Some("map");
     Ok(RenderRequest {
-        // All formats but PNG are written of pages, also those of a block alone.
-        figure: PageRequest::meant(typed.figure, is_map)?
-            .or_else(|| (format != FigureFormat::Png).then(PageRequest::default)),
-        format,
+        page: PageRequest::meant(typed.figure, is_map)?,
+        format: page_format(&typed.out)?,
         project: typed.project,
         out: typed.out,
         scene: typed.scene,
@@ -405,6 +395,12 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
             },
         },
     })
+}
+
+/// The kind of file that the ending of a name says.
+fn page_format(out: &Path) -> Result<&'static FileFormat, Usage> {
+    FileFormat::of_page(out)
+        .ok_or_else(|| format!("{}: its name must end in {}", out.display(), page::endings_of_pages()))
 }
 
 /// What draws, and the largest memory for the samples of a volume, bytes.

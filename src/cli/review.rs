@@ -9,7 +9,7 @@ use project::memory_budget;
 use project::pictures::Device;
 use review::glb::TRIANGLES;
 use review::html::SIZES_MB;
-use review::{DENSITIES, MOST_SECTIONS, ReviewSettings, glb, html};
+use review::{DENSITIES, MOST_SECTIONS, ReviewSettings, ShareKind, glb, html};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use survey::Progress;
@@ -36,7 +36,7 @@ impl TryFrom<ReviewArgs> for ReviewRequest {
     type Error = Usage;
 
     fn try_from(typed: ReviewArgs) -> Result<Self, Usage> {
-        has_ending(&typed.out, &["html", "htm"], "a page")?;
+        has_ending(&typed.out, ShareKind::Page, "a page")?;
         let [least, most] = SIZES_MB;
         if !(typed.size_limit >= least && typed.size_limit <= most) {
             return Err(format!("--size-limit {}: expected {least} to {most} MB", typed.size_limit));
@@ -58,7 +58,7 @@ impl TryFrom<ExportArgs> for ModelRequest {
     type Error = Usage;
 
     fn try_from(typed: ExportArgs) -> Result<Self, Usage> {
-        has_ending(&typed.out, &["glb"], "a model")?;
+        has_ending(&typed.out, ShareKind::Model, "a model")?;
         let [least, most] = TRIANGLES;
         if !(least..=most).contains(&typed.triangles) {
             return Err(format!("--triangles {}: expected {least} to {most}", typed.triangles));
@@ -73,12 +73,9 @@ impl TryFrom<ExportArgs> for ModelRequest {
     }
 }
 
-fn has_ending(out: &Path, endings: &[&str], what: &str) -> Result<(), Usage> {
-    let ending = out.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
-    if endings.contains(&ending.as_str()) {
-        return Ok(());
-    }
-    Err(format!("{}: {what} has the ending .{}; name the file so", out.display(), endings[0]))
+fn has_ending(out: &Path, kind: ShareKind, what: &str) -> Result<(), Usage> {
+    let told = || format!("{}: {what} has the ending .{}; name the file so", out.display(), kind.ending());
+    kind.is_of(out).then_some(()).ok_or_else(told)
 }
 
 fn settings(

@@ -4,6 +4,7 @@
 //! Reads the sources as text; nothing is compiled. `use` statements and paths in the code are followed to the file that
 //! defines what they name, through re-exports. Tests are left out.
 
+mod endings;
 mod imports;
 mod source;
 

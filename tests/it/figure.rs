@@ -125,6 +125,48 @@ fn water_fills_the_block_above_the_ground_up_to_its_level_in_every_format() {
     assert_eq!(run_in(at, "render p.petro a.png --water high").code, 2);
 }
 
+/// A block alone, and one on a page: every ending that holds pixels has the same ones, those of the animation and of the
+/// figures of a project too.
+#[test]
+fn every_ending_of_pixels_has_the_same_pixels() {
+    let folder = project();
+    let at = folder.path();
+    let drawn = |path: &str| {
+        let reader = image::ImageReader::open(at.join(path)).unwrap().with_guessed_format().unwrap();
+        (reader.format().unwrap(), reader.decode().unwrap().to_rgba8())
+    };
+    for (n, options) in [
+        "--cut nearest,0.4,0.4",
+        "--background transparent",
+        "--ground on --water 0",
+        "--blend 0.5",
+        "--scale-bar --legend",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let mut known: Option<image::RgbaImage> = None;
+        let mut kinds = Vec::new();
+        for format in page::FileFormat::pages().filter(|format| format.has_pixels()) {
+            let out = format!("{n}.{}", format.ending());
+            run_in(at, &format!("render p.petro {out} {options} --size 160x120 --dpi 150 --samples 2 --device cpu"))
+                .done();
+            let (kind, pixels) = drawn(&out);
+            kinds.push(kind);
+            assert!(known.as_ref().is_none_or(|known| *known == pixels), "{options}: {out}");
+            known = Some(pixels);
+        }
+        assert_eq!(kinds, [image::ImageFormat::Png, image::ImageFormat::Tiff]);
+        if n < 4 {
+            let turned = format!(
+                "animate p.petro frames{n} --frames 2 --turn 360 {options} --size 160x120 --samples 2 --device cpu"
+            );
+            run_in(at, &turned).done();
+            assert_eq!(drawn(&format!("frames{n}/0001.png")).1, known.unwrap(), "{options}");
+        }
+    }
+}
+
 /// Names that files must escape, letters that the face lacks, and a page without room.
 #[test]
 fn odd_names_and_tiny_pages_make_sensible_figures() {
@@ -384,10 +426,6 @@ fn a_figure_is_written_as_paths_and_text() {
     for name in ["%PDF-1.7", "/Name (Alpha)", "/Name (above Alpha)", "/Title (p)"] {
         assert!(pdf.windows(name.len()).any(|bytes| bytes == name.as_bytes()), "no {name}");
     }
-    // Pixels for print, of a block alone as well.
-    run_in(at, "render p.petro block.tif --size 90x60 --background transparent --device cpu").done();
-    let tiff = image::ImageReader::open(at.join("block.tif")).unwrap().with_guessed_format().unwrap();
-    assert_eq!(tiff.format(), Some(image::ImageFormat::Tiff));
     // With relief the ground is a picture, and the sides are still paths.
     run_in(at, "render p.petro ground.svg --size-cm 6x5 --device cpu").done();
     let ground = fs::read_to_string(at.join("ground.svg")).unwrap();

@@ -449,7 +449,7 @@ fn water_is_not_painted_over_wells_that_stand_before_it() {
     let inputs = Inputs { model: Some(&survey.model), wells: &wells, ..Inputs::raw(&survey.geometry, &volumes) };
     let red = image::Rgba([200, 0, 0, 255]);
     let dry = RgbaImage::from_pixel(400, 300, red);
-    let over = |scene: &Scene| figure::draw::water::over(dry.clone(), scene, &inputs).unwrap();
+    let over = |scene: &Scene| figure::draw::water::over(dry.clone(), scene, &inputs, 72.0);
     assert_eq!(over(&scene), dry, "a scene without water");
     scene.water = Some(water);
     let picture = over(&scene);

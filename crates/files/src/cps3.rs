@@ -14,7 +14,7 @@ use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, SourceFile};
 use super::write::WriteFailure;
 use super::zmap::{from_columns, in_columns, unrotated};
-use super::{Codec, Format, FormatError, irap};
+use super::{Codec, Format, FormatError, HorizonWriter, irap};
 use std::io::Write;
 use survey::geometry::SurveyGeometry;
 use survey::horizon::{Horizon, NodeGrid};
@@ -27,7 +27,7 @@ pub(super) const CODEC: Codec = Codec {
     detect,
     read_horizon: Some(read),
     read_fault: None,
-    write_horizon: Some(write_horizon),
+    write_horizon: Some(HorizonWriter { is_unrotated: true, ..HorizonWriter::of(write_horizon) }),
     write_fault: None,
 };
 

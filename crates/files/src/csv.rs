@@ -13,7 +13,7 @@ use super::raw::{RawSurface, ReadContext};
 use super::table::{self, LineCut};
 use super::text::{self, Line, SourceFile};
 use super::write::{self, TableNode};
-use super::{Codec, Format, FormatError};
+use super::{Codec, Format, FormatError, HorizonWriter};
 use std::io::Write;
 use survey::geometry::{SurveyGeometry, VerticalUnit};
 use survey::horizon::Horizon;
@@ -25,7 +25,11 @@ pub(super) const CODEC: Codec = Codec {
     detect,
     read_horizon: Some(read),
     read_fault: Some(read),
-    write_horizon: Some(write_horizon),
+    write_horizon: Some(HorizonWriter {
+        holds_any_shape: true,
+        tells_quality: true,
+        ..HorizonWriter::of(write_horizon)
+    }),
     write_fault: None,
 };
 

@@ -8,7 +8,7 @@
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, SourceFile};
 use super::write::WriteFailure;
-use super::{Codec, Format, FormatError};
+use super::{Codec, Format, FormatError, HorizonWriter};
 use glam::DVec2;
 use std::borrow::Cow;
 use std::io::Write;
@@ -22,7 +22,7 @@ pub(super) const CODEC: Codec = Codec {
     detect,
     read_horizon: Some(read),
     read_fault: None,
-    write_horizon: Some(write_horizon),
+    write_horizon: Some(HorizonWriter::of(write_horizon)),
     write_fault: None,
 };
 

@@ -187,8 +187,27 @@ impl fmt::Display for SurfaceKind {
 }
 
 type Reader = fn(&SourceFile, &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError>;
-type HorizonWriter = fn(&mut dyn Write, &Horizon, &SurveyGeometry) -> Result<(), write::WriteFailure>;
+type WriteHorizon = fn(&mut dyn Write, &Horizon, &SurveyGeometry) -> Result<(), write::WriteFailure>;
 type FaultWriter = fn(&mut dyn Write, &Fault, &SurveyGeometry) -> Result<(), write::WriteFailure>;
+
+/// How a format writes horizons.
+#[derive(Clone, Copy)]
+struct HorizonWriter {
+    write: WriteHorizon,
+    /// Whether its grids lie along X and Y: others are resampled.
+    is_unrotated: bool,
+    /// Whether it holds horizons that are no maps, with several depths over one place.
+    holds_any_shape: bool,
+    /// Whether it says which nodes were filled or extrapolated.
+    tells_quality: bool,
+}
+
+impl HorizonWriter {
+    /// Of maps on grids of any direction.
+    const fn of(write: WriteHorizon) -> Self {
+        Self { write, is_unrotated: false, holds_any_shape: false, tells_quality: false }
+    }
+}
 
 /// The capabilities of a format.
 struct Codec {
@@ -252,6 +271,11 @@ impl Format {
             SurfaceKind::Horizon => self.codec().write_horizon.is_some(),
             SurfaceKind::Fault => self.codec().write_fault.is_some(),
         }
+    }
+
+    /// Whether a horizon's file in it says which nodes were filled or extrapolated.
+    pub fn tells_quality(self) -> bool {
+        self.codec().write_horizon.is_some_and(|writer| writer.tells_quality)
     }
 
     /// The format of that word.
@@ -451,21 +475,21 @@ pub fn write_horizon_as(
         let instead = names(|c| c.write_horizon.is_some());
         return Err(FormatError::Unsupported { format, action: "written", kind: SurfaceKind::Horizon, instead });
     };
-    let (horizon, mut notes) = match format {
-        Format::Zmap | Format::Cps3 => resampling::of(horizon, format, options)?,
-        _ => (Cow::Borrowed(horizon), Vec::new()),
+    let (horizon, mut notes) = match writer.is_unrotated {
+        true => resampling::of(horizon, format, options)?,
+        false => (Cow::Borrowed(horizon), Vec::new()),
     };
-    let is_map_alone = horizon.any_shape().is_some() && !matches!(format, Format::Tsurf | Format::Csv);
+    let is_map_alone = horizon.any_shape().is_some() && !writer.holds_any_shape;
     write::beside(path, &horizon.name, format, |out| {
         if is_map_alone {
             let why = "it is no map: it has several depths over one place".to_owned();
             return Err(write::WriteFailure::NotRepresentable(why, "write tsurf (triangles) or csv (points)"));
         }
-        writer(out, &horizon, geometry)
+        (writer.write)(out, &horizon, geometry)
     })?;
-    notes.extend(write::unpicked(&horizon).map(|share| match format {
-        Format::Csv => format!("{share}: the column quality says which"),
-        _ => format!("{share}: the format does not say which nodes; csv does"),
+    notes.extend(write::unpicked(&horizon).map(|share| match writer.tells_quality {
+        true => format!("{share}: the column quality says which"),
+        false => format!("{share}: the format does not say which nodes; csv does"),
     }));
     let corners = horizon.any_shape().map_or(0, |surface| surface.vertices.len());
     Ok(ExportReport { nodes: horizon.sheets.iter().map(Sheet::node_count).sum::<usize>() + corners, notes })

@@ -12,7 +12,7 @@ use super::raw::{RawSurface, ReadContext};
 use super::table::{self, LineCut};
 use super::text::{self, SourceFile};
 use super::write::{self, TableNode, WriteFailure};
-use super::{Codec, Format, FormatError};
+use super::{Codec, Format, FormatError, HorizonWriter};
 use std::io::Write;
 use survey::fault::Fault;
 use survey::geometry::SurveyGeometry;
@@ -25,7 +25,7 @@ pub(super) const CODEC: Codec = Codec {
     detect,
     read_horizon: Some(read),
     read_fault: Some(read),
-    write_horizon: Some(write_horizon),
+    write_horizon: Some(HorizonWriter::of(write_horizon)),
     write_fault: Some(write_fault),
 };
 

@@ -13,7 +13,7 @@ use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Line, SourceFile};
 use super::unit::{Domain, ZPositive, ZUnit};
 use super::write::WriteFailure;
-use super::{Codec, Format, FormatError};
+use super::{Codec, Format, FormatError, HorizonWriter};
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use std::io::Write;
@@ -29,7 +29,7 @@ pub(super) const CODEC: Codec = Codec {
     detect,
     read_horizon: Some(read),
     read_fault: Some(read),
-    write_horizon: Some(write_horizon),
+    write_horizon: Some(HorizonWriter { holds_any_shape: true, ..HorizonWriter::of(write_horizon) }),
     write_fault: Some(write_fault),
 };
 

@@ -10,7 +10,7 @@
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Line, SourceFile};
 use super::write::{self, WriteFailure};
-use super::{Codec, Format, FormatError, SurfaceKind, irap};
+use super::{Codec, Format, FormatError, HorizonWriter, SurfaceKind, irap};
 use glam::DVec2;
 use std::io::Write;
 use survey::geometry::SurveyGeometry;
@@ -23,7 +23,7 @@ pub(super) const CODEC: Codec = Codec {
     detect,
     read_horizon: Some(read),
     read_fault: None,
-    write_horizon: Some(write_horizon),
+    write_horizon: Some(HorizonWriter { is_unrotated: true, ..HorizonWriter::of(write_horizon) }),
     write_fault: None,
 };
 

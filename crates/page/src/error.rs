@@ -17,6 +17,15 @@ pub enum PageError {
     /// A TIFF file that its own numbers cannot address.
     #[error("this picture is too large for a TIFF file, which holds 4 GiB; make it smaller or write a PNG")]
     TiffSize,
+    /// A kind of file that holds no page.
+    #[error("{format} holds no page")]
+    NoPage {
+        /// What it is called.
+        format: &'static str,
+    },
+    /// Pixels that the encoder refused.
+    #[error("the picture could not be encoded as PNG")]
+    Png(#[source] png::EncodingError),
     /// A picture on the page could not be encoded.
     #[error("a picture on the page could not be encoded")]
     Encode(#[source] image::ImageError),

@@ -5,6 +5,7 @@ use figure::{Annotation, BlockPart, Figure, MapPart, PageSize, Part};
 use files::ImportOptions;
 use glam::DVec2;
 use image::RgbaImage;
+use page::FileFormat;
 use page::list::{DisplayList, Group, Item};
 use project::Project;
 use project::command::{AddHorizon, Age, Command};
@@ -55,7 +56,7 @@ fn the_preview_is_the_page_that_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let project = project(folder.path());
     let cut_out = VoxelBox { min: [18.0, 14.0, 0.0], max: [30.0, 25.0, 40.0] };
-    // Its faces are paths; its ground is a picture.
+    // In a file of paths its faces are paths, and its ground is a picture.
     let scene = Scene { cut_outs: vec![cut_out], ground: Some(Ground::default()), ..Scene::default() };
     let map = MapPart { horizon: "Top".into(), thickness_to: None };
     let figure = Figure {
@@ -69,12 +70,24 @@ fn the_preview_is_the_page_that_is_written() {
         title: Some("North".into()),
         ..Figure::default()
     };
+    for format in FileFormat::pages() {
+        is_previewed(&project, &figure, &scene, format);
+    }
+}
+
+fn is_previewed(project: &Project, figure: &Figure, scene: &Scene, format: &'static FileFormat) {
     let page = |figure: &Figure, picture_dpi: Option<f64>| {
-        let settings =
-            FigureSettings { device: Device::Cpu, volume_bytes: 1 << 28, fonts: Vec::new(), picture_dpi, rock: None };
-        make(&project, figure, &InterpreterView::default(), &settings, &Progress::silent()).unwrap().page
+        let settings = FigureSettings {
+            format,
+            device: Device::Cpu,
+            volume_bytes: 1 << 28,
+            fonts: Vec::new(),
+            picture_dpi,
+            rock: None,
+        };
+        make(project, figure, &InterpreterView::default(), &settings, &Progress::silent()).unwrap().page
     };
-    let (written, seen) = (page(&figure, None), page(&figure, Some(60.0)));
+    let (written, seen) = (page(figure, None), page(figure, Some(60.0)));
     assert_eq!(laid_out(written.clone()), laid_out(seen.clone()));
     let pixels = |page: &DisplayList| {
         let counted = page.leaves().into_iter().filter_map(|item| match item {
@@ -94,7 +107,7 @@ fn the_preview_is_the_page_that_is_written() {
     assert!(labels.len() > 8 && labels.iter().any(|label| label.contains(": ")), "{labels:?}");
     let mut asked = figure.clone();
     if let Part::Block(block) = &mut asked.parts[0] {
-        block.scene = Scene { labels: changes.clone(), ..scene };
+        block.scene = Scene { labels: changes.clone(), ..scene.clone() };
     }
     let dragged = changed(&seen, &changes, figure.printed_in());
     assert_eq!(laid_out(page(&asked, None)), laid_out(dragged));

@@ -27,6 +27,7 @@ mod page;
 mod picture;
 mod polygon;
 pub mod preview;
+mod share;
 mod size;
 mod surfaces;
 
@@ -35,4 +36,5 @@ pub use model::{
     Block, Cover, Face, Layer, LineKind, Mesh, Model, Note, RawScale, SceneModel, SectionPlace, Stack, Surface,
     WellPath,
 };
+pub use share::ShareKind;
 pub use size::SizeEstimate;

@@ -11,6 +11,7 @@ use figure::draw::swatch;
 use glam::DVec3;
 use image::{RgbImage, imageops};
 use model::section::SectionPlane;
+use page::list::POINTS_PER_INCH;
 use project::Project;
 use project::content;
 use project::document::{Document, NoteEntry};
@@ -247,7 +248,7 @@ impl Maker<'_> {
         let cuts: Vec<String> = cuts.collect();
         let shown = Scene { size_px: PICTURE_PX, samples: 2, ..scene.clone() };
         load::read_more(self.project, &self.loaded, &shown, self.progress)?.add_to(&mut self.loaded);
-        let (picture, _) = self.painter.draw(&shown, &self.loaded, self.progress)?;
+        let picture = self.painter.picture(&shown, &self.loaded, POINTS_PER_INCH, self.progress)?;
         Ok(SceneModel {
             name: name.to_owned(),
             scene: scene.clone(),

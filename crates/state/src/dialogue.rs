@@ -1,8 +1,9 @@
 //! The dialogues.
 
 use figure::Annotation;
-use files::segy::WriteFormat;
+use files::segy::{self, WriteFormat};
 use files::{Format, SurfaceKind};
+use review::ShareKind;
 use review::glb::OFFICE_TRIANGLES;
 use review::html::SIZE_MB;
 use std::path::{Path, PathBuf};
@@ -120,7 +121,7 @@ impl Written {
     fn extension(self) -> &'static str {
         match self {
             Self::Surface(_, format) => format.extension(),
-            Self::Volume(_) => "sgy",
+            Self::Volume(_) => segy::ENDINGS[0],
         }
     }
 }
@@ -161,7 +162,7 @@ const INCH_MM: f64 = 25.4;
 /// The settings of an export.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportForm {
-    /// File to write: .png or .tif for pixels, .svg or .pdf for paths and text.
+    /// File to write; the ending of its name says what it holds.
     pub path: String,
     /// Width and height on paper, cm.
     pub size_cm: [f64; 2],
@@ -248,15 +249,6 @@ impl ExportForm {
     }
 }
 
-/// What the block is shared as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ShareKind {
-    /// A page for browsers.
-    Page,
-    /// A model for slides.
-    Model,
-}
-
 /// What is shared, and where it is written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShareForm {
@@ -285,11 +277,11 @@ pub struct ShareForm {
 impl ShareForm {
     /// The defaults, with files beside the project in `root`.
     pub fn new(root: &Path) -> Self {
-        let beside = |ending: &str| root.with_extension(ending).display().to_string();
+        let beside = |kind: ShareKind| root.with_extension(kind.ending()).display().to_string();
         Self {
             kind: ShareKind::Page,
-            page: beside("html"),
-            model: beside("glb"),
+            page: beside(ShareKind::Page),
+            model: beside(ShareKind::Model),
             left_out: Vec::new(),
             scene: None,
             density: review::DENSITY,
@@ -310,11 +302,7 @@ impl ShareForm {
 
     /// Whether the file has the ending of what it is.
     pub fn has_ending(&self) -> bool {
-        let ending = Path::new(self.path()).extension().unwrap_or_default().to_ascii_lowercase();
-        match self.kind {
-            ShareKind::Page => ending == "html" || ending == "htm",
-            ShareKind::Model => ending == "glb",
-        }
+        self.kind.is_of(Path::new(self.path()))
     }
 
     /// The scenes that are shown of those that a project has; none of them: the default view.

@@ -29,11 +29,12 @@ use render::Scene;
 
 pub use action::{Action, Task};
 pub use dialogue::{
-    Choice, DataForm, Dialogue, ExportForm, FileContent, SectionFill, ShareForm, ShareKind, Shown, Target, Written,
+    Choice, DataForm, Dialogue, ExportForm, FileContent, SectionFill, ShareForm, Shown, Target, Written,
 };
 pub use notice::{Notice, Place};
 pub use picking::{How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, StickPoint, Tool};
 pub use remembered::{Appearance, Remembered};
+pub use review::ShareKind;
 pub use session::{Session, Snapshot};
 pub use view::{Blended, Compare, Hidden, Layout, Panel, SectionKind, SectionVolumes, StandardView, ViewState};
 

@@ -173,7 +173,7 @@ pub enum TtfError {
         source: std::io::Error,
     },
     /// A texture file whose extension is none of the formats that can be read.
-    #[error("{path} is not in a texture format that can be read; use .png, .jpg, .jpeg or .svg")]
+    #[error("{path} is not in a texture format that can be read; use .{}", crate::raster::TILE_ENDINGS.join(", ."))]
     UnknownFormat {
         /// The file.
         path: PathBuf,

@@ -54,7 +54,7 @@ pub use function::{RawColour, TransferFunctions, TtfSettings};
 pub use layer::{DepthInterval, LayerStyle, LayerTtf};
 pub use library::{Pattern, TextureLibrary};
 pub use preset::Preset;
-pub use raster::{MAX_DECODING_BYTES, MAX_FILE_BYTES, MAX_IMAGE_SIDE_PX, read_svg};
+pub use raster::{MAX_DECODING_BYTES, MAX_FILE_BYTES, MAX_IMAGE_SIDE_PX, TILE_ENDINGS, read_svg};
 pub use rgba::{RgbaFunction, RgbaStop, symmetric_clip};
 pub use rock::{RockPattern, rock, rock_terms};
 pub use scalar::{ScalarInterval, ScalarTtf};

@@ -23,6 +23,9 @@ pub const MAX_IMAGE_SIDE_PX: u32 = 4096;
 /// Largest file accepted as a tile, in bytes.
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
 
+/// Endings of the names of files that tiles are read from, without the dot; the last one holds a drawing.
+pub const TILE_ENDINGS: [&str; 4] = ["png", "jpg", "jpeg", "svg"];
+
 /// Most memory that the decoder of an image may take, in bytes: the largest tile with 16 bits for each channel.
 pub const MAX_DECODING_BYTES: u64 = 160 << 20;
 
@@ -32,10 +35,10 @@ pub const MAX_DECODING_BYTES: u64 = 160 << 20;
 /// See [`crate::TextureLibrary::add_user`].
 pub(crate) fn read_tile(path: &Path) -> Result<(Texture, Option<String>, f32), TtfError> {
     let extension = path.extension().map(|text| text.to_string_lossy().to_lowercase()).unwrap_or_default();
-    if !["png", "jpg", "jpeg", "svg"].contains(&extension.as_str()) {
+    if !TILE_ENDINGS.contains(&extension.as_str()) {
         return Err(TtfError::UnknownFormat { path: path.to_owned() });
     }
-    let is_svg = extension == "svg";
+    let is_svg = extension == TILE_ENDINGS[3];
     let content = read_file(path, if is_svg { MAX_SVG_BYTES } else { MAX_FILE_BYTES })?;
     if is_svg {
         let (texture, shape) = rasterize(&path.display().to_string(), &content)?;

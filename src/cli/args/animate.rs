@@ -2,14 +2,25 @@
 
 use super::{DrawingArgs, ViewArgs};
 use clap::Args;
+use page::{FileFormat, endings};
 use std::path::PathBuf;
+
+/// What the name of an animation says.
+fn out() -> String {
+    let frame = |number: u32| format!("{number:04}.{}", FileFormat::usual().ending());
+    format!(
+        "File to write ({}), or a new folder for numbered frames ({}, {}, …), from which other programs make films",
+        endings(FileFormat::animations()),
+        frame(1),
+        frame(2)
+    )
+}
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct AnimateArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
-    /// File to write (.png: animated PNG, .gif: GIF), or a new folder for numbered frames (0001.png, 0002.png, …), from
-    /// which other programs make films
+    #[arg(help = out())]
     pub(in crate::cli) out: PathBuf,
     /// Named scene of the project to start from, or a TOML file [default: the project's first, else a three-quarter view]
     #[arg(long, value_name = "NAME|FILE.toml")]

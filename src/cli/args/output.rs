@@ -4,11 +4,16 @@ use super::{FigureArgs, SegyArgs, ViewArgs};
 use clap::Args;
 use std::path::PathBuf;
 
+/// What the name of a page's file says.
+fn out() -> String {
+    format!("File to write: {}", page::endings_of_pages())
+}
+
 #[derive(Debug, Args)]
 pub(in crate::cli) struct RenderArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
-    /// File to write: .png or .tif for pixels, .svg or .pdf for paths and text
+    #[arg(help = out())]
     pub(in crate::cli) out: PathBuf,
     /// Named scene of the project, or a TOML file [default: the project's first, else a three-quarter view]
     #[arg(long, value_name = "NAME|FILE.toml")]
@@ -51,7 +56,7 @@ pub(in crate::cli) struct RenderArgs {
 pub(in crate::cli) struct IllustrateArgs {
     /// SEG-Y file
     pub(in crate::cli) survey: PathBuf,
-    /// File to write: .png or .tif for pixels, .svg or .pdf for paths and text
+    #[arg(help = out())]
     pub(in crate::cli) out: PathBuf,
     /// Number of layers, at least 2; fewer are drawn where fewer levels stand out
     #[arg(long, value_name = "N", default_value_t = 6)]

@@ -6,6 +6,7 @@ use crate::state::{
 use crate::widgets::obstacle::{needs, unless};
 use crate::widgets::percent;
 use eframe::egui::{Align, Button, Label, Layout, RichText, Ui};
+use page::FileFormat;
 use render::Scene;
 
 /// Width of everything but the project's name and the comparison, points.
@@ -68,7 +69,7 @@ pub fn show(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Act
             if unless(ui, nothing, Button::new("Copy")).on_hover_text("Copy the picture (Ctrl Shift C)").clicked() {
                 actions.push(Action::Copy);
             }
-            let form = ExportForm::new(session.root.with_extension("png").display().to_string());
+            let form = ExportForm::new(session.root.with_extension(FileFormat::usual().ending()).display().to_string());
             let export = unless(ui, nothing, Button::new("Export…")).on_hover_text("Export the picture (Ctrl E)");
             if export.clicked() {
                 actions.push(Action::Ask(Box::new(Dialogue::Export(form))));

@@ -148,8 +148,8 @@ impl Chooser {
 pub(super) fn fits(choice: Choice, name: &str) -> bool {
     let ending = name.rsplit_once('.').map(|(_, ending)| ending.to_lowercase()).unwrap_or_default();
     match choice {
-        Choice::NewSurvey | Choice::MoreSurvey => matches!(ending.as_str(), "sgy" | "segy" | "seg" | "sgy3"),
-        Choice::Texture => matches!(ending.as_str(), "png" | "jpg" | "jpeg" | "svg"),
+        Choice::NewSurvey | Choice::MoreSurvey => files::segy::ENDINGS.contains(&ending.as_str()),
+        Choice::Texture => ttf::TILE_ENDINGS.contains(&ending.as_str()),
         _ => true,
     }
 }

@@ -33,7 +33,7 @@ pub fn dialogue(ctx: &Context, state: &State, form: &DataForm, actions: &mut Vec
             ui.end_row();
         });
         ui.weak(match form.what {
-            Written::Surface(SurfaceKind::Horizon, Format::Csv) => {
+            Written::Surface(SurfaceKind::Horizon, format) if format.tells_quality() => {
                 "The column quality says which nodes were filled or extrapolated."
             }
             Written::Surface(SurfaceKind::Horizon, _) => "Only csv says which nodes were filled or extrapolated.",

@@ -72,8 +72,9 @@ fn action(path: &Path, state: &State) -> Action {
         None => Action::Tell(Notice::note(
             Place::Start,
             format!(
-                "the file {name} is neither a project (a folder NAME.petro) nor a SEG-Y volume (.sgy, .segy); \
-             open a project before its horizons, faults and wells"
+                "the file {name} is neither a project (a folder NAME.petro) nor a SEG-Y volume (.{}); \
+             open a project before its horizons, faults and wells",
+                files::segy::ENDINGS.join(", .")
             ),
         )),
     }

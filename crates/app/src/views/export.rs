@@ -13,8 +13,8 @@ use eframe::egui::{
     vec2,
 };
 use figure::Annotation;
+use page::FileFormat;
 use project::pictures::PickedShare;
-use project::pictures::figures::FigureFormat;
 use render::{LabelChange, Scene, Unpicked};
 use std::path::Path;
 
@@ -121,7 +121,7 @@ fn fields(
     Grid::new("export").num_columns(2).spacing([14.0, 10.0]).show(ui, |ui| {
         let label = ui.label("File");
         let field = ui.add(TextEdit::singleline(&mut next.path).desired_width(300.0)).labelled_by(label.id);
-        field.on_hover_text("A name that ends in .png or .tif gives pixels, in .svg or .pdf paths and text");
+        field.on_hover_text(format!("The ending of the name says what is written: {}", page::endings_of_pages()));
         ui.end_row();
         ui.label("Size");
         ui.horizontal(|ui| {
@@ -161,9 +161,12 @@ fn fields(
     } else {
         ui.weak(text);
     }
-    let has_format = FigureFormat::of(Path::new(next.path.trim())).is_some();
+    let has_format = FileFormat::of_page(Path::new(next.path.trim())).is_some();
     if !has_format {
-        ui.colored_label(ui.visuals().error_fg_color, "The file's name must end in .png, .tif, .svg or .pdf");
+        ui.colored_label(
+            ui.visuals().error_fg_color,
+            format!("The file's name must end in {}", page::endings(FileFormat::pages())),
+        );
     }
     let has_measured = next.section_fill != SectionFill::Rock;
     if session.view.layout == Layout::Sections && has_measured && session.view.volumes != SectionVolumes::default() {

@@ -14,9 +14,9 @@ use figure::draw::block::Comparison;
 use figure::map::Mapped;
 use figure::{BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionPart};
 use glam::DVec3;
-use page::DisplayList;
+use page::{DisplayList, FileFormat};
 use project::pictures::Device;
-use project::pictures::figures::{self, FigureFormat, FigureSettings, InterpreterView};
+use project::pictures::figures::{self, FigureSettings, InterpreterView};
 use project::{Project, ProjectError, memory_budget};
 use render::{Background, FaceData, Scene};
 use std::path::{Path, PathBuf};
@@ -96,10 +96,16 @@ impl Page {
         Ok((made.page, figure.printed_in()))
     }
 
+    /// The kind of file that it is written to.
+    fn format(&self) -> &'static FileFormat {
+        FileFormat::of_page(Path::new(&self.path)).unwrap_or(FileFormat::usual())
+    }
+
     /// How it is drawn: from the model on the screen, where that is of the project's state.
     fn settings(&self, picture_dpi: Option<f64>) -> FigureSettings {
         let known = |rocks: &Rocks| rocks.read().unwrap_or_else(PoisonError::into_inner).rock.clone();
         FigureSettings {
+            format: self.format(),
             device: Device::Auto,
             volume_bytes: memory_budget::half_of_available(),
             fonts: Vec::new(),
@@ -115,11 +121,10 @@ impl Page {
     pub fn write(&self, progress: &Progress) -> Result<(), ProjectError> {
         let project = Project::open(&self.root)?;
         let path = Path::new(&self.path);
-        let format = FigureFormat::of(path).unwrap_or(FigureFormat::Png);
         let settings = self.settings(None);
         compute(|| {
             let made = figures::make(&project, &self.figure, &self.view, &settings, progress)?;
-            figures::write(&made.page, format, path, self.figure.dpi, &figures::title(&project))
+            figures::write(&made.page, self.format(), path, self.figure.dpi, &figures::title(&project))
         })
     }
 }

@@ -163,12 +163,11 @@ impl ShareView {
             || session.document.scenes.iter().any(|entry| !next.left_out.contains(&entry.name));
         let wrong = match next.kind {
             _ if next.has_ending() && is_chosen => None,
-            _ if !is_chosen => Some("Tick at least one scene"),
-            ShareKind::Page => Some("The file's name must end in .html"),
-            ShareKind::Model => Some("The file's name must end in .glb"),
+            _ if !is_chosen => Some("Tick at least one scene".to_owned()),
+            kind => Some(format!("The file's name must end in .{}", kind.ending())),
         };
-        wrong.into_iter().for_each(|wrong| {
-            ui.colored_label(ui.visuals().error_fg_color, wrong);
+        wrong.iter().for_each(|wrong| {
+            ui.colored_label(ui.visuals().error_fg_color, wrong.as_str());
         });
         if let Some(seen) = self.seen.as_ref().filter(|seen| seen.form == next.previewed()) {
             ui.label(facts(seen, &next));
@@ -176,7 +175,7 @@ impl ShareView {
         let is_accepted = export::accept(ui, sparse, "Share it all the same", &mut next.accepts_sparse);
         let mut asks = false;
         ui.horizontal(|ui| {
-            let obstacle = wrong.or(running.map(|_| "Something is under way: wait, or stop it"));
+            let obstacle = wrong.as_deref().or(running.map(|_| "Something is under way: wait, or stop it"));
             let unwanted = obstacle.or(needs(is_accepted, export::NOT_ACCEPTED));
             let button = unless(ui, unwanted, Button::new("Write the file"));
             if button.on_hover_text("Enter").clicked() || unwanted.is_none() && is_entered(ui) && !self.is_writing() {

@@ -11,6 +11,7 @@ use crate::widgets::keyboard::{Listener, is_entered};
 use eframe::egui::{Context, Grid, Key, Modifiers, ScrollArea};
 use glam::DVec2;
 use interp::holes::FillSettings;
+use page::FileFormat;
 use project::command::{Command, FillHorizon};
 use render::{FaceData, Scene};
 
@@ -72,7 +73,9 @@ pub const SHORTCUTS: &[Shortcut] = &[
     command(Key::N, "Ctrl N", "New project from SEG-Y", |_| ask(Dialogue::Choose(Choice::NewSurvey))),
     command(Key::I, "Ctrl I", "Add a horizon", |_| ask(Dialogue::Choose(Choice::Horizon))),
     command(Key::E, "Ctrl E", "Export the picture", |session| {
-        ask(Dialogue::Export(ExportForm::new(session.root.with_extension("png").display().to_string())))
+        ask(Dialogue::Export(ExportForm::new(
+            session.root.with_extension(FileFormat::usual().ending()).display().to_string(),
+        )))
     }),
     command(Key::W, "Ctrl W", "Close the project", |_| Some(Action::Close)),
     plain(Key::F5, "F5", "Present the scenes", |session| {

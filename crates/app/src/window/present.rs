@@ -5,6 +5,7 @@ use crate::state::{Action, Notice, Place};
 use crate::views::present::THUMBNAIL;
 use crate::work::{Event, Rocks, compute};
 use eframe::egui::{Ui, ViewportCommand};
+use page::list::POINTS_PER_INCH;
 use project::pictures::{Device, Painter};
 use render::{Background, Scene};
 use std::sync::PoisonError;
@@ -43,7 +44,7 @@ impl Window {
                 if !loaded.holds_media(&scene.media) {
                     continue;
                 }
-                let (image, _) = compute(|| painter.draw(&scene, &loaded, progress)).map_err(told)?;
+                let image = compute(|| painter.picture(&scene, &loaded, POINTS_PER_INCH, progress)).map_err(told)?;
                 drop(loaded);
                 outbox.send(Event::Thumbnail { root: root.clone(), name: entry.name, image });
             }

@@ -10,7 +10,7 @@ use super::{Event, Outbox, Rocks};
 use crate::state::{How, Notice, PickingStep, Place};
 use glam::DVec2;
 use image::RgbaImage;
-use project::pictures::load::Loaded;
+use page::list::POINTS_PER_INCH;
 use project::pictures::{Device, Painter};
 use render::{Media, RenderError, Scene, Shading};
 use std::path::PathBuf;
@@ -149,16 +149,6 @@ fn media_for(media: &Media, divisor: u32) -> Media {
     media
 }
 
-/// The picture with the scene's water over it.
-fn with_water(image: RgbaImage, scene: &Scene, loaded: &Loaded) -> RgbaImage {
-    if scene.water.is_none() || scene.ground.is_none() {
-        return image;
-    }
-    let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
-    let dry = image.clone();
-    super::compute(|| figure::draw::water::over(image, scene, &loaded.inputs(&volumes, &wells))).unwrap_or(dry)
-}
-
 struct Artist {
     outbox: Outbox,
     painter: Option<Painter>,
@@ -255,8 +245,7 @@ impl Artist {
         let scene = Scene { size_px, samples, media, in_motion: divisor > 1, ..scene.clone() };
         let loaded = request.rocks.read().unwrap_or_else(PoisonError::into_inner);
         let start = Instant::now();
-        let (image, _) = super::compute(|| painter.draw(&scene, &loaded, progress))?;
-        let image = with_water(image, &scene, &loaded);
+        let image = super::compute(|| painter.picture(&scene, &loaded, POINTS_PER_INCH, progress))?;
         drop(loaded);
         let rays = f64::from(size_px[0]) * f64::from(size_px[1]) * f64::from(samples * samples);
         self.ray_s += (start.elapsed().as_secs_f64() / rays - self.ray_s) * LATEST;

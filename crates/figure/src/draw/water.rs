@@ -8,7 +8,6 @@
 
 use super::block::pixels_per_metre;
 use super::seen::Sight;
-use crate::FigureError;
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use model::StructuralModel;
@@ -46,24 +45,22 @@ const WITHIN_PX: f64 = 0.5;
 /// How much wider than the tube the ring of a top is, and half its height in radii of the tube (`render::wells`).
 const TOP: [f64; 2] = [1.6, 0.6];
 
-/// A picture of a scene with its water over it, as a window shows it; without water the picture as it is.
-///
-/// # Errors
-/// A picture larger than a page may be.
-pub fn over(picture: RgbaImage, scene: &Scene, inputs: &Inputs) -> Result<RgbaImage, FigureError> {
+/// A picture of a scene at a resolution, dots an inch, with its water over it; without water, or where it is larger than
+/// pages are, the picture as it is.
+pub fn over(picture: RgbaImage, scene: &Scene, inputs: &Inputs, dpi: f64) -> RgbaImage {
     let (Some(model), true) = (inputs.model, scene.water.is_some() && scene.ground.is_some()) else {
-        return Ok(picture);
+        return picture;
     };
-    let page = |px: DVec2| px;
-    let Some(water) = drawn(scene, inputs.geometry, model, &page) else { return Ok(picture) };
-    let size = DVec2::new(f64::from(picture.width()), f64::from(picture.height()));
+    let page = |px: DVec2| px * POINTS_PER_INCH / dpi;
+    let Some(water) = drawn(scene, inputs.geometry, model, &page) else { return picture };
+    let size = page(DVec2::new(f64::from(picture.width()), f64::from(picture.height())));
     let (picture, pane) = (Arc::new(picture), Rect::sized(DVec2::ZERO, size));
     let mut list = DisplayList { paper: None, ..DisplayList::new(size) };
     list.items.push(Picture::in_rect(Arc::clone(&picture), pane).into());
     list.items.push(water.into());
     let wells = wells_before(scene, inputs.geometry, model, inputs.wells, &page);
     list.items.extend(wells.map(|outline| again(&picture, pane, outline).into()));
-    Ok(page::raster(&list, POINTS_PER_INCH)?)
+    page::raster(&list, dpi).unwrap_or_else(|_| Arc::unwrap_or_clone(picture))
 }
 
 /// What of a picture lies within an outline, once more.

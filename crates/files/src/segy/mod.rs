@@ -34,6 +34,9 @@
 //! # Ok::<(), files::segy::SegyError>(())
 //! ```
 
+/// Endings of the names of SEG-Y files, without the dot, the usual one first.
+pub const ENDINGS: [&str; 4] = ["sgy", "segy", "seg", "sgy3"];
+
 mod angles;
 mod bins;
 mod block;

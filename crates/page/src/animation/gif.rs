@@ -2,6 +2,7 @@
 //! makes browsers repeat, and for each frame a delay, a palette and indices packed by LZW.
 
 use super::palette::{Paletted, reduced};
+use crate::format::{AnimationShape, FileFormat, Frames};
 use image::RgbaImage;
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -14,16 +15,22 @@ const END: u16 = CLEAR + 1;
 /// Most codes of a dictionary: they have twelve bits.
 const MOST: u16 = 4095;
 
+pub(crate) const GIF: FileFormat = FileFormat { name: "GIF", endings: &["gif"], page: None, animation: Some(begin) };
+
 /// Writes frames one after the other.
-pub(super) struct GifWriter<'a> {
+struct GifWriter<'a> {
     out: &'a mut dyn Write,
     size: [u16; 2],
     delay_cs: u16,
 }
 
+fn begin<'a>(out: &'a mut dyn Write, shape: AnimationShape) -> io::Result<Box<dyn Frames + 'a>> {
+    Ok(Box::new(GifWriter::new(out, shape.size_px, shape.delay_ms())?))
+}
+
 impl<'a> GifWriter<'a> {
     /// Begins a file.
-    pub(super) fn new(out: &'a mut dyn Write, size_px: [u32; 2], delay_ms: u16) -> io::Result<Self> {
+    fn new(out: &'a mut dyn Write, size_px: [u32; 2], delay_ms: u16) -> io::Result<Self> {
         let side = |pixels: u32| {
             u16::try_from(pixels).map_err(|_| {
                 io::Error::new(
@@ -42,9 +49,10 @@ impl<'a> GifWriter<'a> {
         // Browsers show frames of less than two hundredths of a second slowly.
         Ok(Self { out, size, delay_cs: ((delay_ms + 5) / 10).max(2) })
     }
+}
 
-    /// Adds a frame.
-    pub(super) fn add(&mut self, frame: &RgbaImage) -> io::Result<()> {
+impl Frames for GifWriter<'_> {
+    fn add(&mut self, frame: &RgbaImage) -> io::Result<()> {
         let Paletted { colours, clear, indices } = reduced(frame);
         // The frame is removed before the next one where that shows through, otherwise it stays below it.
         let disposal: u8 = if clear.is_some() { 2 } else { 1 };
@@ -68,8 +76,7 @@ impl<'a> GifWriter<'a> {
         self.out.write_all(&[0])
     }
 
-    /// Ends the file.
-    pub(super) fn finish(self) -> io::Result<()> {
+    fn finish(self: Box<Self>) -> io::Result<()> {
         self.out.write_all(b";")?;
         self.out.flush()
     }

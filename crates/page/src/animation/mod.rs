@@ -1,53 +1,31 @@
-//! Pictures that follow one another, as an animated PNG or GIF.
+//! Pictures that follow one another, as one file.
 //!
-//! Frames are written as they come, so that memory holds one of them. An animated PNG keeps every colour and its alpha
-//! (PNG specification, third edition, 5.2); a GIF has 256 colours a frame, chosen anew for each (`palette`), pixels
-//! that are clear or opaque, and delays in hundredths of a second. Animated WebP and AV1 need encoders that are not
+//! Frames are written as they come, so that memory holds one of them. An animated PNG keeps every colour and its alpha;
+//! a GIF has 256 colours a frame, chosen anew for each (`palette`), pixels that are clear or opaque, and delays in
+//! hundredths of a second. Animated WebP and AV1 need encoders that are not
 //! here.
 
 mod gif;
 mod palette;
 
+pub(crate) use gif::GIF;
 pub use palette::{Paletted, reduced};
 
-use gif::GifWriter;
+pub use crate::format::AnimationShape;
+
+use crate::format::{FileFormat, Frames};
 use image::RgbaImage;
 use std::io::{self, Write};
-
-/// The file format of an animation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum AnimationFormat {
-    /// Animated PNG.
-    Png,
-    /// GIF.
-    Gif,
-}
-
-/// Of what an animation consists.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AnimationShape {
-    /// Width and height of every frame, pixels.
-    pub size_px: [u32; 2],
-    /// Number of frames.
-    pub frames: u32,
-    /// Frames a second.
-    pub rate: f64,
-}
-
-impl AnimationShape {
-    /// How long a frame is shown, in thousandths of a second.
-    fn delay_ms(&self) -> u16 {
-        (1000.0 / self.rate).round().clamp(1.0, f64::from(u16::MAX)) as u16
-    }
-}
 
 /// Writes an animation that repeats for ever, frame by frame.
 ///
 /// ```
-/// use page::animation::{AnimationFormat, AnimationShape, AnimationWriter};
+/// use page::FileFormat;
+/// use page::animation::{AnimationShape, AnimationWriter};
+/// let format = FileFormat::of_animation("turn.gif".as_ref()).unwrap();
 /// let shape = AnimationShape { size_px: [4, 3], frames: 2, rate: 10.0 };
 /// let mut file = Vec::new();
-/// let mut writer = AnimationWriter::new(&mut file, AnimationFormat::Gif, shape)?;
+/// let mut writer = AnimationWriter::new(&mut file, format, shape)?;
 /// for grey in [0, 255] {
 ///     writer.add(&image::RgbaImage::from_pixel(4, 3, image::Rgba([grey, grey, grey, 255])))?;
 /// }
@@ -58,42 +36,20 @@ impl AnimationShape {
 pub struct AnimationWriter<'a> {
     shape: AnimationShape,
     frames: u32,
-    encoder: Encoder<'a>,
-}
-
-enum Encoder<'a> {
-    Png(Box<png::Writer<&'a mut dyn Write>>),
-    Gif(GifWriter<'a>),
-}
-
-/// The error of the file below an error of the PNG encoder.
-fn below(error: png::EncodingError) -> io::Error {
-    match error {
-        png::EncodingError::IoError(error) => error,
-        other => io::Error::other(other),
-    }
+    encoder: Box<dyn Frames + 'a>,
 }
 
 impl<'a> AnimationWriter<'a> {
     /// Begins a file.
     ///
     /// # Errors
-    /// Nothing could be written, or a GIF is asked for with more than 65 535 pixels a side.
-    pub fn new(out: &'a mut dyn Write, format: AnimationFormat, shape: AnimationShape) -> io::Result<Self> {
-        let [width, height] = shape.size_px;
-        let encoder = match format {
-            AnimationFormat::Png => {
-                let mut encoder = png::Encoder::new(out, width, height);
-                encoder.set_color(png::ColorType::Rgba);
-                encoder.set_depth(png::BitDepth::Eight);
-                encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-                encoder.set_animated(shape.frames, 0).map_err(below)?;
-                encoder.set_frame_delay(shape.delay_ms(), 1000).map_err(below)?;
-                Encoder::Png(Box::new(encoder.write_header().map_err(below)?))
-            }
-            AnimationFormat::Gif => Encoder::Gif(GifWriter::new(out, shape.size_px, shape.delay_ms())?),
+    /// Nothing could be written, the format holds no animation, or none of this size.
+    pub fn new(out: &'a mut dyn Write, format: &FileFormat, shape: AnimationShape) -> io::Result<Self> {
+        let Some(begin) = format.animation else {
+            let told = format!("{} holds no animation", format.name);
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, told));
         };
-        Ok(Self { shape, frames: 0, encoder })
+        Ok(Self { shape, frames: 0, encoder: begin(out, shape)? })
     }
 
     /// Adds a frame.
@@ -107,10 +63,7 @@ impl<'a> AnimationWriter<'a> {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, told));
         }
         self.frames += 1;
-        match &mut self.encoder {
-            Encoder::Png(writer) => writer.write_image_data(frame.as_raw()).map_err(below),
-            Encoder::Gif(writer) => writer.add(frame),
-        }
+        self.encoder.add(frame)
     }
 
     /// Ends the file.
@@ -122,10 +75,7 @@ impl<'a> AnimationWriter<'a> {
             let told = format!("{} of {} frames", self.frames, self.shape.frames);
             return Err(io::Error::new(io::ErrorKind::InvalidInput, told));
         }
-        match self.encoder {
-            Encoder::Png(writer) => writer.finish().map_err(below),
-            Encoder::Gif(writer) => writer.finish(),
-        }
+        self.encoder.finish()
     }
 }
 
@@ -144,7 +94,7 @@ mod tests {
         })
     }
 
-    fn written(format: AnimationFormat) -> Vec<u8> {
+    fn written(format: &FileFormat) -> Vec<u8> {
         let mut file = Vec::new();
         let mut writer = AnimationWriter::new(&mut file, format, SHAPE).unwrap();
         (0..3).for_each(|index| writer.add(&frame(index)).unwrap());
@@ -154,7 +104,7 @@ mod tests {
 
     #[test]
     fn a_png_gives_its_frames_back() {
-        let file = written(AnimationFormat::Png);
+        let file = written(&crate::raster::PNG);
         let mut reader = png::Decoder::new(io::Cursor::new(&file)).read_info().unwrap();
         let control = reader.info().animation_control().unwrap();
         assert_eq!((control.num_frames, control.num_plays), (3, 0));
@@ -169,7 +119,7 @@ mod tests {
 
     #[test]
     fn a_gif_gives_its_frames_back_but_for_small_differences_of_colour() {
-        let file = written(AnimationFormat::Gif);
+        let file = written(&GIF);
         let read = gif::tests::decoded(&file);
         assert_eq!((read.size, read.frames.len(), read.delays.as_slice()), ([37, 23], 3, &[8, 8, 8][..]));
         for (index, pixels) in read.frames.iter().enumerate() {
@@ -183,7 +133,7 @@ mod tests {
 
     #[test]
     fn too_few_too_many_and_other_frames_are_refused() {
-        for format in [AnimationFormat::Png, AnimationFormat::Gif] {
+        for format in FileFormat::animations() {
             let mut file = Vec::new();
             let mut writer = AnimationWriter::new(&mut file, format, SHAPE).unwrap();
             assert!(writer.add(&RgbaImage::new(3, 3)).is_err());

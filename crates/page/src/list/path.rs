@@ -77,6 +77,13 @@ impl Path {
         Self::polygon(&[rect.min, DVec2::new(rect.max.x, rect.min.y), rect.max, DVec2::new(rect.min.x, rect.max.y)])
     }
 
+    /// The rectangle that it is, if it is one as [`Self::rect`] makes them.
+    pub fn as_rect(&self) -> Option<Rect> {
+        let [Segment::Move(min), Segment::Line(_), Segment::Line(max), ..] = self.segments[..] else { return None };
+        let rect = Rect::new(min, max);
+        (*self == Self::rect(rect)).then_some(rect)
+    }
+
     /// A circle of four cubic curves, off by less than 3 parts in 10 000 of its radius.
     pub fn circle(middle: DVec2, radius: f64) -> Self {
         // The usual constant: the curve meets the circle halfway, 4/3·(√2 − 1).

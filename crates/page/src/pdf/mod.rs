@@ -12,12 +12,20 @@ mod pictures;
 
 use crate::compress::deflated;
 use crate::error::PageError;
+use crate::format::{Content, FileFormat};
 use crate::list::{DisplayList, write_vectors};
 use content::{Layer, PageContent};
 use font::PageFonts;
 use pdf_writer::types::PageMode;
 use pdf_writer::writers::Resources;
 use pdf_writer::{Array, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
+
+pub(crate) const PDF: FileFormat =
+    FileFormat { name: "PDF", endings: &["pdf"], page: Some((Content::Paths, page)), animation: None };
+
+fn page(list: &DisplayList, _: f64, title: &str) -> Result<Vec<u8>, PageError> {
+    pdf(list, title)
+}
 
 /// What made the file.
 const CREATOR: &str = concat!("Petroglyph ", env!("CARGO_PKG_VERSION"));

@@ -8,12 +8,17 @@
 mod glyphs;
 mod paths;
 mod pictures;
+mod png;
 #[cfg(test)]
 mod tests;
 mod tiff;
 
+pub use self::png::png;
+pub(crate) use self::png::{APNG, PNG};
+pub(crate) use tiff::TIFF;
 pub use tiff::tiff;
 
+use crate::Rect;
 use crate::error::PageError;
 use crate::list::{DisplayList, Group, Item, POINTS_PER_INCH, Picture};
 use glyphs::Lettering;
@@ -26,6 +31,8 @@ const BAND: usize = 128;
 /// Rows above and below them that are painted as well and left out: lines thinner than a pixel leave specks where they cross
 /// the first row of a picture of `tiny-skia`.
 const BESIDE: usize = 2;
+/// Places on the page nearer than this are one, points.
+const ON_PAGE_PT: f64 = 1e-6;
 /// Longest side of a page, pixels.
 pub const MOST_SIDE_PX: u32 = 32_768;
 
@@ -39,6 +46,9 @@ pub const MOST_SIDE_PX: u32 = 32_768;
 pub fn raster(list: &DisplayList, dpi: f64) -> Result<RgbaImage, PageError> {
     let scale = dpi / POINTS_PER_INCH;
     let [width, height] = size_px(list, dpi)?;
+    if let Some(picture) = lone(list, [width, height]) {
+        return Ok(picture.clone());
+    }
     let mut page = Prepared { ops: Vec::new(), clips: Vec::new(), scale };
     list.faces.scope(|| list.items.iter().for_each(|item| page.add(item, None)));
     let paper = list.paper.map(paths::colour);
@@ -70,6 +80,29 @@ pub fn size_px(list: &DisplayList, dpi: f64) -> Result<[u32; 2], PageError> {
         return Err(PageError::PageSize { size_px: size.to_array(), most: MOST_SIDE_PX });
     }
     Ok([size.x as u32, size.y as u32])
+}
+
+/// The picture that a page holds and nothing else, if it fills the page pixel by pixel: its own bytes are kept, also where
+/// it is half transparent.
+fn lone(list: &DisplayList, size_px: [u32; 2]) -> Option<&RgbaImage> {
+    let bounds = list.bounds();
+    let is_all = |rect: Rect| {
+        (rect.min - bounds.min).abs().max_element().max((rect.max - bounds.max).abs().max_element()) < ON_PAGE_PT
+    };
+    let mut items = &list.items;
+    let picture = loop {
+        match &items[..] {
+            [Item::Group(group)] if group.clip.as_ref().is_none_or(|clip| clip.as_rect().is_some_and(is_all)) => {
+                items = &group.items;
+            }
+            [Item::Picture(picture)] => break picture,
+            _ => return None,
+        }
+    };
+    let [a, _, c, _] = picture.corners();
+    let is_own = is_all(Rect::new(a, c)) && [picture.pixels.width(), picture.pixels.height()] == size_px;
+    let is_seen = || list.paper.is_none() || picture.pixels.pixels().all(|pixel| pixel.0[3] == u8::MAX);
+    (is_own && is_seen()).then_some(&*picture.pixels)
 }
 
 /// From premultiplied to straight alpha.

@@ -6,8 +6,17 @@
 
 use crate::compress::deflated;
 use crate::error::PageError;
+use crate::format::{Content, FileFormat};
+use crate::list::DisplayList;
 use image::RgbaImage;
 use rayon::prelude::*;
+
+pub(crate) const TIFF: FileFormat =
+    FileFormat { name: "TIFF", endings: &["tif", "tiff"], page: Some((Content::Pixels, page)), animation: None };
+
+fn page(list: &DisplayList, dpi: f64, _: &str) -> Result<Vec<u8>, PageError> {
+    tiff(&super::raster(list, dpi)?, dpi)
+}
 
 /// Rows of a strip.
 const STRIP: usize = 64;

@@ -10,6 +10,7 @@ mod numbers;
 mod text;
 
 use crate::error::PageError;
+use crate::format::{Content, FileFormat};
 use crate::list::{
     Cap, DisplayList, Group, GroupKind, Ink, KnownPictures, PathItem, Picture, Rule, Sampling, Stroke, Text,
     VectorWriter, png, write_vectors,
@@ -19,6 +20,13 @@ use numbers::{decimals, number, steps};
 use std::collections::HashMap;
 use std::fmt::Write;
 use text::{escaped, text};
+
+pub(crate) const SVG: FileFormat =
+    FileFormat { name: "SVG", endings: &["svg"], page: Some((Content::Paths, page)), animation: None };
+
+fn page(list: &DisplayList, _: f64, title: &str) -> Result<Vec<u8>, PageError> {
+    svg(list, title).map(String::into_bytes)
+}
 
 /// Writes a page as an SVG document; `title` is what readers announce.
 ///

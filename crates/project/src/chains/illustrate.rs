@@ -14,11 +14,12 @@ use crate::folder::refuse_inside_project;
 use crate::interpretation::proposals;
 use crate::interpretation::times::{has_time, read_time};
 use crate::pictures::Device;
-use crate::pictures::figures::{self, FigureFormat, FigureSettings, InterpreterView};
+use crate::pictures::figures::{self, FigureSettings, InterpreterView};
 use crate::pictures::scene;
 use figure::{Annotation, BlockPart, Figure, PageSize};
 use files::segy::SegyOptions;
 use interp::ExtractSettings;
+use page::FileFormat;
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -95,7 +96,7 @@ pub fn run(
 ) -> Result<Illustrated, ProjectError> {
     let start = Instant::now();
     refuse_inside_project(out)?;
-    let format = FigureFormat::of(out).unwrap_or(FigureFormat::Png);
+    let format = FileFormat::of_page(out).unwrap_or(FileFormat::usual());
     let mut new = Project::create(project, None)?;
     let layers = build(new.project(), survey, settings, progress)?;
     let project = new.publish()?;
@@ -120,6 +121,7 @@ pub fn run(
         ..Figure::default()
     };
     let drawing = FigureSettings {
+        format,
         device: settings.device,
         volume_bytes: settings.volume_bytes,
         fonts: Vec::new(),

@@ -268,21 +268,6 @@ pub fn load_with(
     load_scene(project, known, scene, (volume_bytes, Extent::Whole), progress)
 }
 
-/// Reads and computes what the processor needs to draw `scene` once: of volumes that are larger than some, the samples on
-/// faces and ground alone, so that pictures of a volume of any size have its own resolution; and no layer coordinates
-/// where measured data hide the rock. [`Loaded::has_missed`] tells whether that was enough.
-///
-/// # Errors
-/// As [`load`].
-pub fn load_faces(
-    project: &Project,
-    scene: &Scene,
-    volume_bytes: u64,
-    progress: &Progress,
-) -> Result<Loaded, ProjectError> {
-    load_scene(project, None, scene, (volume_bytes, Extent::Faces { small_bytes: SMALL_BYTES }), progress)
-}
-
 /// What of a volume is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Extent {
@@ -291,6 +276,13 @@ pub(crate) enum Extent {
     Faces {
         small_bytes: u64,
     },
+}
+
+impl Extent {
+    /// What the processor needs to draw a scene once: of volumes that are larger than some, the samples on faces and ground
+    /// alone, so that pictures of a volume of any size have its own resolution; and no layer coordinates where measured
+    /// data hide the rock. [`Loaded::has_missed`] tells whether that was enough.
+    pub(crate) const FACES: Self = Self::Faces { small_bytes: SMALL_BYTES };
 }
 
 pub(crate) fn load_scene(

@@ -6,11 +6,8 @@ use crate::pictures::load::{Loaded, Stage};
 use image::RgbaImage;
 use render::reference::CpuRenderer;
 use render::{RenderError, Renderer, Scene};
-use std::fs::File;
-use std::io::{self, BufWriter};
 use std::path::Path;
 use std::time::Instant;
-use store::Replacement;
 use survey::Progress;
 
 /// The device that draws.
@@ -112,10 +109,24 @@ impl Painter {
         }
         Ok((image, Stage::new("picture", start.elapsed())))
     }
-}
 
-/// Metres in an inch.
-const INCH_M: f64 = 0.0254;
+    /// Draws a scene as a page shows it that holds nothing else: with water over its ground, whose edges are as wide as
+    /// `dpi` says.
+    ///
+    /// # Errors
+    /// As [`Self::draw`].
+    pub fn picture(
+        &mut self,
+        scene: &Scene,
+        loaded: &Loaded,
+        dpi: f64,
+        progress: &Progress,
+    ) -> Result<RgbaImage, RenderError> {
+        let (image, _) = self.draw(scene, loaded, progress)?;
+        let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
+        Ok(figure::draw::water::over(image, scene, &loaded.inputs(&volumes, &wells), dpi))
+    }
+}
 
 /// Writes a PNG whose printed size follows from `dpi`, completely or not at all.
 ///
@@ -123,51 +134,5 @@ const INCH_M: f64 = 0.0254;
 /// The file lies inside a project or could not be written; an earlier file is then still there.
 pub fn write_png(path: &Path, image: &RgbaImage, dpi: f64) -> Result<(), ProjectError> {
     folder::refuse_inside_project(path)?;
-    let replacement = Replacement::of(path)?;
-    encode(replacement.path(), image, dpi).map_err(|source| ProjectError::io("written", path, source))?;
-    Ok(replacement.commit()?)
-}
-
-fn encode(path: &Path, image: &RgbaImage, dpi: f64) -> io::Result<()> {
-    let failed = |error: png::EncodingError| match error {
-        png::EncodingError::IoError(error) => error,
-        other => io::Error::other(other),
-    };
-    let mut file = BufWriter::new(File::create(path)?);
-    let opaque = image.pixels().all(|pixel| pixel.0[3] == u8::MAX);
-    let mut encoder = png::Encoder::new(&mut file, image.width(), image.height());
-    encoder.set_color(if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba });
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    let per_metre = (dpi / INCH_M).round() as u32;
-    encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }));
-    let mut writer = encoder.write_header().map_err(failed)?;
-    if opaque {
-        let pixels: Vec<u8> = image.pixels().flat_map(|pixel| [pixel.0[0], pixel.0[1], pixel.0[2]]).collect();
-        writer.write_image_data(&pixels).map_err(failed)?;
-    } else {
-        writer.write_image_data(image.as_raw()).map_err(failed)?;
-    }
-    writer.finish().map_err(failed)?;
-    file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use image::Rgba;
-
-    #[test]
-    fn a_png_keeps_its_pixels_and_its_printed_size() {
-        let folder = tempfile::tempdir().unwrap();
-        for alpha in [255, 100] {
-            let path = folder.path().join(format!("{alpha}.png"));
-            let image = RgbaImage::from_fn(3, 2, |x, y| Rgba([x as u8 * 9, y as u8 * 9, 7, alpha]));
-            write_png(&path, &image, 300.0).unwrap();
-            assert_eq!(image::open(&path).unwrap().to_rgba8(), image);
-            let decoder = png::Decoder::new(io::BufReader::new(File::open(&path).unwrap()));
-            let dims = decoder.read_info().unwrap().info().pixel_dims.unwrap();
-            assert_eq!((dims.xppu, dims.yppu, dims.unit), (11811, 11811, png::Unit::Meter));
-        }
-    }
+    Ok(store::replace_file(path, &page::png(image, dpi)?)?)
 }

@@ -3,13 +3,14 @@
 //! What can be refused is refused before the first is made, and none has its name before all are made: a figure that
 //! cannot be made leaves the folder as it was.
 
-use super::{FigureFormat, FigureSettings, InterpreterView, NamedConfusion, interpreted, make, title, write};
+use super::{FigureSettings, InterpreterView, NamedConfusion, interpreted, make, title, write};
 use crate::Project;
 use crate::document::{Document, FigureEntry};
 use crate::error::ProjectError;
 use crate::folder::refuse_inside_project;
 use crate::pictures::{Device, scene};
 use figure::{BlockPart, Figure, Part};
+use page::FileFormat;
 use serde::Serialize;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
@@ -58,7 +59,7 @@ pub fn make_all(
 }
 
 /// A figure that can be made: its file, format and page.
-type Meant<'a> = (&'a str, FigureFormat, Figure);
+type Meant<'a> = (&'a str, &'static FileFormat, Figure);
 
 /// Makes all figures under hidden names, then gives them their names.
 fn stage(
@@ -69,14 +70,15 @@ fn stage(
     progress: &Progress,
 ) -> Result<Vec<WrittenFigure>, ProjectError> {
     let mut staged = Vec::new();
-    let fonts = fonts.to_vec();
-    let mut settings = FigureSettings { device, volume_bytes, fonts, picture_dpi: None, rock: None };
-    for (file, format, figure) in meant {
+    let mut rock = None;
+    for &(file, format, ref figure) in meant {
+        let fonts = fonts.to_vec();
+        let settings = FigureSettings { format, device, volume_bytes, fonts, picture_dpi: None, rock };
         let made = make(project, figure, &InterpreterView::default(), &settings, progress).map_err(of_figure(file))?;
-        settings.rock = made.rock.or(settings.rock);
+        rock = made.rock.or(settings.rock);
         let path = out.join(file);
         let replacement = Replacement::of(&path)?;
-        write(&made.page, *format, replacement.path(), figure.dpi, &title(project))?;
+        write(&made.page, format, replacement.path(), figure.dpi, &title(project))?;
         let size_px = figure.size_px();
         let (dpi, device, look_alikes) = (figure.dpi, made.device, made.confusions);
         staged.push((replacement, WrittenFigure { file: path, size_px, dpi, device, look_alikes }));
@@ -107,8 +109,8 @@ fn check<'a>(document: &'a Document, progress: &Progress) -> Result<Vec<Meant<'a
         if meant.iter().any(|(other, ..)| other.to_lowercase() == file.to_lowercase()) {
             return Err(bad("another figure has this file".to_owned()));
         }
-        let format = FigureFormat::of(file.as_ref())
-            .ok_or_else(|| bad("its name must end in .png, .tif, .svg or .pdf".to_owned()))?;
+        let format = FileFormat::of_page(file.as_ref())
+            .ok_or_else(|| bad(format!("its name must end in {}", page::endings(FileFormat::pages()))))?;
         let has_block = entry.figure.parts.iter().any(|part| matches!(part, Part::Block(_)));
         if entry.scene.is_some() && !has_block && !entry.figure.parts.is_empty() {
             let fact =

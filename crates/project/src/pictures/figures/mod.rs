@@ -15,7 +15,7 @@ pub use batch::{WrittenFigure, make_all};
 pub use confusion::{NamedConfusion, confusions};
 pub use fonts::{FontFile, faces, font_files};
 pub use interpreter::{InterpreterView, borrowed};
-pub use output::{FigureFormat, title, write};
+pub use output::{title, write};
 
 use crate::Project;
 use crate::content;
@@ -32,6 +32,7 @@ use glam::{Vec2, Vec3};
 use image::RgbaImage;
 use interpreter::InterpreterPicks;
 use model::StructuralModel;
+use page::FileFormat;
 use page::list::DisplayList;
 use render::touched::Places;
 use render::vector::{VectorBlock, vectors};
@@ -59,6 +60,9 @@ pub struct MadeFigure {
 
 /// Settings for making a figure.
 pub struct FigureSettings {
+    /// What its page is written to: rock is painted where that holds pixels, as in every other picture, and traced where
+    /// it holds paths.
+    pub format: &'static FileFormat,
     /// The painter for blocks.
     pub device: Device,
     /// Largest memory for the samples of a volume, bytes.
@@ -103,20 +107,34 @@ fn lettered(
     let document = project.document();
     let figure = &settled(figure, document);
     memory::check("the page", &figure.size_px().map(|side| side.min(LONGEST_SIDE) as usize), PIXEL_BYTES)?;
-    let (page, is_whole) = page_of(project, figure, view, settings, Extent::Sections, progress)?;
+    let mut painter = match has_rock(figure) && settings.format.has_pixels() {
+        true => Some(Painter::new(settings.device, progress)?),
+        false => None,
+    };
+    let (page, is_whole) = page_of(project, figure, view, settings, (Extent::Seen, &mut painter), progress)?;
     if is_whole {
         return Ok(page);
     }
-    Ok(page_of(project, figure, view, settings, Extent::Whole, progress)?.0)
+    Ok(page_of(project, figure, view, settings, (Extent::Whole, &mut painter), progress)?.0)
 }
 
-/// What of volumes is read for a figure of sections alone.
+/// What of volumes is read for a figure of sections alone, or of one block that the processor paints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Extent {
     /// All of them.
     Whole,
-    /// Of large ones the samples on the sections.
-    Sections,
+    /// Of large ones the samples on the sections, or on the faces of the block.
+    Seen,
+}
+
+/// Whether a figure shows a block.
+fn has_block(figure: &Figure) -> bool {
+    figure.parts.iter().any(|part| matches!(part, Part::Block(_)))
+}
+
+/// Whether rock is drawn, in a block or on a section.
+fn has_rock(figure: &Figure) -> bool {
+    has_block(figure) || figure.has_rock_sections() && !figure.interpretation
 }
 
 /// The page, and whether no sample was asked for that was not read.
@@ -125,11 +143,13 @@ fn page_of(
     figure: &Figure,
     view: &InterpreterView,
     settings: &FigureSettings,
-    extent: Extent,
+    (extent, painter): (Extent, &mut Option<Painter>),
     progress: &Progress,
 ) -> Result<(MadeFigure, bool), ProjectError> {
     let document = project.document();
-    let FigureData { loaded, model, stages } = FigureData::load(project, figure, settings, extent, progress)?;
+    let is_processor = painter.as_ref().is_some_and(Painter::is_processor);
+    let FigureData { loaded, model, stages } =
+        FigureData::load(project, figure, settings, (extent, is_processor), progress)?;
     let picks = if figure.interpretation { Some(InterpreterPicks::read(project, view, progress)?) } else { None };
     let shown = picks.as_ref().map(|picks| {
         let mut shown = picks.borrowed();
@@ -161,13 +181,12 @@ fn page_of(
         interpretation: shown.as_ref(),
         provenance: &format!("Petroglyph {} · {}", env!("CARGO_PKG_VERSION"), title(project)),
     };
-    let (device, preset) = (settings.device, figure.printed_in());
+    let preset = figure.printed_in();
     let share = settings.picture_dpi.map_or(1.0, |dpi| (dpi / figure.dpi).min(1.0));
-    let mut painter =
-        FigurePainter { painter: None, device, loaded: &loaded, library, preset, share, stages, progress };
+    let mut painter = FigurePainter { painter, settings, loaded: &loaded, library, preset, share, stages, progress };
     let page = little_room::made(figure, progress, |figure| figure::make(figure, &inputs, &mut painter))?;
     warn_of_boxes(&page, progress);
-    let device = painter.painter.map(|painter| painter.device().to_owned());
+    let device = painter.painter.as_ref().map(|painter| painter.device().to_owned());
     let stages = painter.stages;
     let scene = Scene { preset, ..needs(figure) };
     let confusions = confusions(project.root(), document, loaded.rock.as_deref(), &scene)?;
@@ -212,10 +231,10 @@ fn warn_of_boxes(page: &DisplayList, progress: &Progress) {
     }
 }
 
-/// Draws and traces the blocks of a figure; a device is looked for when the first picture is asked for.
+/// Paints or traces the rock of a figure; a device is looked for when the first picture is asked for.
 struct FigurePainter<'a> {
-    painter: Option<Painter>,
-    device: Device,
+    painter: &'a mut Option<Painter>,
+    settings: &'a FigureSettings,
     loaded: &'a Loaded,
     /// The patterns.
     library: &'a TextureLibrary,
@@ -243,9 +262,9 @@ impl FigurePainter<'_> {
 impl BlockPainter for FigurePainter<'_> {
     fn paint(&mut self, scene: &Scene) -> Result<RgbaImage, RenderError> {
         let scene = Scene { size_px: self.painted_px(scene), ..self.shown(scene) };
-        let painter = match &mut self.painter {
+        let painter = match &mut *self.painter {
             Some(painter) => painter,
-            empty => empty.insert(Painter::new(self.device, self.progress)?),
+            empty => empty.insert(Painter::new(self.settings.device, self.progress)?),
         };
         let (image, stage) = painter.draw(&scene, self.loaded, self.progress)?;
         self.stages.push(stage);
@@ -253,6 +272,9 @@ impl BlockPainter for FigurePainter<'_> {
     }
 
     fn trace(&mut self, scene: &Scene, tolerance_px: f64) -> Result<Option<VectorBlock>, RenderError> {
+        if self.settings.format.has_pixels() {
+            return Ok(None);
+        }
         let start = Instant::now();
         let scene = self.loaded.complete(&self.shown(scene));
         let (volumes, wells) = (self.loaded.named_volumes(), self.loaded.well_paths());
@@ -286,20 +308,23 @@ impl FigureData {
         project: &Project,
         figure: &Figure,
         settings: &FigureSettings,
-        extent: Extent,
+        (extent, is_processor): (Extent, bool),
         progress: &Progress,
     ) -> Result<Self, ProjectError> {
         let scene = Scene { preset: figure.printed_in(), ..needs(figure) };
-        let has_block = figure.parts.iter().any(|part| matches!(part, Part::Block(_)));
+        let has_block = has_block(figure);
         let known = settings.rock.as_ref().filter(|rock| rock.is_of(project.document()));
         if (has_block || figure.has_rock_sections()) && !figure.interpretation {
-            let loaded = load::load_with(project, known.cloned(), &scene, settings.volume_bytes, progress)?;
+            let is_alone = extent == Extent::Seen && is_processor && matches!(figure.parts[..], [Part::Block(_)]);
+            let extent = if is_alone { load::Extent::FACES } else { load::Extent::Whole };
+            let reading = (settings.volume_bytes, extent);
+            let loaded = load::load_scene(project, known.cloned(), &scene, reading, progress)?;
             let made = loaded.rock.as_ref().filter(|_| known.is_none());
             let stages = made.map(|rock| rock.stages.clone()).unwrap_or_default();
             return Ok(Self { loaded, model: None, stages });
         }
         let places = section_places(figure, project.document().frame()?);
-        let places = Some(&places).filter(|_| extent == Extent::Sections && !has_block);
+        let places = Some(&places).filter(|_| extent == Extent::Seen && !has_block);
         let loaded = load::load_sections(project, &scene, places, settings.volume_bytes, progress)?;
         let (model, stages) = match known {
             _ if figure.interpretation => (None, Vec::new()),
