@@ -121,7 +121,6 @@ impl Origin {
     pub fn file(&self) -> Option<&Path> {
         match self {
             Self::Imported { path, .. } => Some(path),
-            Self::Array => f.write_str("an array of Python"),
             Self::Linked { url } => Some(Path::new(url)),
             _ => None,
         }
