@@ -62,13 +62,14 @@ fn project(project: &Project) -> anyhow::Result<Report> {
         }
         report.field(&format!("{noun}s"), names);
     }
+    report.field("origins", document.origins());
     let history = project.history();
     if let Some(last) = history.iter().rev().find(|line| line.in_effect) {
         report.say(format!("last change: {}", last.summary));
     }
     let taken = document.parameterization.as_ref();
     if let Some(taken) = taken {
-        report.say(format!("i, j, k: from {}, {}", taken.source.path.display(), taken.source.reading));
+        report.say(format!("i, j, k: {}", taken.origin));
     }
     report.field("parameterization", taken.map(|taken| &taken.name));
     report.field("history", history);

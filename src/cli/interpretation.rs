@@ -39,6 +39,7 @@ pub(super) fn import(typed: ImportArgs) -> Result<ImportVolume, Usage> {
         polarity: word("--polarity", &typed.polarity, &polarity)?,
         memory_bytes: bytes("--memory", typed.memory.as_deref())?,
         moved: false,
+        origin: None,
     })
 }
 

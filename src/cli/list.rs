@@ -34,7 +34,10 @@ fn volumes(project: &Project) -> Report {
     let mut report = Report::default();
     for entry in &document.volumes {
         let own = if entry.geometry.is_some() { ", on a lattice of its own" } else { "" };
-        report.say(format!("{}: {} polarity, clipped at {}{own}", entry.name, entry.polarity, entry.clip));
+        report.say(format!(
+            "{}: {}, {} polarity, clipped at {}{own}",
+            entry.name, entry.origin, entry.polarity, entry.clip
+        ));
     }
     if document.volumes.is_empty() {
         report.say("no volumes");
@@ -62,8 +65,7 @@ fn horizons(project: &Project) -> Report {
     let document = project.document();
     let mut report = Report::default();
     for entry in &document.horizons {
-        let contact = format!("{:?}", entry.contact).to_lowercase();
-        report.say(format!("{}: {contact}, from {}", entry.name, entry.source.path.display()));
+        report.say(format!("{}: {}, {}", entry.name, entry.contact.word(), entry.history()));
     }
     if document.horizons.is_empty() {
         report.say("no horizons");
@@ -78,7 +80,7 @@ fn show_horizon(project: &Project, name: &str) -> anyhow::Result<Report> {
     let horizon = content::read_horizon(project.root(), entry, &Progress::silent())?;
     let unit = document.frame()?.vertical.unit.symbol();
     let mut report = Report::default();
-    report.say(format!("{name}: {:?}, {}", entry.contact, entry.source.reading).to_lowercase());
+    report.say(format!("{name}: {}, {}", entry.contact.word(), entry.history()));
     let mut sheets = Vec::new();
     for sheet in &horizon.sheets {
         let known = || sheet.depth.iter().copied().filter(|depth| depth.is_finite());
@@ -131,7 +133,7 @@ fn faults(project: &Project) -> Report {
             0.0 => String::new(),
             metres => format!(", reaches {metres} m beyond what was drawn"),
         };
-        report.say(format!("{}: from {}{ends}{grown}", entry.name, entry.source.path.display()));
+        report.say(format!("{}: {}{ends}{grown}", entry.name, entry.origin));
     }
     if document.faults.is_empty() {
         report.say("no faults");

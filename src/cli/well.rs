@@ -53,7 +53,7 @@ pub(super) fn list(project: &Project) -> Report {
     let document = project.document();
     let mut report = Report::default();
     for entry in &document.wells {
-        report.say(format!("{}: {}, from {}", entry.name, entry.source.reading, entry.source.path.display()));
+        report.say(format!("{}: {}", entry.name, entry.origin));
     }
     if document.wells.is_empty() {
         report.say("no wells");

@@ -113,6 +113,11 @@ impl Project {
         serde_json::to_string(self.lock().document()).map_err(wrong)
     }
 
+    /// Where everything came from, by kind and name, as JSON.
+    fn origins(&self) -> String {
+        self.lock().document().origins().to_string()
+    }
+
     /// The survey geometry, as JSON.
     fn geometry(&self, py: Python<'_>) -> PyResult<String> {
         let geometry = self.lock().document().frame().cloned().map_err(|error| refusal::of(py, error))?;

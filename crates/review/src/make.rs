@@ -136,7 +136,7 @@ pub fn make(project: &Project, settings: &ReviewSettings, progress: &Progress) -
     Ok(Model {
         title: figures::title(project),
         provenance: provenance(document, &loaded),
-        warning: warning(document),
+        warning: document.uninterpreted().map(|why| why.to_string()),
         geometry: loaded.geometry.clone(),
         layers,
         horizons,
@@ -451,7 +451,7 @@ impl Maker<'_> {
         }
         let styles = figures::layer_styles(document, self.library);
         // Patterns of what nobody interpreted say nothing of rocks.
-        let is_interpreted = warning(document).is_none();
+        let is_interpreted = document.uninterpreted().is_none();
         let layer = |(number, style): (usize, &LayerStyle)| {
             let drawn = swatch::draw(style, self.library, SWATCH_PX, SWATCH_PX_PER_MM)?;
             let rocks = style.intervals.iter().filter_map(|interval| self.library.find(&interval.texture));
@@ -504,21 +504,11 @@ fn provenance(document: &Document, loaded: &Loaded) -> Vec<String> {
     }
     lines.extend(project::pictures::sparse_sentences(&loaded.sparse()));
     for entry in document.volumes.iter().take(1) {
-        let file = entry.source.path.file_name().map(|name| name.to_string_lossy().into_owned());
+        let file = entry.origin.file().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
         lines.extend(file.map(|file| format!("seismic data: {file}")));
     }
     lines.push(format!("made by Petroglyph {}", env!("CARGO_PKG_VERSION")));
     lines
-}
-
-/// What must stand on a block whose horizons are levels of a computed geologic time, or that has none.
-fn warning(document: &Document) -> Option<String> {
-    if document.horizons.is_empty() {
-        return Some("Uninterpreted: raw data alone".to_owned());
-    }
-    let is_time = |reading: &str| reading.contains("geologic time");
-    let all = document.horizons.iter().all(|horizon| is_time(&horizon.source.reading));
-    all.then(|| "Uninterpreted: layers by computed geologic time, not by rock".to_owned())
 }
 
 /// The notes of a project, where they lie in the survey.

@@ -183,7 +183,7 @@ impl Picking {
         let known = self.horizon.as_ref().and_then(|name| document.horizons.iter().find(|entry| entry.name == *name));
         let name = match (&self.horizon, known) {
             (Some(name), None) => name.clone(),
-            (Some(name), Some(entry)) if !entry.seeds.is_empty() => name.clone(),
+            (Some(name), Some(entry)) if !entry.origin.seeds().is_empty() => name.clone(),
             _ => free_name(document, Noun::Horizon, "Horizon"),
         };
         self.horizon = Some(name.clone());

@@ -4,7 +4,6 @@ use super::picking::Tool;
 use super::view::{Panel, ViewState};
 use project::HistoryLine;
 use project::document::{Document, rename_volume_in};
-use project::interpretation::times::has_time;
 use std::path::PathBuf;
 
 /// A project as read from disk.
@@ -40,7 +39,7 @@ impl Session {
         let mut view = view.unwrap_or_else(|| {
             let mut usual = ViewState::of(&document);
             // With geologic time one click makes a horizon.
-            usual.picking.tool = if has_time(&document) { Tool::Time } else { usual.picking.tool };
+            usual.picking.tool = if document.geologic_time().is_some() { Tool::Time } else { usual.picking.tool };
             usual
         });
         view.fit(&document);
@@ -51,7 +50,7 @@ impl Session {
     pub fn renew(&mut self, snapshot: Snapshot) {
         let had_frame = self.document.geometry.is_some();
         let was_bare = self.document.horizons.is_empty();
-        let times = [&self.document, &snapshot.document].map(has_time);
+        let times = [&self.document, &snapshot.document].map(|document| document.geologic_time().is_some());
         let picking = &mut self.view.picking;
         picking.tool = match (times, picking.tool) {
             ([false, true], Tool::Pick) => Tool::Time,

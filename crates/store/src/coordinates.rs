@@ -12,6 +12,7 @@ use super::volume_info::VolumeInfo;
 use glam::DVec3;
 use serde_json::{Map, Value, json};
 use std::path::Path;
+use survey::Quantity;
 use survey::geometry::{LineAxis, SurveyGeometry, VerticalUnit};
 use survey::progress::Progress;
 
@@ -23,8 +24,8 @@ pub(super) fn attributes(level: usize, info: &VolumeInfo) -> Map<String, Value> 
     let mut said = Map::new();
     if level == 0 {
         said.insert("coordinates".to_owned(), json!("cdp_x cdp_y"));
-        let told = [("long_name", &info.quantity), ("units", &info.unit)];
-        said.extend(told.into_iter().filter_map(|(key, value)| Some((key.to_owned(), json!(value.as_ref()?)))));
+        let told = [("long_name", info.quantity.as_ref().map(Quantity::to_string)), ("units", info.unit.clone())];
+        said.extend(told.into_iter().filter_map(|(key, value)| Some((key.to_owned(), json!(value?)))));
     }
     said
 }

@@ -16,14 +16,13 @@
 use super::array::{StoredArray, create_volume, volume_grid};
 use super::coordinates;
 use super::error::StoreError;
-use super::header::read_header;
 use super::ingest::{LevelRoom, MARKER, every_second, is_unfinished, mask_of, write_frame, write_shard};
 use super::layout::{BRICK, grid_index};
 use super::pyramid::halved;
 use super::ranges::{BrickRanges, IndexedRanges, SampleBox};
 use super::sample::StoredSample;
 use super::shard::{PARTIAL, ShardGrid, Shards};
-use super::volume_info::{KIND, VolumeInfo};
+use super::volume_info::VolumeInfo;
 use std::fs;
 use std::path::{Path, PathBuf};
 use survey::progress::Progress;
@@ -81,7 +80,7 @@ impl VolumeParts {
     /// # Errors
     /// There is none, it is complete already, or its parts do not fit together.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
-        let info: VolumeInfo = read_header(path, KIND, "a volume")?;
+        let info = VolumeInfo::read(path)?;
         info.geometry.validate().map_err(|source| StoreError::Geometry { path: path.to_owned(), source })?;
         if !is_unfinished(path) {
             return Err(StoreError::WrongKind {

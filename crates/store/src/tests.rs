@@ -26,7 +26,7 @@ fn geometry(size: [usize; 3]) -> SurveyGeometry {
 
 fn info(size: [usize; 3]) -> VolumeInfo {
     let polarity = Some("normal".to_owned());
-    VolumeInfo { quantity: Some("amplitude".to_owned()), polarity, ..VolumeInfo::of(geometry(size)) }
+    VolumeInfo { quantity: Some("amplitude".to_owned().into()), polarity, ..VolumeInfo::of(geometry(size)) }
 }
 
 /// Smooth along z, different in every trace.

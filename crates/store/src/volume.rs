@@ -19,14 +19,13 @@
 use super::array::StoredArray;
 use super::coordinates;
 use super::error::StoreError;
-use super::header::read_header;
 use super::ingest::is_unfinished;
 use super::layout::BRICK;
 use super::object_storage;
 use super::pyramid::halved;
 use super::sample::StoredSample;
 use super::verify::DamageFindings;
-use super::volume_info::{KIND, VolumeInfo};
+use super::volume_info::VolumeInfo;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -55,7 +54,7 @@ impl StoredVolume {
         if is_unfinished(path) {
             return Err(StoreError::Unfinished { path: path.to_owned() });
         }
-        let info: VolumeInfo = read_header(path, KIND, "a volume")?;
+        let info = VolumeInfo::read(path)?;
         info.geometry.validate().map_err(|source| StoreError::Geometry { path: path.to_owned(), source })?;
         let link = object_storage::Link::read(path)?;
         let array = |name: &str| match &link {

@@ -1,6 +1,10 @@
 //! Facts about a stored volume, besides its samples.
 
+use super::error::StoreError;
+use super::header::read_header;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
+use survey::Quantity;
 use survey::geometry::SurveyGeometry;
 
 /// Kind of the group.
@@ -11,9 +15,9 @@ pub(super) const KIND: &str = "volume";
 pub struct VolumeInfo {
     /// Its lattice.
     pub geometry: SurveyGeometry,
-    /// What was measured: "amplitude", "acoustic impedance", …
+    /// What was measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub quantity: Option<String>,
+    pub quantity: Option<Quantity>,
     /// Unit of the samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
@@ -26,6 +30,14 @@ pub struct VolumeInfo {
 }
 
 impl VolumeInfo {
+    /// What the volume at `path` says of itself; nothing else of it is read.
+    ///
+    /// # Errors
+    /// There is no volume.
+    pub fn read(path: &Path) -> Result<Self, StoreError> {
+        read_header(path, KIND, "a volume")
+    }
+
     /// The facts of a volume of which only the lattice is known.
     pub fn of(geometry: SurveyGeometry) -> Self {
         Self { geometry, quantity: None, unit: None, polarity: None, source: None }

@@ -3,7 +3,7 @@
 //! The other crates share these types:
 //!
 //! - the position of a sample: [`geometry`];
-//! - measurements: [`volume`], [`well`];
+//! - measurements: [`volume`] and what it measures, [`quantity`]; [`well`];
 //! - the interpretation: [`horizon`], [`fault`], [`stratigraphy`];
 //! - the surfaces on which it is evaluated: [`height_field`], [`mesh`];
 //! - the part of the volume that is drawn, and what is cut out of it: [`block`];
@@ -35,6 +35,7 @@ pub mod horizon;
 pub mod level_field;
 pub mod mesh;
 pub mod progress;
+pub mod quantity;
 pub mod remedy;
 pub mod sample;
 pub mod source;
@@ -52,8 +53,9 @@ pub use horizon::{Horizon, NodeGrid, Quality, Sheet};
 pub use level_field::LevelField;
 pub use mesh::TriangleMesh;
 pub use progress::{Cancelled, Progress};
+pub use quantity::Quantity;
 pub use remedy::{Note, Remedy, Setting};
 pub use sparse_volume::SparseVolume;
-pub use stratigraphy::{Contact, StratigraphicHorizon, Stratigraphy};
+pub use stratigraphy::{Contact, LayerOrigin, StratigraphicHorizon, Stratigraphy};
 pub use volume::Volume;
 pub use well::Well;

@@ -5,6 +5,7 @@
 //! has no top.
 
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// How a horizon meets the horizons that would cross it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -56,6 +57,42 @@ pub struct StratigraphicHorizon {
     pub contact: Contact,
 }
 
+/// What a layer is called after.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum LayerOrigin {
+    /// A name that a person gave it.
+    Named {
+        /// The name.
+        name: String,
+    },
+    /// The boundary of the intrusion that it is.
+    Intrusion {
+        /// The name of that horizon.
+        boundary: String,
+    },
+    /// The horizons above and below it, as far as there are any.
+    Between {
+        /// The name of the one above.
+        top: Option<String>,
+        /// The name of the one below.
+        base: Option<String>,
+    },
+}
+
+impl fmt::Display for LayerOrigin {
+    /// The name of the layer.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Named { name } | Self::Intrusion { boundary: name } => f.write_str(name),
+            Self::Between { top: None, base: None } => f.write_str("all"),
+            Self::Between { top: None, base: Some(base) } => write!(f, "above {base}"),
+            Self::Between { top: Some(top), base: None } => write!(f, "below {top}"),
+            Self::Between { top: Some(top), base: Some(base) } => write!(f, "{top} - {base}"),
+        }
+    }
+}
+
 /// Horizons in age order, youngest first.
 ///
 /// ```
@@ -92,24 +129,26 @@ impl Stratigraphy {
         (layer > 0).then(|| self.horizons.len() - layer)
     }
 
+    /// What `layer` (0 = deepest) is called after.
+    pub fn layer_origin(&self, layer: usize) -> LayerOrigin {
+        let from_top = self.layer_count() - 1 - layer;
+        if let Some(name) = self.layer_names.get(from_top).filter(|name| !name.is_empty()) {
+            return LayerOrigin::Named { name: name.clone() };
+        }
+        let name = |h: usize| self.horizons[h].name.clone();
+        let is_intrusive = |h: usize| self.horizons[h].contact.is_intrusive();
+        // An intrusion cuts its layer out of others, and is the bottom of none.
+        let base = self.bottom_of(layer).and_then(|first| (first..self.horizons.len()).find(|&h| !is_intrusive(h)));
+        match self.top_of(layer) {
+            Some(top) if is_intrusive(top) => LayerOrigin::Intrusion { boundary: name(top) },
+            top => LayerOrigin::Between { top: top.map(name), base: base.map(name) },
+        }
+    }
+
     /// The name of `layer` (0 = deepest): its own name, or else "above A", "A - B" or "below B" after its
     /// horizons; that of an intrusion is the intrusion's.
     pub fn layer_name(&self, layer: usize) -> String {
-        let from_top = self.layer_count() - 1 - layer;
-        if let Some(name) = self.layer_names.get(from_top).filter(|name| !name.is_empty()) {
-            return name.clone();
-        }
-        let name = |h: usize| self.horizons[h].name.as_str();
-        let is_intrusive = |h: usize| self.horizons[h].contact.is_intrusive();
-        // An intrusion cuts its layer out of others, and is the bottom of none.
-        let bottom = self.bottom_of(layer).and_then(|first| (first..self.horizons.len()).find(|&h| !is_intrusive(h)));
-        match (self.top_of(layer), bottom) {
-            (None, None) => "all".to_owned(),
-            (Some(top), _) if is_intrusive(top) => name(top).to_owned(),
-            (None, Some(bottom)) => format!("above {}", name(bottom)),
-            (Some(top), None) => format!("below {}", name(top)),
-            (Some(top), Some(bottom)) => format!("{} - {}", name(top), name(bottom)),
-        }
+        self.layer_origin(layer).to_string()
     }
 
     /// All layer names, bottom to top (index = layer).

@@ -9,7 +9,6 @@ use interp::{ExtractSettings, Extremum, Method};
 use project::command::{AttributeKind, Command, ComputeAttribute, ComputeTime};
 use project::document::Document;
 use project::error::Noun;
-use project::interpretation::times::has_time;
 use time::TimeSettings;
 
 /// The volume and the settings of the next extraction.
@@ -135,7 +134,7 @@ impl CandidatesPanel {
 fn without_picks(ui: &mut Ui, session: &Session, is_extracted: bool, has_volume: bool, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let why = needs(is_extracted, "Needs candidates: extract them first");
-        let name = if has_time(&session.document) { "Geologic time again" } else { "Geologic time" };
+        let name = if session.document.geologic_time().is_some() { "Geologic time again" } else { "Geologic time" };
         let hint = "The age of every voxel, from the candidates and the faults: then one click makes a horizon";
         if unless(ui, why, Button::new(name)).on_hover_text(hint).clicked() {
             let name = volume_name(&session.document, "time");
@@ -153,7 +152,7 @@ fn without_picks(ui: &mut Ui, session: &Session, is_extracted: bool, has_volume:
         }
     });
     ui.horizontal_wrapped(|ui| {
-        let has_time = has_time(&session.document);
+        let has_time = session.document.geologic_time().is_some();
         for (kind, label, volume, hint) in [
             (
                 AttributeKind::Flattened,

@@ -88,7 +88,7 @@ impl Data {
                 }
                 let row = named(ui, &entry.name, Some(is_raw), &format!("Remove volume {}", entry.name));
                 let hint =
-                    format!("{}: show as raw data; {} polarity; {}", entry.name, entry.polarity, entry.source.reading);
+                    format!("{}: show as raw data; {} polarity; {}", entry.name, entry.polarity, entry.origin);
                 if row.name.on_hover_text(hint).clicked() {
                     self.volume = (!is_chosen).then(|| entry.name.clone());
                     if !is_raw
@@ -138,7 +138,7 @@ impl Data {
                     return;
                 }
                 let row = named(ui, &entry.name, Some(is_chosen), &format!("Remove horizon {}", entry.name));
-                if row.name.on_hover_text(format!("{}: {}", entry.name, entry.source.reading)).clicked() {
+                if row.name.on_hover_text(format!("{}: {}", entry.name, entry.history())).clicked() {
                     actions.push(Action::Horizon((!is_chosen).then(|| entry.name.clone())));
                 }
                 if row.is_removed {
@@ -182,7 +182,7 @@ impl Data {
                     return;
                 }
                 let row = named(ui, &entry.name, Some(is_chosen), &format!("Remove fault {}", entry.name));
-                if row.name.on_hover_text(format!("{}: {}", entry.name, entry.source.reading)).clicked() {
+                if row.name.on_hover_text(format!("{}: {}", entry.name, entry.origin)).clicked() {
                     self.fault = (!is_chosen).then(|| entry.name.clone());
                 }
                 if row.is_removed {
@@ -271,7 +271,7 @@ impl Data {
                     return;
                 }
                 let row = named(ui, &entry.name, Some(is_chosen), &format!("Remove well {}", entry.name));
-                if row.name.on_hover_text(format!("{}: {}", entry.name, entry.source.reading)).clicked() {
+                if row.name.on_hover_text(format!("{}: {}", entry.name, entry.origin)).clicked() {
                     self.well = (!is_chosen).then(|| entry.name.clone());
                 }
                 if row.is_removed {

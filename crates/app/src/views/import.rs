@@ -219,6 +219,7 @@ impl Import {
                     options: self.options.clone(),
                     memory_bytes: None,
                     moved: false,
+                    origin: None,
                 });
                 let into = (target == Target::NewProject).then(|| PathBuf::from(self.root.trim()));
                 actions.push(Action::Import { command, into });

@@ -11,7 +11,6 @@ use project::command::{Command, ImportVolume};
 use project::error::ProjectError;
 use project::folder::DEFAULT_WAIT;
 use project::interpretation::times::Times;
-use project::interpretation::times::has_time;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Sender, channel};
@@ -53,7 +52,7 @@ pub(super) fn start(outbox: Outbox, running: Running) -> Sender<Order> {
                 Ok(event) => {
                     tell_warnings(&guard, place, &outbox);
                     if let Event::Changed { snapshot, .. } | Event::Opened(snapshot) = &event
-                        && !has_time(&snapshot.document)
+                        && snapshot.document.geologic_time().is_none()
                     {
                         times.take();
                     }

@@ -99,6 +99,7 @@ pub fn project(folder: &Path) -> PathBuf {
         options: Default::default(),
         memory_bytes: None,
         moved: false,
+        origin: None,
     };
     let mut commands = vec![Command::Import(import)];
     for (name, z) in [("Top", 30.0), ("Base", 80.0)] {

@@ -12,7 +12,7 @@ use crate::document::Polarity;
 use crate::error::ProjectError;
 use crate::folder::refuse_inside_project;
 use crate::interpretation::proposals;
-use crate::interpretation::times::{has_time, read_time};
+use crate::interpretation::times::read_time;
 use crate::pictures::Device;
 use crate::pictures::figures::{self, FigureSettings, InterpreterView};
 use crate::pictures::scene;
@@ -152,6 +152,7 @@ fn build(
         options: settings.options.clone(),
         memory_bytes: None,
         moved: false,
+        origin: None,
     };
     project.apply(&Command::Import(import), progress)?;
     layers_by_time(project, settings.layers, progress)
@@ -181,7 +182,7 @@ pub fn layers_by_time(project: &mut Project, layers: usize, progress: &Progress)
     if project.document().faults.is_empty() {
         accept_faults(project, progress)?;
     }
-    if !has_time(project.document()) {
+    if project.document().geologic_time().is_none() {
         let time = ComputeTime { name: "time".to_owned(), settings: TimeSettings::default(), memory_bytes: None };
         project.apply(&Command::Time(time), progress)?;
     }
@@ -193,7 +194,7 @@ pub fn layers_by_time(project: &mut Project, layers: usize, progress: &Progress)
     let times: Vec<f32> = levels.iter().map(|level| level.time).collect();
     let found = characters(&tau, &volume, &times);
     for (n, level) in levels.iter().enumerate() {
-        let pick = PickByTime { level: TimeLevel::Of(level.time), horizon: format!("Level {}", n + 1) };
+        let pick = PickByTime { level: TimeLevel::Chosen(level.time), horizon: format!("Level {}", n + 1) };
         project.apply(&Command::PickByTime(pick), progress)?;
     }
     let mut names = Vec::new();

@@ -156,7 +156,7 @@ fn cures(object: &Object, states: &States) -> Vec<Cure> {
     }
     let undo = states.undo_without(base, &object.steps);
     let undo = undo.map(|step| Cure::Undo { step, times: base.step - step });
-    undo.into_iter().chain([object.entry.way_back(base)]).collect()
+    undo.into_iter().chain([object.entry.way_back()]).collect()
 }
 
 /// Reports a link anywhere in the project that was not reported yet: no command writes while there is one.

@@ -3,11 +3,10 @@
 use super::report::Cure;
 use super::states::States;
 use crate::document::{
-    Document, FaultEntry, HorizonEntry, ParameterizationEntry, Source, TextureEntry, VolumeEntry, WellEntry,
+    Document, FaultEntry, HorizonEntry, Origin, ParameterizationEntry, TextureEntry, VolumeEntry, WellEntry,
 };
 use crate::error::Noun;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// An entry of a state that names a data file.
 #[derive(Debug, Clone, Copy)]
@@ -66,28 +65,23 @@ impl<'a> Entry<'a> {
         }
     }
 
-    fn source(&self) -> &'a Source {
+    fn origin(&self) -> &'a Origin {
         match self {
-            Self::Volume(entry) => &entry.source,
-            Self::Horizon(entry) => &entry.source,
-            Self::Fault(entry) => &entry.source,
-            Self::Well(entry) => &entry.source,
-            Self::Texture(entry) => &entry.source,
-            Self::Parameterization(entry) => &entry.source,
+            Self::Volume(entry) => &entry.origin,
+            Self::Horizon(entry) => &entry.origin,
+            Self::Fault(entry) => &entry.origin,
+            Self::Well(entry) => &entry.origin,
+            Self::Texture(entry) => &entry.origin,
+            Self::Parameterization(entry) => &entry.origin,
         }
     }
 
     /// How the data can be had again: from the file they came from, or the way they were made in the project.
-    pub fn way_back(&self, document: &Document) -> Cure {
-        let source = self.source();
-        let is_assembled = matches!(self, Self::Horizon(entry) if entry.assembly.is_some());
-        let is_made_here = is_assembled
-            || ["picks", "proposal"].iter().any(|made| source.path == Path::new(made))
-            || document.volumes.iter().any(|volume| source.path == Path::new(&volume.file));
-        let (noun, name) = (self.noun(), self.name().to_owned());
-        match is_made_here {
-            true => Cure::Remake { noun, name, from: source.reading.clone() },
-            false => Cure::Import { noun, name, path: source.path.clone() },
+    pub fn way_back(&self) -> Cure {
+        let (noun, name, origin) = (self.noun(), self.name().to_owned(), self.origin());
+        match origin.file() {
+            Some(path) => Cure::Import { noun, name, path: path.to_owned() },
+            None => Cure::Remake { noun, name, from: origin.to_string() },
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::objects::{Entry, Object};
 use crate::content;
+use crate::document::Origin;
 use crate::error::ProjectError;
 use glam::DVec2;
 use std::fs;
@@ -103,10 +104,12 @@ fn content_of(root: &Path, object: &Object, progress: &Progress) -> Result<(), P
             TextureLibrary::builtin()?.add_user(&path)?;
             content::texture_path(root, entry)?;
             let bytes = fs::metadata(&path).map_err(|source| ProjectError::io("read", &path, source))?.len();
-            if bytes == entry.source.bytes {
-                return Ok(());
+            match entry.origin {
+                Origin::Imported { bytes: recorded, .. } if bytes != recorded => {
+                    Err(damaged(format!("it has {bytes} bytes, and {recorded} were recorded")))
+                }
+                _ => Ok(()),
             }
-            Err(damaged(format!("it has {bytes} bytes, and {} were recorded", entry.source.bytes)))
         }
     }
 }

@@ -3,7 +3,8 @@
 use super::{Effect, Noun, ProjectError};
 use crate::content;
 use crate::content::volume_facts::{self, Facts};
-use crate::document::{Polarity, Source};
+pub use crate::document::AttributeKind;
+use crate::document::{Origin, Polarity};
 use crate::folder::Draft;
 use crate::interpretation::assembly;
 use crate::interpretation::times::time_volume;
@@ -12,41 +13,9 @@ use ::time::Cut;
 use attribute::blocks::{AttributeBlocks, dip_angle_blocks, dip_blocks, envelope_blocks, semblance_blocks};
 use attribute::{AttributeError, DipSettings, SemblanceSettings};
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use store::{StoreError, StoredVolume, VolumeInfo, write_blocks};
 use survey::{Progress, SurveyGeometry};
-
-/// The attributes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum AttributeKind {
-    /// Semblance: how alike neighbouring traces are along the reflections; low at faults.
-    Semblance,
-    /// Envelope: the strength of the reflections, whatever their phase.
-    Envelope,
-    /// Dip: the steepness of the reflections, as three volumes.
-    Dip,
-    /// The volume with its beds laid flat by the newest geologic time: a Wheeler diagram.
-    Flattened,
-    /// How fast the newest geologic time runs down the traces: more than 1 where beds are missing, as at an unconformity.
-    Hiatus,
-}
-
-impl AttributeKind {
-    /// All of them.
-    pub const ALL: [Self; 5] = [Self::Semblance, Self::Envelope, Self::Dip, Self::Flattened, Self::Hiatus];
-
-    /// The word for it on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Semblance => "semblance",
-            Self::Envelope => "envelope",
-            Self::Dip => "dip",
-            Self::Flattened => "flattened",
-            Self::Hiatus => "hiatus",
-        }
-    }
-}
 
 /// Computes an attribute of a volume and adds it to the project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -90,7 +59,7 @@ impl ComputeAttribute {
             None => 0,
         };
         let from = match self.kind {
-            AttributeKind::Hiatus => time_volume(draft.root(), &draft.document)?,
+            AttributeKind::Hiatus => time_volume(&draft.document)?.clone(),
             _ => draft.document.volumes[position].clone(),
         };
         let source = content::open_recorded(draft.root(), &from, draft.document.frame()?)?;
@@ -102,7 +71,7 @@ impl ComputeAttribute {
             draft.document.check_new_name(Noun::Volume, &name)?;
             let (file, path) = draft.generation("volumes", &name, "zarr")?;
             let info = VolumeInfo {
-                quantity: Some(format!("{}{}", self.kind.name(), suffix.replace('-', " "))),
+                quantity: Some(format!("{}{}", self.kind.name(), suffix.replace('-', " ")).into()),
                 unit: unit.map(str::to_owned),
                 source: Some(format!("{} of {}", self.kind.name(), from.name)),
                 ..VolumeInfo::of(geometry.clone())
@@ -135,8 +104,8 @@ impl ComputeAttribute {
                     return Err(ProjectError::OtherLattice { volume: from.name });
                 }
                 let frame = draft.document.frame()?;
-                let times = time_volume(draft.root(), &draft.document)?;
-                let tau = content::read_volume(draft.root(), &times, frame, progress)?;
+                let times = time_volume(&draft.document)?;
+                let tau = content::read_volume(draft.root(), times, frame, progress)?;
                 let volume = content::read_volume(draft.root(), &from, frame, progress)?;
                 store::write_volume(out[0].0, &::time::flattened(&tau, &volume), out[0].1, progress)?;
             }
@@ -147,11 +116,7 @@ impl ComputeAttribute {
                 name: name.clone(),
                 file,
                 polarity: Polarity::default(),
-                source: Source {
-                    path: PathBuf::from(&from.file),
-                    bytes: from.source.bytes,
-                    reading: format!("{} of the volume {}", self.kind.name(), from.name),
-                },
+                origin: Origin::Attribute { attribute: self.kind, of: from.name.clone() },
                 geometry: from.geometry.clone(),
             };
             draft.document.volumes.push(volume_facts::entry(&path, facts, progress)?);

@@ -107,7 +107,7 @@ impl AddFault {
             grown_m: self.grown_m,
             file,
             hash,
-            source: super::source_of(&self.path, super::horizon::reading(&report))?,
+            origin: super::imported(&self.path, super::horizon::reading(&report))?,
             colour: None,
         });
         draft.document.check_growth()?;

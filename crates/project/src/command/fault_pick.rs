@@ -2,14 +2,13 @@
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
-use crate::document::{FaultEntry, FaultSticks, Source};
+use crate::document::{FaultEntry, FaultSticks, Origin};
 use crate::folder::Draft;
 use crate::interpretation::assembly::rebuild_all;
 use crate::interpretation::proposals;
 use files::fault_of_sticks;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 use survey::{Fault, Progress, SurveyGeometry};
 
 /// Adds sticks to a fault; from two sticks on it has a surface.
@@ -113,9 +112,7 @@ fn surface(draft: &mut Draft, drawn: usize, progress: &Progress) -> Result<Effec
     let lines: Vec<Vec<DVec3>> = sticks.iter().map(|stick| stick.iter().map(world).collect()).collect();
     let fault =
         fault_of_sticks(&name, &lines, &geometry).ok_or_else(|| ProjectError::FlatSticks { fault: name.clone() })?;
-    let source =
-        Source { path: PathBuf::from("picks"), bytes: 0, reading: format!("drawn with {} sticks", sticks.len()) };
-    put(draft, &fault, source)?;
+    put(draft, &fault, Origin::Drawn)?;
     rebuild_all(draft, progress)?;
     Ok(Effect::Changed {
         summary: format!("fault {name}: {} sticks, {} triangles", sticks.len(), fault.mesh.triangles.len()),
@@ -126,22 +123,15 @@ impl AcceptFault {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         draft.document.check_new_name(Noun::Fault, &self.name)?;
         let proposal = proposals::find(draft.root(), &draft.document, self.id)?;
-        let source = Source {
-            path: PathBuf::from("proposal"),
-            bytes: 0,
-            reading: match proposal.horizons.as_slice() {
-                [] => "proposed from reflections that end at it".to_owned(),
-                horizons => format!("proposed from the offsets of {}", horizons.join(", ")),
-            },
-        };
-        put(draft, &proposal.fault(&self.name), source)?;
+        let origin = Origin::Proposed { horizons: proposal.horizons.clone() };
+        put(draft, &proposal.fault(&self.name), origin)?;
         rebuild_all(draft, progress)?;
         Ok(Effect::Changed { summary: format!("fault {}: proposal {} accepted", self.name, self.id) })
     }
 }
 
 /// Writes a fault and its entry; an existing fault of that name is replaced.
-fn put(draft: &mut Draft, fault: &Fault, source: Source) -> Result<(), ProjectError> {
+fn put(draft: &mut Draft, fault: &Fault, origin: Origin) -> Result<(), ProjectError> {
     let old = draft.document.faults.iter().position(|entry| entry.name == fault.name);
     let before = old.map(|old| &draft.document.faults[old]);
     let (truncated_by, grown_m) = before.map_or((None, 0.0), |entry| (entry.truncated_by.clone(), entry.grown_m));
@@ -149,7 +139,7 @@ fn put(draft: &mut Draft, fault: &Fault, source: Source) -> Result<(), ProjectEr
     let (file, new) = draft.generation("faults", &fault.name, "json")?;
     store::write_fault(&new, fault)?;
     let (name, hash) = (fault.name.clone(), content::hash_fault(fault));
-    let entry = FaultEntry { name, truncated_by, grown_m, file, hash, source, colour };
+    let entry = FaultEntry { name, truncated_by, grown_m, file, hash, origin, colour };
     match old {
         Some(old) => draft.document.faults[old] = entry,
         None => draft.document.faults.push(entry),

@@ -5,7 +5,7 @@
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
-use crate::document::{HorizonEntry, Source};
+use crate::document::{HorizonEntry, Origin};
 use crate::folder::Draft;
 use crate::interpretation::order;
 use files::{Gridding, ImportOptions, ImportReport};
@@ -113,10 +113,10 @@ impl AddHorizon {
             contact,
             file,
             hash,
-            source: super::source_of(&self.path, reading(&report))?,
+            origin: super::imported(&self.path, reading(&report))?,
             assembly: None,
             colour: None,
-            seeds: Vec::new(),
+            refined: Vec::new(),
         };
         draft.document.insert_horizon(position, entry);
         Ok(Effect::HorizonAdded(Box::new(HorizonAdded { position, report })))
@@ -233,11 +233,11 @@ pub(super) fn insert_made(
     draft: &mut Draft,
     horizon: &Horizon,
     age: &Age,
-    source: Source,
+    origin: Origin,
     progress: &Progress,
 ) -> Result<usize, ProjectError> {
     let mut others = load_all(draft, progress)?;
-    insert_among(draft, &mut others, horizon, age, source, progress)
+    insert_among(draft, &mut others, horizon, age, origin, progress)
 }
 
 /// The same where the horizons of the project, youngest first, have been read; the new one is added to them.
@@ -249,7 +249,7 @@ pub(super) fn insert_among(
     others: &mut Vec<Horizon>,
     horizon: &Horizon,
     age: &Age,
-    source: Source,
+    origin: Origin,
     progress: &Progress,
 ) -> Result<usize, ProjectError> {
     let contact = Contact::Conformable;
@@ -273,10 +273,10 @@ pub(super) fn insert_among(
         contact,
         file,
         hash,
-        source,
+        origin,
         assembly: None,
         colour: None,
-        seeds: Vec::new(),
+        refined: Vec::new(),
     };
     draft.document.insert_horizon(position, entry);
     others.insert(position, horizon.clone());
@@ -319,6 +319,7 @@ impl RenameHorizon {
         if self.from.to_lowercase() != self.to.to_lowercase() {
             draft.document.check_new_name(Noun::Horizon, &self.to)?;
         }
+        draft.document.rename_in_origins(Noun::Horizon, &self.from, &self.to);
         draft.document.keep_styles(|document| {
             document.horizons[index].name.clone_from(&self.to);
             Ok::<(), ProjectError>(())

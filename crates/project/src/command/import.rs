@@ -2,7 +2,7 @@
 
 use super::{Effect, Noun, ProjectError, import_stored};
 use crate::content::volume_facts::{self, Facts};
-use crate::document::{Polarity, rename_volume_in};
+use crate::document::{Origin, Polarity, rename_volume_in};
 use crate::folder::{Draft, IMPORTING};
 use crate::memory_budget;
 use crate::placement;
@@ -28,6 +28,9 @@ pub struct ImportVolume {
     /// What the user states about the file.
     #[serde(default)]
     pub options: SegyOptions,
+    /// Where a stored volume came from, if whoever stored it says so; `None`: from its folder.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub origin: Option<Origin>,
     /// Memory to use, bytes; `None`: half of what is available. It is not recorded, since the result does not depend on
     /// it.
     #[serde(skip)]
@@ -108,7 +111,7 @@ impl ImportVolume {
             name: name.clone(),
             file: stored_as,
             polarity: self.polarity,
-            source: super::source_of(&self.path, reading(info))?,
+            origin: super::imported(&self.path, reading(info))?,
             geometry: own,
         };
         let entry = volume_facts::entry(&new, facts, progress)?;
@@ -267,6 +270,7 @@ impl RenameVolume {
             document.check_new_name(Noun::Volume, to)?;
         }
         document.volumes[index].name.clone_from(to);
+        document.rename_in_origins(Noun::Volume, from, to);
         let style = &mut document.style;
         let shown = style.scalars.iter_mut().map(|function| &mut function.volume);
         let shown = shown.chain(style.raw.iter_mut().map(|raw| &mut raw.volume));

@@ -7,7 +7,7 @@
 use super::import::{ImportVolume, VolumeImported, cancelled_within, own_lattice};
 use super::{Effect, ProjectError};
 use crate::content::volume_facts::{self, Facts};
-use crate::document::Source;
+use crate::document::Origin;
 use crate::folder::Draft;
 use crate::memory_budget;
 use crate::placement;
@@ -48,11 +48,11 @@ pub(super) fn execute(
         name: name.clone(),
         file: stored_as,
         polarity: change.polarity,
-        source: Source {
+        origin: change.origin.clone().unwrap_or_else(|| Origin::Imported {
             path: info.source.map_or_else(|| change.path.clone(), PathBuf::from),
             bytes: (size.iter().product::<usize>() * sample_type.bytes()) as u64,
             reading: format!("stored volume of {type_name}"),
-        },
+        }),
         geometry: own_lattice(draft, geometry),
     };
     let entry = volume_facts::entry(&new, facts, progress)?;
@@ -143,6 +143,7 @@ mod tests {
                 options: files::segy::SegyOptions::default(),
                 memory_bytes: None,
                 moved,
+                origin: None,
             })
         };
         project.apply(&import("copied", false), &quiet).unwrap();
@@ -153,7 +154,7 @@ mod tests {
         assert_eq!(document.geometry.as_ref(), Some(&geometry));
         let [copied, moved] = [&document.volumes[0], &document.volumes[1]];
         assert_eq!((&copied.hash, copied.clip), (&moved.hash, moved.clip));
-        assert_eq!(copied.source.path, std::path::Path::new("somewhere"));
+        assert_eq!(copied.origin.file(), Some(std::path::Path::new("somewhere")));
         let read = |entry| content::open_recorded(project.root(), entry, &geometry).unwrap();
         assert_eq!(read(copied).read::<i16>(0, &quiet).unwrap(), volume);
         assert_eq!(read(moved).read::<i16>(0, &quiet).unwrap(), volume);

@@ -2,11 +2,10 @@
 
 use super::{Effect, Noun, ProjectError};
 use crate::content::volume_facts::{self, Facts};
-use crate::document::{Polarity, Source};
+use crate::document::{Origin, Polarity};
 use crate::folder::Draft;
 use crate::placement;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 use survey::{Progress, SurveyGeometry};
 
 /// Takes a volume of this program in object storage into the project, without copying its bricks: they are read as they
@@ -52,11 +51,7 @@ impl LinkVolume {
             name: name.clone(),
             file,
             polarity: self.polarity,
-            source: Source {
-                path: PathBuf::from(&self.url),
-                bytes: 0,
-                reading: "linked: its bricks are read where they lie".to_owned(),
-            },
+            origin: Origin::Linked { url: self.url.clone() },
             geometry: own,
         };
         draft.document.volumes.push(volume_facts::entry(&path, facts, progress)?);

@@ -56,7 +56,7 @@ pub use time::{ComputeTime, TimeComputed};
 pub use time_slabs::TimeSlabs;
 pub use well::{AddWell, RemoveWell, RenameWell, SetWellColour, WellAdded};
 
-use crate::document::{Document, Source};
+use crate::document::{Document, Origin};
 use crate::error::{Noun, ProjectError};
 use crate::folder::Draft;
 use crate::interpretation::extraction::Extracted;
@@ -355,10 +355,10 @@ impl Effect {
     }
 }
 
-/// The facts of a file that was read as `reading`.
-fn source_of(path: &Path, reading: String) -> Result<Source, ProjectError> {
+/// The origin of what was read from a file, as `reading` says.
+fn imported(path: &Path, reading: String) -> Result<Origin, ProjectError> {
     let facts = std::fs::metadata(path).map_err(|source| ProjectError::io("read", path, source))?;
-    Ok(Source { path: path.to_owned(), bytes: facts.len(), reading })
+    Ok(Origin::Imported { path: path.to_owned(), bytes: facts.len(), reading })
 }
 
 impl std::fmt::Display for Effect {

@@ -3,7 +3,7 @@
 use super::{Effect, ProjectError};
 use crate::content;
 use crate::derived;
-use crate::document::{ParameterizationEntry, Source};
+use crate::document::{Origin, ParameterizationEntry};
 use crate::folder::Draft;
 use crate::interpretation::solid;
 use crate::interpretation::times::time_volume;
@@ -44,9 +44,9 @@ impl SetParameterization {
         let size = arrays.size;
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         let reading = format!("i, j, k, layer and block at {} x {} x {}", size[0], size[1], size[2]);
-        let source = super::source_of(path, reading)?;
+        let origin = super::imported(path, reading)?;
         let model = model(draft, progress)?;
-        keep(draft, &model, arrays, (name, path.display().to_string()), source, progress)
+        keep(draft, &model, arrays, (name, path.display().to_string()), origin, progress)
     }
 }
 
@@ -60,7 +60,7 @@ fn keep(
     model: &StructuralModel,
     arrays: VoxelParameterization,
     (name, what): (String, String),
-    source: Source,
+    origin: Origin,
     progress: &Progress,
 ) -> Result<Effect, ProjectError> {
     // Tried on the interpretation before anything is written.
@@ -71,7 +71,7 @@ fn keep(
         ParameterizationVolumes { i: arrays.i, j: arrays.j, k: arrays.k, layer: arrays.layer, block: arrays.block };
     let hash = content::hash_parameterization(&volumes);
     store::write_parameterization(&new, &volumes, &hash, progress)?;
-    draft.document.parameterization = Some(ParameterizationEntry { name, file, hash, source });
+    draft.document.parameterization = Some(ParameterizationEntry { name, file, hash, origin });
     let summary = format!(
         "i, j, k of {what}: {:.1} % of its samples lie in the same layer, {:.1} % of the nodes beside one",
         100.0 * taken.agreeing,
@@ -83,7 +83,7 @@ fn keep(
 /// k from geologic time; i and j are those computed here. Every picture draws with them.
 fn by_time(draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
     let geometry = draft.document.frame()?.clone();
-    let entry = time_volume(draft.root(), &draft.document)?;
+    let entry = time_volume(&draft.document)?.clone();
     let tau = content::read_volume(draft.root(), &entry, &geometry, progress)?;
     let model = model(draft, progress)?;
     let settings = solid::param_settings(&draft.document);
@@ -105,13 +105,9 @@ fn by_time(draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectErro
         times.push(along.get(along.len() / 2).copied());
     }
     let share = set_k(&mut arrays, &tau, &times);
-    let source = Source {
-        path: PathBuf::from(&entry.file),
-        bytes: entry.source.bytes,
-        reading: format!("k by geologic time at {} x {} x {}", size[0], size[1], size[2]),
-    };
+    let origin = Origin::TimeFraction { of: entry.name.clone() };
     let what = format!("{}, {:.1} % of the samples between two horizons by geologic time", entry.name, 100.0 * share);
-    keep(draft, &model, arrays, ("time".to_owned(), what), source, progress)
+    keep(draft, &model, arrays, ("time".to_owned(), what), origin, progress)
 }
 
 /// τ at a fractional sample of a trace; NaN where it is not known and outside.

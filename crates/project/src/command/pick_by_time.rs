@@ -2,11 +2,10 @@
 
 use super::horizon::{Age, insert_made};
 use super::{Effect, Noun, ProjectError};
-use crate::document::{Document, Source};
+use crate::document::{Chooser, Document, Origin};
 use crate::folder::Draft;
 use crate::interpretation::assembly;
 use crate::interpretation::times::Times;
-use crate::interpretation::times::time_volume;
 use ::time::{Crossing, Cut, Event, Node, Reflections, Seed, Support, isochron};
 use glam::Vec3;
 use interp::Extremum;
@@ -14,7 +13,6 @@ use model::FaultNetwork;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 use survey::{Horizon, NodeGrid, Progress, Quality, Sheet, SurveyGeometry, Volume};
 
 /// The level of geologic time that a horizon is.
@@ -25,6 +23,8 @@ pub enum TimeLevel {
     Through([f64; 3]),
     /// The one of this value, samples. It stays where it is beside reflections, which is smoother than what was tracked.
     Of(f32),
+    /// The same, of a value that the program chose.
+    Chosen(f32),
 }
 
 /// Adds a horizon that is a level of geologic time. A place of a horizon that was picked by time corrects it around that
@@ -77,28 +77,23 @@ impl PickByTime {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let corrected = self.corrected(&draft.document)?;
         let geometry = draft.document.frame()?.clone();
-        let entry = time_volume(draft.root(), &draft.document)?;
         let times = Times::load(draft.root(), &draft.document, progress)?;
         let Times { tau, reflections, cuts } = times.as_ref();
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
-        let earlier = corrected.map_or(&[][..], |index| &draft.document.horizons[index].seeds);
-        let (event, seeds, reading) = match self.level {
+        let earlier = corrected.map_or(&[][..], |index| &draft.document.horizons[index].origin.seeds());
+        let value = |time: f32, chosen_by| (level(tau, time, reflections), Origin::Level { time, chosen_by });
+        let (event, origin) = match self.level {
             TimeLevel::Through(at) => {
                 let seeds = [earlier, &[at]].concat();
-                let event = through(&seeds, &geometry, tau, reflections, cuts)?;
-                let [inline, crossline, z] = seeds[0];
-                let more = match seeds.len() {
-                    1 => String::new(),
-                    count => format!(" and {} more", count - 1),
-                };
-                (event, seeds, format!("geologic time through inline {inline}, crossline {crossline}, {z}{more}"))
+                (through(&seeds, &geometry, tau, reflections, cuts)?, Origin::ByTime { seeds })
             }
-            TimeLevel::Of(time) => (level(tau, time, reflections), Vec::new(), format!("geologic time {time}")),
+            TimeLevel::Of(time) => value(time, Chooser::Person),
+            TimeLevel::Chosen(time) => value(time, Chooser::Program),
         };
         if event.nodes.is_empty() {
             return Err(ProjectError::NoIsochron { time: event.time });
         }
-        let voxels = seeds.iter().map(|at| voxel(*at, &geometry)).collect::<Result<Vec<_>, _>>()?;
+        let voxels = origin.seeds().iter().map(|at| voxel(*at, &geometry)).collect::<Result<Vec<_>, _>>()?;
         let sheets = sheets(&event, &geometry, &blocks, &voxels);
         let count = |quality: Quality| -> usize {
             sheets.iter().flat_map(|sheet| &sheet.quality).filter(|found| **found == quality).count()
@@ -110,21 +105,20 @@ impl PickByTime {
         let coverage = traces.len() as f64 / (tau.size()[0] * tau.size()[1]) as f64;
         let (sheet_count, time) = (sheets.len(), event.time);
         let horizon = Horizon::new(self.horizon.clone(), sheets);
-        let source = Source { path: PathBuf::from(&entry.file), bytes: entry.source.bytes, reading };
-        let seed_count = seeds.len();
-        if corrected.is_some() {
-            assembly::put(draft, &horizon, None, "", progress)?;
+        let seeds = origin.seeds().len();
+        if let Some(corrected) = corrected {
+            let made = &mut draft.document.horizons[corrected];
+            (made.origin, made.refined) = (origin, Vec::new());
+            assembly::put(draft, &horizon, None, None, progress)?;
         } else {
-            insert_made(draft, &horizon, &Age::ByDepth, source.clone(), progress)?;
+            insert_made(draft, &horizon, &Age::ByDepth, origin, progress)?;
         }
         let position = draft.document.position(Noun::Horizon, &self.horizon)?;
-        let made = &mut draft.document.horizons[position];
-        (made.seeds, made.source) = (seeds, source);
         Ok(Effect::PickedByTime(PickedByTime {
             horizon: self.horizon.clone(),
             position,
             time,
-            seeds: seed_count,
+            seeds,
             sheets: sheet_count,
             tracked,
             snapped,
@@ -136,7 +130,7 @@ impl PickByTime {
     /// The horizon that another place corrects; `None` for a new one.
     fn corrected(&self, document: &Document) -> Result<Option<usize>, ProjectError> {
         let known = document.horizons.iter().position(|entry| entry.name == self.horizon);
-        let by_time = known.filter(|&index| !document.horizons[index].seeds.is_empty());
+        let by_time = known.filter(|&index| !document.horizons[index].origin.seeds().is_empty());
         match (by_time, &self.level) {
             (Some(index), TimeLevel::Through(_)) => Ok(Some(index)),
             _ => document.check_new_name(Noun::Horizon, &self.horizon).map(|()| None),

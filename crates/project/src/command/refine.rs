@@ -2,7 +2,7 @@
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
-use crate::document::Assembly;
+use crate::document::{Assembly, Refinement};
 use crate::folder::Draft;
 use crate::interpretation::assembly::{self, AssemblyReport, put, rebuild, refined, report_on};
 use interp::holes::FillSettings;
@@ -51,14 +51,14 @@ impl std::fmt::Display for HorizonRefined {
 impl FillHorizon {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let change = |log: &mut Assembly| log.fill = Some(self.settings);
-        refine(draft, &self.name, change, (Some(&self.settings), None, "; holes filled"), progress)
+        refine(draft, &self.name, change, (Some(&self.settings), None, Refinement::Filled), progress)
     }
 }
 
 impl SmoothHorizon {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let change = |log: &mut Assembly| log.smooth = (self.settings.radius > 0).then_some(self.settings);
-        refine(draft, &self.name, change, (None, Some(&self.settings), "; smoothed"), progress)
+        refine(draft, &self.name, change, (None, Some(&self.settings), Refinement::Smoothed), progress)
     }
 }
 
@@ -68,7 +68,7 @@ fn refine(
     draft: &mut Draft,
     name: &str,
     change: impl FnOnce(&mut Assembly),
-    (fill, smooth, done): (Option<&FillSettings>, Option<&SmoothSettings>, &str),
+    (fill, smooth, done): (Option<&FillSettings>, Option<&SmoothSettings>, Refinement),
     progress: &Progress,
 ) -> Result<Effect, ProjectError> {
     let index = draft.document.position(Noun::Horizon, name)?;
@@ -84,7 +84,7 @@ fn refine(
             let horizon = content::read_horizon(draft.root(), &draft.document.horizons[index], progress)?;
             let mut sheets = from_horizon(&horizon, &geometry, &blocks);
             let (filled, smoothed) = refined(draft, &mut sheets, &blocks, fill, smooth, progress)?;
-            put(draft, &to_horizon(name, &sheets, &geometry), None, done, progress)?;
+            put(draft, &to_horizon(name, &sheets, &geometry), None, Some(done), progress)?;
             AssemblyReport { filled, smoothed, ..report_on(&sheets, &geometry) }
         }
     };

@@ -4,13 +4,12 @@ use super::horizon::{Age, insert_among, load_all};
 use super::pick_by_time::level_sheets;
 use super::{Effect, Noun, ProjectError};
 use crate::content;
-use crate::document::Source;
+use crate::document::{Chooser, Origin};
 use crate::folder::Draft;
 use crate::interpretation::assembly;
-use crate::interpretation::times::{Times, time_volume};
+use crate::interpretation::times::Times;
 use interp::reassembly::{VoxelSheet, from_horizon, to_horizon};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 use survey::{Horizon, Progress, Quality, Volume};
 
 /// How the horizons of a stack are spaced.
@@ -75,14 +74,14 @@ impl StackHorizons {
         let traces: usize = draft.document.frame()?.size()[..2].iter().product();
         let mut horizons = Vec::new();
         let mut others = load_all(draft, progress)?;
-        for (horizon, source) in made {
+        for (horizon, origin) in made {
             draft.document.check_new_name(Noun::Horizon, &horizon.name)?;
             let mut covered = vec![false; traces];
             for sheet in &horizon.sheets {
                 let known = sheet.depth.iter().map(|depth| depth.is_finite());
                 covered.iter_mut().zip(known).for_each(|(covered, known)| *covered |= known);
             }
-            insert_among(draft, &mut others, &horizon, &Age::ByDepth, source, progress)?;
+            insert_among(draft, &mut others, &horizon, &Age::ByDepth, origin, progress)?;
             let share = covered.iter().filter(|covered| **covered).count() as f64 / traces.max(1) as f64;
             horizons.push((horizon.name, share));
         }
@@ -93,7 +92,7 @@ impl StackHorizons {
         format!("{} {}", self.name, n + 1)
     }
 
-    fn isochrons(&self, draft: &Draft, progress: &Progress) -> Result<Vec<(Horizon, Source)>, ProjectError> {
+    fn isochrons(&self, draft: &Draft, progress: &Progress) -> Result<Vec<(Horizon, Origin)>, ProjectError> {
         let geometry = draft.document.frame()?.clone();
         let times = Times::load(draft.root(), &draft.document, progress)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
@@ -114,15 +113,10 @@ impl StackHorizons {
         if top.partial_cmp(&base) != Some(std::cmp::Ordering::Less) {
             return Err(ProjectError::StackOrder { between: self.between.clone() });
         }
-        let entry = time_volume(draft.root(), &draft.document)?;
         let level = |n: usize| {
             let time = top + (base - top) * (n + 1) as f32 / (self.count + 1) as f32;
-            let source = Source {
-                path: PathBuf::from(&entry.file),
-                bytes: entry.source.bytes,
-                reading: format!("geologic time {time}"),
-            };
-            (Horizon::new(self.name(n), level_sheets(&times, time, &geometry, &blocks)), source)
+            let origin = Origin::Level { time, chosen_by: Chooser::Program };
+            (Horizon::new(self.name(n), level_sheets(&times, time, &geometry, &blocks)), origin)
         };
         Ok((0..self.count).map(level).filter(|(horizon, _)| !horizon.sheets.is_empty()).collect())
     }
@@ -132,7 +126,7 @@ impl StackHorizons {
         draft: &Draft,
         between: &[String; 2],
         progress: &Progress,
-    ) -> Result<Vec<(Horizon, Source)>, ProjectError> {
+    ) -> Result<Vec<(Horizon, Origin)>, ProjectError> {
         let geometry = draft.document.frame()?.clone();
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let mut sheets = Vec::new();
@@ -148,10 +142,8 @@ impl StackHorizons {
             if parts.iter().all(|sheet| sheet.nodes() == 0) {
                 return Err(ProjectError::StackOrder { between: Some(between.clone()) });
             }
-            let [top, base] = between;
-            let reading = format!("{:.1} % of the thickness from {top} to {base}", 100.0 * share);
-            let source = Source { path: PathBuf::from(top), bytes: 0, reading };
-            made.push((to_horizon(&self.name(n), &parts, &geometry), source));
+            let origin = Origin::Share { share, between: between.clone() };
+            made.push((to_horizon(&self.name(n), &parts, &geometry), origin));
         }
         Ok(made)
     }

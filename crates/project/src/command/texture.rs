@@ -42,7 +42,7 @@ impl AddTexture {
             file,
             tile_mm: [width_mm, height * width_mm / width],
             hash: content::hash_file(&new)?,
-            source: super::source_of(&self.path, extension)?,
+            origin: super::imported(&self.path, extension)?,
         });
         Ok(Effect::Changed { summary: format!("texture {name}") })
     }

@@ -3,13 +3,11 @@
 use super::time_slabs::{SlabTimes, TimeSlabs, explain};
 use super::{Effect, Noun, ProjectError};
 use crate::content::volume_facts::{self, Facts};
-use crate::document::{Polarity, Source};
+use crate::document::{Origin, Polarity};
 use crate::folder::Draft;
-use crate::interpretation::times::QUANTITY;
 use crate::memory_budget;
 use ::time::{Jump, Slabs, TimeSettings};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 use survey::Progress;
 
 /// Computes geologic time from the present extraction, its volume and the interpretation (faults, picked horizons,
@@ -114,11 +112,7 @@ impl ComputeTime {
             name: self.name.clone(),
             file,
             polarity: Polarity::default(),
-            source: Source {
-                path: PathBuf::from(&from.file),
-                bytes: from.source.bytes,
-                reading: format!("{QUANTITY} of the volume {}", from.name),
-            },
+            origin: Origin::GeologicTime { of: from.name.clone() },
             geometry: None,
         };
         draft.document.volumes.push(volume_facts::entry(&path, facts, progress)?);

@@ -6,7 +6,7 @@ use crate::document::{Document, VolumeEntry};
 use crate::interpretation::assembly;
 use crate::interpretation::candidates::{Candidates, amplitudes};
 use crate::interpretation::extraction;
-use crate::interpretation::times::{Obeyed, QUANTITY};
+use crate::interpretation::times::Obeyed;
 use ::time::{JoinedSlabs, Slabs, TimeSettings, find_faults, geologic_time, surfaces_within};
 use interp::{Extremum, InterpError, Surface, Surfaces, Vertex};
 use std::borrow::Cow;
@@ -17,7 +17,7 @@ use std::sync::Arc;
 use store::{StoredCandidates, StoredVolume, VolumeInfo};
 use survey::sample::{SampleType, SamplesMut};
 use survey::source::{Block, BlockSource, SourceError};
-use survey::{Progress, Volume};
+use survey::{Progress, Quantity, Volume};
 
 /// What geologic time of a project is solved from.
 pub struct TimeSlabs {
@@ -134,9 +134,9 @@ impl TimeSlabs {
     /// What the volume of geologic time says of itself.
     pub fn info(&self) -> VolumeInfo {
         VolumeInfo {
-            quantity: Some(QUANTITY.to_owned()),
+            quantity: Some(Quantity::GeologicTime),
             unit: Some("samples".to_owned()),
-            source: Some(format!("{QUANTITY} of {}", self.from.name)),
+            source: Some(format!("{} of {}", Quantity::GeologicTime, self.from.name)),
             ..VolumeInfo::of(self.volume.info().geometry.clone())
         }
     }
@@ -261,7 +261,7 @@ mod tests {
         files::segy::write(&path, &geometry, &volume, &WriteOptions::default(), &quiet).unwrap();
         let mut new = Project::create(&folder.path().join("north.petro"), None).unwrap();
         let (polarity, options) = (Polarity::default(), SegyOptions::default());
-        let import = ImportVolume { path, name: None, polarity, options, memory_bytes: None, moved: false };
+        let import = ImportVolume { path, name: None, polarity, options, origin: None, memory_bytes: None, moved: false };
         new.project().apply(&Command::Import(import), &quiet).unwrap();
         let settings = ExtractSettings::default();
         let extract = Extract { volume: None, settings, memory_bytes: None, just_stored: false };

@@ -241,8 +241,8 @@ impl AddWell {
             well.tops.len(),
             done.curves.len()
         );
-        let source = super::source_of(&self.files.deviation, reading)?;
-        draft.document.wells.push(WellEntry { name: self.name.clone(), file, hash, colour: None, source });
+        let origin = super::imported(&self.files.deviation, reading)?;
+        draft.document.wells.push(WellEntry { name: self.name.clone(), file, hash, colour: None, origin });
         Ok(Effect::WellAdded(Box::new(done)))
     }
 }

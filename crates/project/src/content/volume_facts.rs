@@ -1,7 +1,7 @@
 //! The facts that a project keeps about a stored volume, found by reading as little of it as necessary.
 
 use crate::content;
-use crate::document::{Polarity, Source, VolumeEntry};
+use crate::document::{Origin, Polarity, VolumeEntry};
 use crate::error::ProjectError;
 use rayon::prelude::*;
 use std::path::Path;
@@ -23,7 +23,7 @@ pub(crate) struct Facts {
     /// Relative to the project's folder.
     pub(crate) file: String,
     pub(crate) polarity: Polarity,
-    pub(crate) source: Source,
+    pub(crate) origin: Origin,
     /// Its own lattice, if it differs from the project's.
     pub(crate) geometry: Option<SurveyGeometry>,
 }
@@ -40,7 +40,8 @@ pub(crate) fn entry(path: &Path, facts: Facts, progress: &Progress) -> Result<Vo
         name: facts.name,
         file: facts.file,
         polarity: facts.polarity,
-        source: facts.source,
+        quantity: stored.info().quantity.clone(),
+        origin: facts.origin,
         geometry: facts.geometry,
     })
 }

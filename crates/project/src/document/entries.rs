@@ -1,12 +1,12 @@
 //! The named entries of a project as `project.toml` lists them. Files are relative to the project's folder; a hash
 //! identifies data by its content.
 
+use super::origin::Origin;
 use super::picks::Assembly;
 use figure::Figure;
 use render::{IsosurfaceSource, Scene};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
-use survey::{Contact, SurveyGeometry};
+use survey::{Contact, Quantity, SurveyGeometry};
 use ttf::{Colour, LayerTtf, RawColour, ScalarTtf, TransferFunctions, TtfSettings};
 
 /// What a positive amplitude means.
@@ -29,18 +29,6 @@ impl std::fmt::Display for Polarity {
     }
 }
 
-/// Where data came from.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Source {
-    /// The path of the file when it was read.
-    pub path: PathBuf,
-    /// Its length in bytes.
-    pub bytes: u64,
-    /// How it was read: format, units, sign, byte positions.
-    pub reading: String,
-}
-
 /// A volume of the project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -54,12 +42,15 @@ pub struct VolumeEntry {
     /// What a positive amplitude means.
     #[serde(default)]
     pub polarity: Polarity,
+    /// What its samples measure, if whoever stored it said so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub quantity: Option<Quantity>,
     /// The value that 99 % of the samples do not exceed in magnitude; colours are clipped there.
     pub clip: f32,
     /// The smallest sample; if it is not negative, the volume is an attribute without a natural zero.
     pub lowest: f32,
     /// Where it came from.
-    pub source: Source,
+    pub origin: Origin,
     /// Its own lattice, if it differs from the project's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub geometry: Option<SurveyGeometry>,
@@ -97,19 +88,38 @@ pub struct HorizonEntry {
     /// BLAKE3 of its sheets.
     pub hash: String,
     /// Where it came from.
-    pub source: Source,
+    pub origin: Origin,
     /// How it was assembled from picks; `None` if it was imported.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assembly: Option<Assembly>,
-    /// The places in geologic time that it was picked through: inline, crossline, vertical value.
+    /// What was done to its sheets since, unless its log says so.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub seeds: Vec<[f64; 3]>,
+    pub refined: Vec<Refinement>,
     /// Its colour if it has no picks, which keep one of their own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colour: Option<Colour>,
 }
 
+/// What can be done to the sheets of a horizon that has no log.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Refinement {
+    /// Its holes were filled.
+    Filled,
+    /// It was smoothed.
+    Smoothed,
+}
+
 impl HorizonEntry {
+    /// Where it came from and what was done to it since, in words.
+    pub fn history(&self) -> String {
+        let done = self.refined.iter().map(|done| match done {
+            Refinement::Filled => "; holes filled",
+            Refinement::Smoothed => "; smoothed",
+        });
+        std::iter::once(self.origin.to_string().as_str()).chain(done).collect()
+    }
+
     /// The colour that it was given; `None` in projects of old: it is drawn in the one of its place in the list.
     pub fn own_colour(&self) -> Option<Colour> {
         self.assembly.as_ref().map(|log| log.colour).or(self.colour)
@@ -133,7 +143,7 @@ pub struct FaultEntry {
     /// BLAKE3 of its triangles.
     pub hash: String,
     /// Where it came from.
-    pub source: Source,
+    pub origin: Origin,
     /// Its colour, if it was given one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colour: Option<Colour>,
@@ -171,7 +181,7 @@ pub struct WellEntry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colour: Option<Colour>,
     /// Where it came from.
-    pub source: Source,
+    pub origin: Origin,
 }
 
 /// A tile of the user's own.
@@ -188,7 +198,7 @@ pub struct TextureEntry {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub hash: String,
     /// Where it came from.
-    pub source: Source,
+    pub origin: Origin,
 }
 
 /// A parameterization that another program computed.
@@ -202,7 +212,7 @@ pub struct ParameterizationEntry {
     /// BLAKE3 of its values.
     pub hash: String,
     /// Where it came from.
-    pub source: Source,
+    pub origin: Origin,
 }
 
 /// How everything is coloured and textured; what is not set gets a default when it is drawn. Blend and frequency belong

@@ -8,14 +8,17 @@ mod comments;
 pub(crate) mod data_file;
 mod entries;
 mod layers;
+mod migration;
+mod origin;
 mod picks;
 
 use crate::error::{Noun, ProjectError};
 pub(crate) use entries::is_zero;
 pub use entries::{
     ExtractionEntry, FaultEntry, FigureEntry, HorizonEntry, NoteEntry, ParameterizationEntry, Polarity, ProposalsEntry,
-    SceneEntry, Source, Style, TextureEntry, VolumeEntry, WellEntry, rename_volume_in, volumes_within,
+    Refinement, SceneEntry, Style, TextureEntry, VolumeEntry, WellEntry, rename_volume_in, volumes_within,
 };
+pub use origin::{AttributeKind, Chooser, Origin, Uninterpreted};
 use param::KDefinition;
 pub use picks::{Assembly, Drawn, DrawnEntry, FaultSticks, PickEntry};
 use serde::{Deserialize, Serialize};
@@ -24,8 +27,9 @@ use std::path::Path;
 use survey::geometry::MAX_COORDINATE;
 use survey::{StratigraphicHorizon, Stratigraphy, SurveyGeometry};
 
-/// The version that this program writes, and the newest that it reads.
-pub const VERSION: u32 = 1;
+/// The version that this program writes, and the newest that it reads. Older ones are read as
+/// [`migration`] translates them.
+pub const VERSION: u32 = 2;
 
 /// Most steps of a project: far beyond any work, and far from where numbers of 32 bits end.
 const MAX_STEP: u32 = 1_000_000_000;
@@ -159,7 +163,10 @@ impl Document {
         if version > VERSION {
             return Err(ProjectError::Newer { path: path.to_owned(), found: version, supported: VERSION });
         }
-        let document: Self = toml::from_str(text).map_err(|error| malformed(error.to_string()))?;
+        let document: Self = match version {
+            VERSION => toml::from_str(text).map_err(|error| malformed(error.to_string()))?,
+            _ => migration::read(text, path).map_err(malformed)?,
+        };
         document.check().map_err(malformed)?;
         Ok(document)
     }
@@ -325,6 +332,7 @@ impl Document {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::PathBuf;
     use survey::{Contact, VerticalUnit};
 
     fn horizon(name: &str) -> HorizonEntry {
@@ -333,10 +341,10 @@ mod tests {
             contact: Contact::Erosional,
             file: format!("horizons/{name}.zarr"),
             hash: "00".into(),
-            source: Source { path: "a b.csv".into(), bytes: 10, reading: "csv".into() },
+            origin: Origin::Imported { path: "a b.csv".into(), bytes: 10, reading: "csv".into() },
             assembly: None,
             colour: None,
-            seeds: Vec::new(),
+            refined: Vec::new(),
         }
     }
 

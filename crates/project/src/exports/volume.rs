@@ -103,8 +103,8 @@ pub fn write(
         "uint16" => WriteFormat::Uint16,
         _ => WriteFormat::Ieee32,
     });
-    let origin =
-        format!("VOLUME {} OF {}, FROM {}", entry.name, file_name(project.root()), file_name(&entry.source.path));
+    let from = entry.origin.file().map_or_else(|| entry.origin.to_string().to_uppercase(), |file| format!("FROM {}", file_name(file)));
+    let origin = format!("VOLUME {} OF {}, {from}", entry.name, file_name(project.root()));
     let options = WriteOptions { format, origin: Some(origin), ..WriteOptions::default() };
     let report = stream(&stored, &geometry, out, &options, progress)?;
     Ok(VolumeWritten {

@@ -4,7 +4,7 @@ use super::order;
 use crate::content;
 use crate::derived;
 use crate::document::Document;
-use crate::document::{Assembly, HorizonEntry, Source, VolumeEntry};
+use crate::document::{Assembly, HorizonEntry, Origin, Refinement, VolumeEntry};
 use crate::error::{Noun, ProjectError};
 use crate::folder::Draft;
 use crate::interpretation::candidates::Candidates;
@@ -19,9 +19,9 @@ use interp::reassembly::{Reassembled, VoxelSheet, from_horizon, reassemble, to_h
 use interp::refine::{SmoothSettings, fill_along};
 use model::{ContactRules, FaultNetwork};
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
-use survey::{Contact, Horizon, Progress, SurveyGeometry};
+use survey::{Horizon, Progress, SurveyGeometry};
 
 /// The state of a horizon after its picks.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -270,7 +270,7 @@ pub(crate) fn rebuild(
     report.doubled = ReportedOverlap::new(assembled.doubled, &geometry);
     report.overlap = ReportedOverlap::new(assembled.overlap, &geometry);
     let horizon = to_horizon(name, &assembled.sheets, &geometry);
-    put(draft, &horizon, Some(log), "", progress)?;
+    put(draft, &horizon, Some(log), None, progress)?;
     report.conflicts = conflicts_with(draft, candidates, blocks, name, &assembled.sheets, progress)?;
     Ok(report)
 }
@@ -345,13 +345,13 @@ pub fn report_on(sheets: &[VoxelSheet], geometry: &SurveyGeometry) -> AssemblyRe
     }
 }
 
-/// Writes a horizon and its entry. An existing horizon keeps its contact; its place follows its depth. `done` completes the
-/// record of an imported one, such as "; holes filled".
+/// Writes a horizon and its entry. An existing horizon keeps its contact; its place follows its depth. `done` is what was
+/// done to one without a log.
 pub(crate) fn put(
     draft: &mut Draft,
     horizon: &Horizon,
     log: Option<Assembly>,
-    done: &str,
+    done: Option<Refinement>,
     progress: &Progress,
 ) -> Result<(), ProjectError> {
     let geometry = draft.document.frame()?.clone();
@@ -366,29 +366,19 @@ pub(crate) fn put(
     store::write_horizon(&new, horizon, progress)?;
     let hash = content::hash_horizon(horizon);
     let document = &mut draft.document;
-    let source = match (&log, old) {
-        (Some(log), _) => {
-            let counted = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
-            let reading = match (log.picks.len(), log.drawn.len()) {
-                (picks, 0) => format!("assembled by {}", counted(picks, "pick")),
-                (0, parts) => format!("{} drawn or tracked", counted(parts, "part")),
-                (picks, parts) => {
-                    format!("assembled by {}, {} drawn or tracked", counted(picks, "pick"), counted(parts, "part"))
-                }
-            };
-            Source { path: PathBuf::from("picks"), bytes: 0, reading }
-        }
-        (None, Some(old)) => {
-            let Source { path, bytes, reading } = document.horizons[old].source.clone();
-            let reading = if reading.ends_with(done) { reading } else { reading + done };
-            Source { path, bytes, reading }
-        }
+    let before = old.map(|old| document.horizons[old].clone());
+    let origin = match (&log, &before) {
+        (Some(log), _) if log.picks.is_empty() => Origin::Drawn,
+        (Some(_), _) => Origin::Picked,
+        (None, Some(before)) => before.origin.clone(),
         (None, None) => return Err(ProjectError::NothingLeft { horizon: name.clone() }),
     };
-    let contact = old.map_or(Contact::default(), |old| document.horizons[old].contact);
-    let seeds = old.map_or(Vec::new(), |old| document.horizons[old].seeds.clone());
-    let colour = old.and_then(|old| document.horizons[old].colour);
-    let entry = HorizonEntry { name: name.clone(), contact, file, hash, source, assembly: log, colour, seeds };
+    let (contact, colour, mut refined) =
+        before.map_or_else(Default::default, |before| (before.contact, before.colour, before.refined));
+    if refined.last() != done.as_ref() {
+        refined.extend(done);
+    }
+    let entry = HorizonEntry { name: name.clone(), contact, file, hash, origin, assembly: log, colour, refined };
     match old {
         Some(old) if old == position => document.horizons[old] = entry,
         Some(old) => {

@@ -7,7 +7,7 @@
 
 use crate::content;
 use crate::derived::{Scratch, folder, key_of, revision};
-use crate::document::Document;
+use crate::document::{Document, Origin};
 use crate::error::ProjectError;
 use crate::folder::{history, storage};
 use crate::interpretation::assembly;
@@ -329,7 +329,7 @@ pub fn kept(root: &Path, document: &Document) -> Result<Proposals, ProjectError>
     let entry = document.fault_proposals.as_ref().ok_or(ProjectError::NoProposals)?;
     let kept = read(root, &entry.key).ok_or(ProjectError::NoProposals)?;
     // Accepting one proposal makes the sheets again; the other proposals were made from the same picks.
-    let accepted = document.faults.iter().any(|fault| fault.source.path == Path::new("proposal"));
+    let accepted = document.faults.iter().any(|fault| matches!(fault.origin, Origin::Proposed { .. }));
     if !accepted && kept.horizons != hashes(document) {
         return Err(ProjectError::OutdatedProposals);
     }

@@ -4,7 +4,7 @@
 //! nothing.
 
 use crate::content;
-use crate::document::{Document, HorizonEntry, VolumeEntry};
+use crate::document::{Document, HorizonEntry, Origin, VolumeEntry};
 use crate::error::ProjectError;
 use crate::interpretation::assembly;
 use crate::interpretation::candidates::{Candidates, amplitudes};
@@ -19,9 +19,6 @@ use system::memory;
 
 /// What geologic time depends on: path, hash of its volume, key of the extraction, faults.
 type Key = (PathBuf, String, String, Vec<String>);
-
-/// What a volume of geologic time says that it holds.
-pub(crate) const QUANTITY: &str = "geologic time";
 
 static HELD: WeakCache<Key, Times> = WeakCache::nothing();
 
@@ -51,13 +48,13 @@ impl Times {
     /// # Errors
     /// [`ProjectError::NoTime`], there are no candidates, data are damaged, or the user cancelled.
     pub fn load(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<Self>, ProjectError> {
-        let entry = time_volume(root, document)?;
+        let entry = time_volume(document)?;
         let candidates = document.extraction.as_ref().map_or_else(String::new, |entry| entry.key.clone());
         let faults = document.faults.iter().map(|entry| format!("{} {}", entry.name, entry.shape())).collect();
         HELD.get_or_make((root.join(&entry.file), entry.hash.clone(), candidates, faults), || {
             memory::check("geologic time and all reflections", &document.frame()?.size(), HELD_BYTES)?;
             let candidates = Candidates::load(root, document, progress)?;
-            let tau = content::read_volume(root, &entry, document.frame()?, progress)?;
+            let tau = content::read_volume(root, entry, document.frame()?, progress)?;
             let blocks = assembly::blocks(root, document, progress)?;
             let cuts = Cut::of_network(&blocks, tau.size());
             let reflections = Reflections::new(&candidates.forest.surfaces, &cuts);
@@ -152,8 +149,7 @@ impl Obeyed {
 
 /// Whether a horizon tells more than geologic time itself did: not a level of it, and no boundary of an intrusion.
 fn is_evidence(entry: &HorizonEntry) -> bool {
-    let is_level = entry.seeds.is_empty() && entry.source.reading.starts_with("geologic time");
-    !is_level && !entry.contact.is_intrusive()
+    !matches!(entry.origin, Origin::Level { .. }) && !entry.contact.is_intrusive()
 }
 
 /// The tops of a well inside the survey, from the top down.
@@ -182,20 +178,9 @@ fn same_names(tops: &[WellTop]) -> Vec<[Place; 2]> {
     tops.iter().enumerate().filter_map(|(n, top)| Some([top.place, next(n, top)?.place])).collect()
 }
 
-/// Whether a project has a volume of geologic time, by its record alone.
-pub fn has_time(document: &Document) -> bool {
-    document.volumes.iter().any(|entry| entry.source.reading.starts_with(QUANTITY))
-}
-
 /// The newest volume of geologic time.
-pub(crate) fn time_volume(root: &Path, document: &Document) -> Result<VolumeEntry, ProjectError> {
-    for entry in document.volumes.iter().rev().filter(|entry| entry.geometry.is_none()) {
-        let stored = content::open_volume(root, entry, document.frame()?)?;
-        if stored.info().quantity.as_deref() == Some(QUANTITY) {
-            return Ok(entry.clone());
-        }
-    }
-    Err(ProjectError::NoTime)
+pub(crate) fn time_volume(document: &Document) -> Result<&VolumeEntry, ProjectError> {
+    document.geologic_time().ok_or(ProjectError::NoTime)
 }
 
 /// Reads the newest geologic time and the amplitudes that it is of.
@@ -208,7 +193,7 @@ pub fn read_time(
     progress: &Progress,
 ) -> Result<(Volume<f32>, Volume<f32>), ProjectError> {
     let frame = document.frame()?;
-    let tau = content::read_volume(root, &time_volume(root, document)?, frame, progress)?;
+    let tau = content::read_volume(root, time_volume(document)?, frame, progress)?;
     Ok((tau, content::read_volume(root, amplitudes(document)?, frame, progress)?))
 }
 

@@ -311,6 +311,12 @@ class Project(Commands):
         return self._native.layers()
 
     @property
+    def origins(self) -> dict[str, dict[str, dict[str, Any]]]:
+        """Where everything came from, by kind (``"horizons"``) and name: ``kind`` and what belongs to it."""
+        found: dict[str, list[dict[str, Any]]] = json.loads(self._native.origins())
+        return {kind: {one["name"]: one["origin"] for one in all_of_it} for kind, all_of_it in found.items()}
+
+    @property
     def history(self) -> list[dict[str, Any]]:
         """The steps, oldest first: ``step``, ``summary``, ``in_effect``."""
         steps: list[dict[str, Any]] = json.loads(self._native.history())
@@ -405,7 +411,7 @@ class Project(Commands):
                 made, array, geometry=geometry, live=live, quantity=quantity, unit=unit, source="an array of Python",
                 memory=memory, progress=progress,
             )  # fmt: skip
-            return self.apply({"import": {"path": made, "name": name}}, progress=progress, _moved=True)
+            return self.apply({"import": {"path": made, "name": name, "origin": {"kind": "array"}}}, progress=progress, _moved=True)
 
     def add_horizon_array(self, name: str, depth: Any, **more: Any) -> Effect:
         """Adds a horizon from depths at the traces of the survey.
@@ -666,7 +672,7 @@ def import_volume(array: Any, path: Path, *, name: str = "seismic", **more: Any)
     with beside(path) as folder:
         made = os.path.join(folder, "volume.zarr")
         write_volume(made, array, source="an array of Python", **more)
-        command = json.dumps({"import": {"path": made, "name": name}})
+        command = json.dumps({"import": {"path": made, "name": name, "origin": {"kind": "array"}}})
         return Project(_native.Project.create(path, None, [command], None, True, more.get("progress")))
 
 

@@ -395,7 +395,9 @@ def attribute(
         graph, wanted = _attribute_graph(path, targets, kind, read.shape, settings, memory)
         _run(graph, wanted, scheduler, retries)
         first = sorted(named, key=lambda new: new != name)
-        return {new: project.apply({"import": {"path": folders[new], "name": new}}, _moved=True) for new in first}
+        origin = {"kind": "attribute", "attribute": kind, "of": source}
+        imports = {new: {"path": folders[new], "name": new, "origin": origin} for new in first}
+        return {new: project.apply({"import": stored}, _moved=True) for new, stored in imports.items()}
 
 
 def _attribute_graph(
@@ -706,7 +708,7 @@ def time(
         }
         wanted = [graph.pyramid(target, parts, columns, "-time"), *solved, *joined]
         _, *counts = _run(graph, wanted, scheduler, retries)
-        done = project.apply({"import": {"path": target, "name": name}}, _moved=True)
+        done = project.apply({"import": {"path": target, "name": name, "origin": {"kind": "geologic-time", "of": source}}}, _moved=True)
     found, known = counts[: len(ranges)], counts[len(ranges) :]
     return {**done, "slabs": len(ranges), "found": sum(found), "known": sum(known) / (nx * ny * nz)}
 

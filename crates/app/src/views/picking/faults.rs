@@ -78,7 +78,7 @@ impl FaultsPanel {
                     actions.push(Action::Apply(Box::new(Command::SetFaultColour(command))));
                 }
                 ui.add(Label::new(&entry.name).truncate())
-                    .on_hover_text(format!("{}: {}", entry.name, entry.source.reading));
+                    .on_hover_text(format!("{}: {}", entry.name, entry.origin));
             });
         }
         let is_looking = running.iter().any(|line| line.title == "Proposing faults");

@@ -266,10 +266,10 @@ pub fn swatch(ui: &mut Ui, entry: &HorizonEntry, index: usize, actions: &mut Vec
 fn picks(ui: &mut Ui, entry: &HorizonEntry, geometry: &SurveyGeometry, actions: &mut Vec<Action>) {
     let unit = geometry.vertical.unit.symbol();
     let Some(log) = &entry.assembly else {
-        if entry.seeds.is_empty() {
+        if entry.origin.seeds().is_empty() {
             ui.weak("Not picked: it was imported or computed.");
         }
-        for (index, &at) in entry.seeds.iter().enumerate() {
+        for (index, &at) in entry.origin.seeds().iter().enumerate() {
             let ([inline, crossline, z], number) = (at, index + 1);
             let text = format!("click {number}: {inline:.0}, {crossline:.0}, {z:.0} {unit}");
             let hint = format!("Go to click {number}: inline, crossline, {unit}");

@@ -17,7 +17,6 @@ use crate::work::RunningLine;
 use eframe::egui::{Align, Button, Layout, ScrollArea, Ui, vec2};
 use faults::FaultsPanel;
 use horizons::HorizonList;
-use project::interpretation::times::has_time;
 use render::FaceData;
 use std::sync::Arc;
 use survey::SurveyGeometry;
@@ -113,7 +112,7 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             ),
             (Tool::Track, "Track", "Click a reflection: it is followed from there, also without candidates (U)"),
         ] {
-            let can = tool != Tool::Time || has_time(&session.document);
+            let can = tool != Tool::Time || session.document.geologic_time().is_some();
             let label = Button::selectable(picking.tool == tool, name);
             let button = unless(ui, needs(can, "Needs geologic time: compute it under Candidates"), label);
             if button.on_hover_text(hint).clicked() {

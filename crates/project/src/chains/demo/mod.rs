@@ -148,6 +148,7 @@ fn build_project(path: &Path, files: &SynthSurvey, progress: &Progress) -> Resul
             options: SegyOptions::default(),
             memory_bytes: None,
             moved: false,
+            origin: None,
         })
     };
     project.apply(&import(&files.survey, "seismic"), progress)?;

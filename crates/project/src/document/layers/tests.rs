@@ -1,7 +1,7 @@
 //! Layers keep their styles, and horizons their colours, when horizons come and go.
 
 use super::*;
-use crate::document::Source;
+use crate::document::Origin;
 use survey::Contact;
 use ttf::LayerStyle;
 
@@ -11,10 +11,10 @@ fn horizon(name: &str) -> HorizonEntry {
         contact: Contact::default(),
         file: format!("horizons/{name}.zarr"),
         hash: String::new(),
-        source: Source { path: "x".into(), bytes: 0, reading: String::new() },
+        origin: Origin::Picked,
         assembly: None,
         colour: None,
-        seeds: Vec::new(),
+        refined: Vec::new(),
     }
 }
 

@@ -24,6 +24,7 @@ fn imported(folder: &Path) -> PathBuf {
         options: SegyOptions::default(),
         memory_bytes: None,
         moved: false,
+        origin: None,
     };
     new.project().apply(&Command::Import(import), &Progress::silent()).unwrap();
     new.publish().unwrap().root().to_owned()

@@ -34,6 +34,7 @@ fn project(folder: &Path) -> Project {
         options: Default::default(),
         memory_bytes: None,
         moved: false,
+        origin: None,
     };
     new.project().apply(&Command::Import(import), &quiet).unwrap();
     for horizon in made.horizons.iter().take(2) {
