@@ -106,8 +106,9 @@ speed: setup
 wheel test-python: export NEEDS_PYTHON = 1
 
 wheel: setup
-	[ -x target/python/builder/bin/pip ] || $(PYTHON) -m venv target/python/builder
-	target/python/builder/bin/pip wheel --disable-pip-version-check --no-deps --wheel-dir target/wheels .
+	[ -x target/python/maturin/bin/wheel ] || { $(PYTHON) -m venv target/python/maturin && target/python/maturin/bin/pip install --quiet 'maturin>=1.9,<2' 'wheel>=0.45'; }
+	target/python/maturin/bin/maturin build --release --locked --out target/wheels
+	target/python/maturin/bin/python crates/python/backend.py target/wheels/*.whl
 
 test-python: setup
 	crates/python/test.sh

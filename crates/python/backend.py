@@ -1,4 +1,7 @@
-"""The build backend of the Python package: maturin's, which also brings the types of `petroglyph.program` (stub.py)."""
+"""The build backend of the Python package: maturin's, which also brings the types of `petroglyph.program` (stub.py).
+
+    python backend.py WHEEL...     adds them to wheels that maturin itself has made
+"""
 
 import subprocess
 import sys
@@ -15,13 +18,17 @@ def _python(*words):
     subprocess.run([sys.executable, *words], check=True, stdout=sys.stderr)
 
 
-def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    name = maturin.build_wheel(wheel_directory, config_settings, metadata_directory)
+def add_types(wheel):
     with tempfile.TemporaryDirectory() as folder:
-        _python("-m", "wheel", "unpack", "--dest", folder, Path(wheel_directory, name))
+        _python("-m", "wheel", "unpack", "--dest", folder, wheel)
         (package,) = Path(folder).iterdir()
         _python(HERE / "stub.py", package)
-        _python("-m", "wheel", "pack", "--dest-dir", wheel_directory, package)
+        _python("-m", "wheel", "pack", "--dest-dir", wheel.parent, package)
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    name = maturin.build_wheel(wheel_directory, config_settings, metadata_directory)
+    add_types(Path(wheel_directory, name))
     return name
 
 
@@ -29,3 +36,8 @@ def build_editable(wheel_directory, config_settings=None, metadata_directory=Non
     name = maturin.build_editable(wheel_directory, config_settings, metadata_directory)
     _python(HERE / "stub.py", HERE / "python")
     return name
+
+
+if __name__ == "__main__":
+    for wheel in sys.argv[1:]:
+        add_types(Path(wheel))
