@@ -22,6 +22,7 @@ use project::styles;
 use render::ground::is_air;
 use render::{Faces, Scene};
 use std::collections::HashMap;
+use std::path::Path;
 use survey::block::BodyPlane;
 use survey::{Progress, VerticalUnit};
 use ttf::{Colour, LayerStyle, TextureLibrary, TtfTables};

@@ -87,8 +87,7 @@ impl Data {
                     return;
                 }
                 let row = named(ui, &entry.name, Some(is_raw), &format!("Remove volume {}", entry.name));
-                let hint =
-                    format!("{}: show as raw data; {} polarity; {}", entry.name, entry.polarity, entry.origin);
+                let hint = format!("{}: show as raw data; {} polarity; {}", entry.name, entry.polarity, entry.origin);
                 if row.name.on_hover_text(hint).clicked() {
                     self.volume = (!is_chosen).then(|| entry.name.clone());
                     if !is_raw

@@ -23,7 +23,7 @@ fn one_click_makes_a_horizon_and_a_second_corrects_it() {
     assert_eq!(picking(&harness).tool, Tool::Time);
     click_in(&mut harness, "Inline section", [20.0, 10.0], Modifiers::NONE);
     wait(&mut harness, "a horizon is there", |harness| document(harness).horizons.len() == 3);
-    let seeds = |harness: &Driven| document(harness).horizons.iter().map(|entry| entry.seeds.len()).max();
+    let seeds = |harness: &Driven| document(harness).horizons.iter().map(|entry| entry.origin.seeds().len()).max();
     assert_eq!(seeds(&harness), Some(1));
     click_in(&mut harness, "Inline section", [60.0, 10.0], Modifiers::NONE);
     wait(&mut harness, "it is corrected", |harness| seeds(harness) == Some(2));
@@ -32,7 +32,8 @@ fn one_click_makes_a_horizon_and_a_second_corrects_it() {
     wait(&mut harness, "both clicks are listed", |h| h.query_by_label_contains("click 2: ").is_some());
     harness.get_by_label_contains("click 1: ").click_accesskit();
     harness.run_steps(3);
-    let seeds = document(&harness).horizons.iter().map(|entry| entry.seeds.clone()).find(|seeds| !seeds.is_empty());
+    let seeds =
+        document(&harness).horizons.iter().map(|entry| entry.origin.seeds().to_vec()).find(|seeds| !seeds.is_empty());
     let geometry = document(&harness).geometry.unwrap();
     let [inline, crossline, _] = seeds.unwrap()[0];
     let at = geometry.voxel_from_lines(inline, crossline);

@@ -261,7 +261,8 @@ mod tests {
         files::segy::write(&path, &geometry, &volume, &WriteOptions::default(), &quiet).unwrap();
         let mut new = Project::create(&folder.path().join("north.petro"), None).unwrap();
         let (polarity, options) = (Polarity::default(), SegyOptions::default());
-        let import = ImportVolume { path, name: None, polarity, options, origin: None, memory_bytes: None, moved: false };
+        let import =
+            ImportVolume { path, name: None, polarity, options, origin: None, memory_bytes: None, moved: false };
         new.project().apply(&Command::Import(import), &quiet).unwrap();
         let settings = ExtractSettings::default();
         let extract = Extract { volume: None, settings, memory_bytes: None, just_stored: false };

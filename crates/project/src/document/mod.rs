@@ -332,7 +332,6 @@ impl Document {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::path::PathBuf;
     use survey::{Contact, VerticalUnit};
 
     fn horizon(name: &str) -> HorizonEntry {

@@ -129,7 +129,9 @@ impl Origin {
     /// The names of things of this kind in it.
     fn names_mut(&mut self, noun: Noun) -> Vec<&mut String> {
         match (noun, self) {
-            (Noun::Volume, Self::Attribute { of, .. } | Self::GeologicTime { of } | Self::TimeFraction { of }) => vec![of],
+            (Noun::Volume, Self::Attribute { of, .. } | Self::GeologicTime { of } | Self::TimeFraction { of }) => {
+                vec![of]
+            }
             (Noun::Horizon, Self::Share { between, .. }) => between.iter_mut().collect(),
             (Noun::Horizon, Self::Proposed { horizons }) => horizons.iter_mut().collect(),
             _ => Vec::new(),
@@ -199,7 +201,9 @@ impl Document {
         let is_chosen = |origin: &Origin| !matches!(origin, Origin::Level { chosen_by: Chooser::Program, .. });
         match self.horizons.is_empty() {
             true => Some(Uninterpreted::RawData),
-            false => (!self.horizons.iter().any(|entry| is_chosen(&entry.origin))).then_some(Uninterpreted::ComputedLevels),
+            false => {
+                (!self.horizons.iter().any(|entry| is_chosen(&entry.origin))).then_some(Uninterpreted::ComputedLevels)
+            }
         }
     }
 

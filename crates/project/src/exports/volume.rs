@@ -103,7 +103,10 @@ pub fn write(
         "uint16" => WriteFormat::Uint16,
         _ => WriteFormat::Ieee32,
     });
-    let from = entry.origin.file().map_or_else(|| entry.origin.to_string().to_uppercase(), |file| format!("FROM {}", file_name(file)));
+    let from = entry
+        .origin
+        .file()
+        .map_or_else(|| entry.origin.to_string().to_uppercase(), |file| format!("FROM {}", file_name(file)));
     let origin = format!("VOLUME {} OF {}, {from}", entry.name, file_name(project.root()));
     let options = WriteOptions { format, origin: Some(origin), ..WriteOptions::default() };
     let report = stream(&stored, &geometry, out, &options, progress)?;

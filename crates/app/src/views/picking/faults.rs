@@ -77,8 +77,7 @@ impl FaultsPanel {
                     let command = SetFaultColour { fault: entry.name.clone(), colour };
                     actions.push(Action::Apply(Box::new(Command::SetFaultColour(command))));
                 }
-                ui.add(Label::new(&entry.name).truncate())
-                    .on_hover_text(format!("{}: {}", entry.name, entry.origin));
+                ui.add(Label::new(&entry.name).truncate()).on_hover_text(format!("{}: {}", entry.name, entry.origin));
             });
         }
         let is_looking = running.iter().any(|line| line.title == "Proposing faults");
