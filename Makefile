@@ -17,6 +17,8 @@
 #   make extraction measures the quality of horizon candidates, for docs/extraction.md
 #   make time       measures geologic time, for docs/time.md
 #   make picks      counts the picks that horizons take, for docs/picks.md
+#   make house      measures how the code is divided, for docs/house.md
+#   make recipes    follows the recipes of ARCHITECTURE.md, "How to add", in a copy of the checkout
 #   make wheel      a wheel of the Python package, in target/wheels
 #   make test-python   pytest, mypy and the notebooks, in a virtual environment below target/ (PETROGLYPH_SKIP_PYTHON=1 skips it)
 #   make rebuilds   which crates a change of each crate compiles again
@@ -41,7 +43,7 @@ SIZES ?= 1280x800 2560x1440
 APPEARANCES ?= light dark
 PYTHON ?= python3
 
-.PHONY: demo gallery screenshots test check bench accuracy extraction picks time speed check-peers check-review viewer scenario attack fuzz fuzz-long setup build wheel test-python scale rebuilds
+.PHONY: demo gallery screenshots test check bench accuracy extraction picks time speed check-peers check-review viewer scenario attack fuzz fuzz-long setup build wheel test-python scale house recipes rebuilds
 
 build: setup
 	$(BUILD) --bin petroglyph
@@ -119,6 +121,12 @@ rebuilds:
 # In the environment that `make test-python` has made.
 scale:
 	target/python/venv/bin/python bench/scale.py
+
+house:
+	$(PYTHON) bench/house.py
+
+recipes: setup
+	$(PYTHON) tests/recipes.py
 
 scenario: build
 	tests/scenario.sh $(PETROGLYPH) out/scenario

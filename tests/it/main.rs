@@ -9,6 +9,7 @@ mod bombs;
 mod bricks;
 mod chain;
 mod check;
+#[cfg(unix)]
 mod command_lines;
 mod correlation;
 mod create;
