@@ -146,10 +146,11 @@ fn put(draft: &mut Draft, fault: &Fault, source: Source) -> Result<(), ProjectEr
     let before = old.map(|old| &draft.document.faults[old]);
     let (truncated_by, grown_m) = before.map_or((None, 0.0), |entry| (entry.truncated_by.clone(), entry.grown_m));
     let colour = before.and_then(|entry| entry.colour);
+    let id = before.map_or_else(Id::default, |entry| entry.id.clone());
     let (file, new) = draft.generation("faults", &fault.name, "json")?;
     store::write_fault(&new, fault)?;
     let (name, hash) = (fault.name.clone(), content::hash_fault(fault));
-    let entry = FaultEntry { name, truncated_by, grown_m, file, hash, source, colour };
+    let entry = FaultEntry { id, name, truncated_by, grown_m, file, hash, source, colour };
     match old {
         Some(old) => draft.document.faults[old] = entry,
         None => draft.document.faults.push(entry),

@@ -306,27 +306,6 @@ fn numbers(log: &Assembly) -> impl Iterator<Item = u32> {
     log.picks.iter().map(|pick| pick.id).chain(log.drawn.iter().map(|drawn| drawn.id))
 }
 
-/// Gives a horizon another colour.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SetHorizonColour {
-    /// The horizon.
-    pub horizon: String,
-    /// Its colour.
-    pub colour: Colour,
-}
-
-impl SetHorizonColour {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
-        let index = draft.document.position(Noun::Horizon, &self.horizon)?;
-        let entry = &mut draft.document.horizons[index];
-        match &mut entry.assembly {
-            Some(log) => log.colour = self.colour,
-            None => entry.colour = Some(self.colour),
-        }
-        Ok(Effect::Changed { summary: format!("colour of {}", self.horizon) })
-    }
-}
-
 /// A number that no pick has yet, and nothing that was drawn.
 pub(super) fn next_id(draft: &Draft) -> u32 {
     let logs = draft.document.horizons.iter().filter_map(|entry| entry.assembly.as_ref());

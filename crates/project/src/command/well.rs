@@ -24,31 +24,6 @@ pub struct AddWell {
     pub options: WellOptions,
 }
 
-/// Gives a well another name.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RenameWell {
-    /// Its name.
-    pub from: String,
-    /// Its new name.
-    pub to: String,
-}
-
-/// Gives a well another colour.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct SetWellColour {
-    /// Name of the well.
-    pub well: String,
-    /// Colour of its path, in the block and on sections.
-    pub colour: Colour,
-}
-
-/// Removes a well.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RemoveWell {
-    /// Its name.
-    pub name: String,
-}
-
 /// A top of a well relative to the survey.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PlacedTop {
@@ -242,38 +217,7 @@ impl AddWell {
             done.curves.len()
         );
         let source = super::source_of(&self.files.deviation, reading)?;
-        draft.document.wells.push(WellEntry { name: self.name.clone(), file, hash, colour: None, source });
+        draft.document.wells.push(WellEntry { id: Id::default(), name: self.name.clone(), file, hash, colour: None, source });
         Ok(Effect::WellAdded(Box::new(done)))
-    }
-}
-
-impl SetWellColour {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
-        let index = draft.document.position(Noun::Well, &self.well)?;
-        draft.document.wells[index].colour = Some(self.colour);
-        Ok(Effect::Changed { summary: format!("colour of well {}", self.well) })
-    }
-}
-
-impl RenameWell {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
-        let index = draft.document.position(Noun::Well, &self.from)?;
-        // The well's own name in another case is not a duplicate.
-        if self.from.to_lowercase() != self.to.to_lowercase() {
-            draft.document.check_new_name(Noun::Well, &self.to)?;
-        }
-        draft.document.wells[index].name.clone_from(&self.to);
-        // Where a scene hides it, it hides it under its new name.
-        let hidden = draft.document.scenes.iter_mut().flat_map(|entry| &mut entry.scene.hidden_wells);
-        hidden.filter(|name| **name == self.from).for_each(|name| name.clone_from(&self.to));
-        Ok(Effect::Changed { summary: format!("well {} is now {}", self.from, self.to) })
-    }
-}
-
-impl RemoveWell {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
-        let index = draft.document.position(Noun::Well, &self.name)?;
-        draft.document.wells.remove(index);
-        Ok(Effect::Changed { summary: format!("removed well {}", self.name) })
     }
 }

@@ -34,6 +34,7 @@ pub(crate) fn entry(path: &Path, facts: Facts, progress: &Progress) -> Result<Vo
     let (_, ranges) = stored.brick_ranges(0)?;
     let lowest = ranges.iter().map(|range| range[0]).filter(|low| !low.is_nan()).fold(f32::INFINITY, f32::min);
     Ok(VolumeEntry {
+        id: Id::default(),
         hash: content::hash_stored(&stored)?,
         clip: clip_of(&stored, progress)?,
         lowest: if lowest.is_finite() { lowest } else { 0.0 },
