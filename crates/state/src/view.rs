@@ -4,9 +4,9 @@ pub use figure::SectionKind;
 
 use super::picking::Picking;
 use files::SurfaceKind;
-use project::pictures::scene;
 use project::document::{Document, Renamed};
 use project::error::Noun;
+use project::pictures::scene;
 use render::{Scene, Unpicked, VoxelBox};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;

@@ -16,10 +16,10 @@ use eframe::egui::{
     Sense, Stroke, StrokeKind, TextEdit, TextureHandle, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
-use project::pictures::PickedShare;
 use project::command::{AddNote, Command};
 use project::document::NoteEntry;
 use project::error::Noun;
+use project::pictures::PickedShare;
 use review::preview::{Preview, Shown, draw};
 use review::{DENSITIES, MOST_SECTIONS, glb, html};
 use std::sync::Arc;

@@ -2,7 +2,7 @@
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
-use crate::document::{FaultEntry, FaultSticks, Source};
+use crate::document::{FaultEntry, FaultSticks, Id, Source};
 use crate::folder::Draft;
 use crate::interpretation::assembly::rebuild_all;
 use crate::interpretation::proposals;

@@ -5,7 +5,7 @@
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
-use crate::document::{HorizonEntry, Source};
+use crate::document::{HorizonEntry, Id, Source};
 use crate::folder::Draft;
 use crate::interpretation::order;
 use files::{Gridding, ImportOptions, ImportReport};

@@ -2,7 +2,7 @@
 
 use super::{Effect, Noun, ProjectError, import_stored};
 use crate::content::volume_facts::{self, Facts};
-use crate::document::{Polarity, rename_volume_in};
+use crate::document::Polarity;
 use crate::folder::{Draft, IMPORTING};
 use crate::memory_budget;
 use crate::placement;

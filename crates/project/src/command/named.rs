@@ -3,7 +3,6 @@
 use super::{Effect, Noun, ProjectError, SetLayer};
 use crate::folder::Draft;
 use crate::interpretation::assembly::rebuild_all;
-use crate::styles;
 use serde::{Deserialize, Serialize};
 use survey::Progress;
 use ttf::Colour;

@@ -1,7 +1,7 @@
 //! Picking: a place selects a leaf, the climb a node of its tree, and the node becomes part of a horizon. A pick can be
 //! moved later.
 
-use super::{Effect, Noun, ProjectError};
+use super::{Effect, ProjectError};
 use crate::document::{Assembly, PickEntry};
 use crate::folder::Draft;
 use crate::interpretation::assembly::{self, AssemblyReport, ReportedOverlap, rebuild};

@@ -19,7 +19,11 @@ impl AddScene {
     pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
         draft.document.check_new_name(Noun::Scene, &self.name)?;
         self.scene.validate(draft.document.frame()?)?;
-        draft.document.scenes.push(SceneEntry { id: Id::default(), name: self.name.clone(), scene: self.scene.clone() });
+        draft.document.scenes.push(SceneEntry {
+            id: Id::default(),
+            name: self.name.clone(),
+            scene: self.scene.clone(),
+        });
         Ok(Effect::Changed { summary: format!("scene {}", self.name) })
     }
 }

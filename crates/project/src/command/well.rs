@@ -2,7 +2,7 @@
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
-use crate::document::{Document, WellEntry};
+use crate::document::{Document, Id, WellEntry};
 use crate::folder::Draft;
 use files::well::{self, WellFiles, WellOptions, WellReport};
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,6 @@ use std::fmt;
 use std::path::Path;
 use survey::well::{LogSet, TopPlace, WellPlacement, is_same_surface};
 use survey::{Horizon, Progress, Well};
-use ttf::Colour;
 
 /// Reads a well into the project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -217,7 +216,14 @@ impl AddWell {
             done.curves.len()
         );
         let source = super::source_of(&self.files.deviation, reading)?;
-        draft.document.wells.push(WellEntry { id: Id::default(), name: self.name.clone(), file, hash, colour: None, source });
+        draft.document.wells.push(WellEntry {
+            id: Id::default(),
+            name: self.name.clone(),
+            file,
+            hash,
+            colour: None,
+            source,
+        });
         Ok(Effect::WellAdded(Box::new(done)))
     }
 }

@@ -1,7 +1,7 @@
 //! The facts that a project keeps about a stored volume, found by reading as little of it as necessary.
 
 use crate::content;
-use crate::document::{Polarity, Source, VolumeEntry};
+use crate::document::{Id, Polarity, Source, VolumeEntry};
 use crate::error::ProjectError;
 use rayon::prelude::*;
 use std::path::Path;

@@ -23,11 +23,7 @@ pub fn blocks_key(document: &Document) -> String {
         geometry: &'a Option<survey::SurveyGeometry>,
         faults: Vec<String>,
     }
-    key_of(&Inputs {
-        revision: revision::MODEL,
-        geometry: &document.geometry,
-        faults: document.fault_shapes(),
-    })
+    key_of(&Inputs { revision: revision::MODEL, geometry: &document.geometry, faults: document.fault_shapes() })
 }
 
 /// The fault blocks stored under `key`, if there is an intact file; its faults have no names ([`FaultNetwork::named`]).

@@ -11,7 +11,9 @@
 //! Whoever changes which things there are, or their names, does so through [`Document::by_ids`].
 
 use super::Document;
-use super::references::{HORIZON, Holder, Kind, LAYER, Place, TEXTURE, VOLUME, Visitor, WELL, visit_scene};
+use super::references::{
+    HORIZON, LAYER, Reference, ReferenceHolder, ReferenceKind, ReferenceVisitor, TEXTURE, VOLUME, WELL, visit_scene,
+};
 use crate::error::Noun;
 use render::Scene;
 use serde::{Deserialize, Serialize};
@@ -36,7 +38,7 @@ impl Id {
 
 /// A thing of the project.
 #[derive(Debug, Clone)]
-struct Named {
+struct NamedThing {
     noun: Noun,
     id: String,
     name: String,
@@ -44,22 +46,22 @@ struct Named {
 
 /// All things that can be referred to.
 #[derive(Debug, Clone, Default)]
-struct Index(Vec<Named>);
+struct NameIndex(Vec<NamedThing>);
 
 /// What a reference is translated from; it becomes the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum From {
+enum CalledBy {
     Id,
     Name,
 }
 
-impl Index {
+impl NameIndex {
     /// What the thing is called the other way that `text` refers to.
-    fn other(&self, from: From, nouns: &[Noun], text: &str) -> Option<&str> {
+    fn other(&self, from: CalledBy, nouns: &[Noun], text: &str) -> Option<&str> {
         nouns.iter().find_map(|noun| {
             let mut things = self.0.iter().filter(|named| named.noun == *noun).map(|named| match from {
-                From::Id => (&named.id, &named.name),
-                From::Name => (&named.name, &named.id),
+                CalledBy::Id => (&named.id, &named.name),
+                CalledBy::Name => (&named.name, &named.id),
             });
             things.find(|(said, _)| *said == text).map(|(_, other)| other.as_str())
         })
@@ -67,7 +69,7 @@ impl Index {
 
     /// The words of a label with the things in them called the other way: a name alone; a well and its top; or what a
     /// panel is called, which may have horizons in it, and a label on it.
-    fn words(&self, from: From, nouns: &[Noun], words: &str) -> Option<String> {
+    fn words(&self, from: CalledBy, nouns: &[Noun], words: &str) -> Option<String> {
         if let Some(other) = self.other(from, nouns, words) {
             return Some(other.to_owned());
         }
@@ -84,7 +86,7 @@ impl Index {
     }
 
     /// A title with the horizons in it called the other way: the longest that stand between two blanks.
-    fn between_blanks(&self, from: From, title: &str) -> String {
+    fn between_blanks(&self, from: CalledBy, title: &str) -> String {
         let Some(start) = title.find(' ').map(|blank| blank + 1) else { return title.to_owned() };
         let (before, rest) = title.split_at(start);
         let found = rest.rmatch_indices(' ').find_map(|(end, _)| Some((end, self.other(from, HORIZON, &rest[..end])?)));
@@ -94,10 +96,10 @@ impl Index {
         }
     }
 
-    fn translated(&self, from: From, place: Place<'_>, text: &str) -> Option<String> {
+    fn translated(&self, from: CalledBy, place: Reference<'_>, text: &str) -> Option<String> {
         match place.kind {
-            Kind::Words => self.words(from, place.nouns, text),
-            Kind::Name | Kind::Record => self.other(from, place.nouns, text).map(str::to_owned),
+            ReferenceKind::Words => self.words(from, place.nouns, text),
+            ReferenceKind::Name | ReferenceKind::Record => self.other(from, place.nouns, text).map(str::to_owned),
         }
     }
 }
@@ -124,7 +126,7 @@ impl Document {
     }
 
     /// All things with their ids. An entry gets one if it has none, or one that an entry before it has.
-    fn index(&mut self) -> Index {
+    fn index(&mut self) -> NameIndex {
         let mut all = Vec::new();
         let mut last = self.last_id;
         for noun in Noun::ALL {
@@ -134,17 +136,17 @@ impl Document {
                     last += 1;
                     *id = Id(format!("{noun}-{last}"));
                 }
-                all.push(Named { noun, id: id.0.clone(), name: name.clone() });
+                all.push(NamedThing { noun, id: id.0.clone(), name: name.clone() });
             }
         }
         self.last_id = last;
         let bases = self.horizons.iter().map(|entry| format!("layer-above-{}", entry.id.0));
         let layers = bases.chain(["layer-lowest".to_owned()]).zip(self.layers());
-        all.extend(layers.map(|(id, name)| Named { noun: Noun::Layer, id, name }));
-        Index(all)
+        all.extend(layers.map(|(id, name)| NamedThing { noun: Noun::Layer, id, name }));
+        NameIndex(all)
     }
 
-    fn translate(&mut self, from: From) {
+    fn translate(&mut self, from: CalledBy) {
         let index = self.index();
         self.visit_references(&mut |place, text| {
             if let Some(other) = index.translated(from, place, text) {
@@ -157,30 +159,31 @@ impl Document {
     /// The same state with ids in place of names: what `project.toml` says.
     pub(super) fn with_ids(&self) -> Self {
         let mut document = self.clone();
-        document.translate(From::Name);
+        document.translate(CalledBy::Name);
         document
     }
 
     /// Resolves the ids that `project.toml` says.
     pub(super) fn resolve_ids(&mut self) {
-        self.translate(From::Id);
+        self.translate(CalledBy::Id);
     }
 
     /// Makes a change after which other things exist, or have other names: references follow what they mean. Those to
     /// what is gone are dropped with what hangs on them; returns what held them.
     pub fn by_ids<T>(&mut self, change: impl FnOnce(&mut Self) -> T) -> (T, Vec<String>) {
         let before = self.index();
-        self.translate(From::Name);
+        self.translate(CalledBy::Name);
         let done = change(self);
         let after = self.index();
         let mut lost: Vec<String> = Vec::new();
         self.visit_references(&mut |place, text| {
-            if let Some(name) = after.translated(From::Id, place, text) {
+            if let Some(name) = after.translated(CalledBy::Id, place, text) {
                 *text = name;
                 return true;
             }
-            let is_gone = place.kind != Kind::Record && before.other(From::Id, place.nouns, text).is_some();
-            if let Some(name) = before.translated(From::Id, place, text) {
+            let is_gone =
+                place.kind != ReferenceKind::Record && before.other(CalledBy::Id, place.nouns, text).is_some();
+            if let Some(name) = before.translated(CalledBy::Id, place, text) {
                 *text = name;
             }
             if is_gone && let Some(holder) = before.said(place.holder).filter(|holder| !lost.contains(holder)) {
@@ -198,10 +201,10 @@ impl Document {
         let index = document.index();
         let mut found = Vec::new();
         document.visit_references(&mut |place, name| {
-            let is_known = place.kind != Kind::Name
-                || index.other(From::Name, place.nouns, name).is_some()
+            let is_known = place.kind != ReferenceKind::Name
+                || index.other(CalledBy::Name, place.nouns, name).is_some()
                 // One stick alone makes no fault.
-                || place.holder == Holder::Sticks
+                || place.holder == ReferenceHolder::Sticks
                 || (place.nouns == TEXTURE && is_pattern(name));
             if !is_known {
                 let nouns: Vec<String> = place.nouns.iter().map(ToString::to_string).collect();
@@ -214,15 +217,15 @@ impl Document {
 
     /// Puts the id of a thing of this kind in place of its name.
     pub(crate) fn ids_of_names(&self) -> impl Fn(Noun, &mut String) + use<> {
-        self.called(From::Name)
+        self.called(CalledBy::Name)
     }
 
     /// Puts the name of a thing of this kind in place of its id.
     pub(crate) fn names_of_ids(&self) -> impl Fn(Noun, &mut String) + use<> {
-        self.called(From::Id)
+        self.called(CalledBy::Id)
     }
 
-    fn called(&self, from: From) -> impl Fn(Noun, &mut String) + use<> {
+    fn called(&self, from: CalledBy) -> impl Fn(Noun, &mut String) + use<> {
         let index = self.clone().index();
         move |noun, text| {
             if let Some(other) = index.other(from, &[noun], text) {
@@ -238,14 +241,14 @@ impl Document {
     }
 }
 
-impl Index {
+impl NameIndex {
     /// A holder in words, in which ids are called by their names. The sticks of a fault go with it, which is no loss.
-    fn said(&self, holder: Holder<'_>) -> Option<String> {
-        let name = |nouns, text| self.other(From::Id, nouns, text).unwrap_or(text);
+    fn said(&self, holder: ReferenceHolder<'_>) -> Option<String> {
+        let name = |nouns, text| self.other(CalledBy::Id, nouns, text).unwrap_or(text);
         match holder {
-            Holder::Sticks => None,
-            Holder::Layer(layer) => Some(Holder::Layer(name(LAYER, layer)).to_string()),
-            Holder::Scalars(volume) => Some(Holder::Scalars(name(VOLUME, volume)).to_string()),
+            ReferenceHolder::Sticks => None,
+            ReferenceHolder::Layer(layer) => Some(ReferenceHolder::Layer(name(LAYER, layer)).to_string()),
+            ReferenceHolder::Scalars(volume) => Some(ReferenceHolder::Scalars(name(VOLUME, volume)).to_string()),
             holder => Some(holder.to_string()),
         }
     }
@@ -254,28 +257,31 @@ impl Index {
 /// What things are called in two states.
 #[derive(Debug, Clone, Default)]
 pub struct Renamed {
-    before: Index,
-    after: Index,
+    before: NameIndex,
+    after: NameIndex,
 }
 
 impl Renamed {
     /// Lets a name follow the thing that has it in the earlier state.
     pub fn follow(&self, noun: Noun, name: &mut String) {
-        let id = self.before.other(From::Name, &[noun], name);
-        if let Some(now) = id.and_then(|id| self.after.other(From::Id, &[noun], id)) {
+        let id = self.before.other(CalledBy::Name, &[noun], name);
+        if let Some(now) = id.and_then(|id| self.after.other(CalledBy::Id, &[noun], id)) {
             now.clone_into(name);
         }
     }
 
     /// Lets a scene follow.
     pub fn follow_in(&self, scene: &mut Scene) {
-        let mut visit = |place: Place<'_>, text: &mut String| {
-            let ids = self.before.translated(From::Name, place, text);
-            if let Some(now) = ids.and_then(|ids| self.after.translated(From::Id, place, &ids)) {
+        let mut visit = |place: Reference<'_>, text: &mut String| {
+            let ids = self.before.translated(CalledBy::Name, place, text);
+            if let Some(now) = ids.and_then(|ids| self.after.translated(CalledBy::Id, place, &ids)) {
                 *text = now;
             }
             true
         };
-        visit_scene(scene, &mut Visitor { visit: &mut visit, holder: Holder::Style });
+        visit_scene(scene, &mut ReferenceVisitor { visit: &mut visit, holder: ReferenceHolder::Style });
     }
 }
+
+#[cfg(test)]
+mod tests;

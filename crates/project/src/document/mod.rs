@@ -21,7 +21,7 @@ pub use entries::{
 pub use ids::{Id, Renamed};
 use param::KDefinition;
 pub use picks::{Assembly, Drawn, DrawnEntry, FaultSticks, PickEntry};
-pub use references::{Holder, Kind, Place, Visit};
+pub use references::{Reference, ReferenceHolder, ReferenceKind, VisitReference};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -12,7 +12,7 @@ use ttf::LayerTtf;
 
 /// What holds a reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Holder<'a> {
+pub enum ReferenceHolder<'a> {
     /// The style of the whole project.
     Style,
     /// The style of a layer.
@@ -33,7 +33,7 @@ pub enum Holder<'a> {
     Figure(&'a str),
 }
 
-impl fmt::Display for Holder<'_> {
+impl fmt::Display for ReferenceHolder<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Style => f.write_str("the style"),
@@ -51,10 +51,10 @@ impl fmt::Display for Holder<'_> {
 
 /// How a place refers to something.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// By its name; if the thing goes, so does what hangs on the reference.
+pub enum ReferenceKind {
+    /// CalledBy its name; if the thing goes, so does what hangs on the reference.
     Name,
-    /// By its name, as the record of what was done: it outlives the thing.
+    /// CalledBy its name, as the record of what was done: it outlives the thing.
     Record,
     /// In words that may name something else, or nothing: those of a label, or of a well's top.
     Words,
@@ -62,17 +62,17 @@ pub enum Kind {
 
 /// A place that refers to something.
 #[derive(Debug, Clone, Copy)]
-pub struct Place<'a> {
+pub struct Reference<'a> {
     /// What it can refer to; of two things of one name it means that of the first kind.
     pub nouns: &'static [Noun],
     /// How.
-    pub kind: Kind,
+    pub kind: ReferenceKind,
     /// What it is part of.
-    pub holder: Holder<'a>,
+    pub holder: ReferenceHolder<'a>,
 }
 
 /// Looks at a reference and may change it; `false` drops it with what hangs on it.
-pub type Visit<'v> = dyn FnMut(Place<'_>, &mut String) -> bool + 'v;
+pub type VisitReference<'v> = dyn FnMut(Reference<'_>, &mut String) -> bool + 'v;
 
 pub(super) const VOLUME: &[Noun] = &[Noun::Volume];
 pub(super) const HORIZON: &[Noun] = &[Noun::Horizon];
@@ -85,18 +85,18 @@ const HIDDEN: &[Noun] = &[Noun::Horizon, Noun::Fault, Noun::Well];
 const LABELLED: &[Noun] = &[Noun::Layer, Noun::Fault, Noun::Well, Noun::Horizon];
 
 /// The visitor together with what holds the references that it is shown.
-pub(super) struct Visitor<'v, 'f, 'h> {
-    pub visit: &'v mut Visit<'f>,
-    pub holder: Holder<'h>,
+pub(super) struct ReferenceVisitor<'v, 'f, 'h> {
+    pub visit: &'v mut VisitReference<'f>,
+    pub holder: ReferenceHolder<'h>,
 }
 
-impl Visitor<'_, '_, '_> {
+impl ReferenceVisitor<'_, '_, '_> {
     fn name(&mut self, nouns: &'static [Noun], name: &mut String) -> bool {
-        (self.visit)(Place { nouns, kind: Kind::Name, holder: self.holder }, name)
+        (self.visit)(Reference { nouns, kind: ReferenceKind::Name, holder: self.holder }, name)
     }
 
     fn words(&mut self, nouns: &'static [Noun], words: &mut String) -> bool {
-        (self.visit)(Place { nouns, kind: Kind::Words, holder: self.holder }, words)
+        (self.visit)(Reference { nouns, kind: ReferenceKind::Words, holder: self.holder }, words)
     }
 
     fn labels(&mut self, labels: &mut Vec<LabelChange>) {
@@ -113,7 +113,7 @@ fn keep<T>(slot: &mut Option<T>, stays: impl FnOnce(&mut T) -> bool) {
 
 impl Document {
     /// Shows `visit` every reference of the project, in a fixed order.
-    pub fn visit_references(&mut self, visit: &mut Visit<'_>) {
+    pub fn visit_references(&mut self, visit: &mut VisitReference<'_>) {
         let Self {
             version: _,
             step: _,
@@ -138,56 +138,61 @@ impl Document {
         } = self;
         if let Some(ExtractionEntry { key: _, volume }) = extraction {
             // It stays whatever the answer is.
-            visit(Place { nouns: VOLUME, kind: Kind::Record, holder: Holder::Extraction }, volume);
+            visit(
+                Reference { nouns: VOLUME, kind: ReferenceKind::Record, holder: ReferenceHolder::Extraction },
+                volume,
+            );
         }
         for fault in faults {
-            let mut visitor = Visitor { visit, holder: Holder::Fault(&fault.name) };
+            let mut visitor = ReferenceVisitor { visit, holder: ReferenceHolder::Fault(&fault.name) };
             keep(&mut fault.truncated_by, |by| visitor.name(FAULT, by));
         }
-        sticks.retain_mut(|drawn| Visitor { visit, holder: Holder::Sticks }.name(FAULT, &mut drawn.fault));
+        sticks.retain_mut(|drawn| {
+            ReferenceVisitor { visit, holder: ReferenceHolder::Sticks }.name(FAULT, &mut drawn.fault)
+        });
         visit_style(style, visit);
         *k = std::mem::take(k)
             .into_iter()
             .filter_map(|(mut layer, definition)| {
                 let holder = layer.clone();
-                let stays = Visitor { visit, holder: Holder::Layer(&holder) }.name(LAYER, &mut layer);
+                let stays = ReferenceVisitor { visit, holder: ReferenceHolder::Layer(&holder) }.name(LAYER, &mut layer);
                 stays.then_some((layer, definition))
             })
             .collect();
         for entry in scenes {
-            visit_scene(&mut entry.scene, &mut Visitor { visit, holder: Holder::Scene(&entry.name) });
+            visit_scene(&mut entry.scene, &mut ReferenceVisitor { visit, holder: ReferenceHolder::Scene(&entry.name) });
         }
         for (index, note) in notes.iter_mut().enumerate() {
-            let mut visitor = Visitor { visit, holder: Holder::Note(index + 1) };
+            let mut visitor = ReferenceVisitor { visit, holder: ReferenceHolder::Note(index + 1) };
             keep(&mut note.scene, |scene| visitor.name(SCENE, scene));
         }
         figures.retain_mut(|entry| {
             let FigureEntry { file, scene, figure } = entry;
-            let mut visitor = Visitor { visit, holder: Holder::Figure(file) };
+            let mut visitor = ReferenceVisitor { visit, holder: ReferenceHolder::Figure(file) };
             keep(scene, |scene| visitor.name(SCENE, scene));
             visit_figure(figure, &mut visitor)
         });
     }
 }
 
-fn visit_style(style: &mut Style, visit: &mut Visit<'_>) {
+fn visit_style(style: &mut Style, visit: &mut VisitReference<'_>) {
     let Style { raw, layers: LayerTtf { styles }, scalars } = style;
-    keep(raw, |raw| Visitor { visit, holder: Holder::Style }.name(VOLUME, &mut raw.volume));
+    keep(raw, |raw| ReferenceVisitor { visit, holder: ReferenceHolder::Style }.name(VOLUME, &mut raw.volume));
     styles.retain_mut(|style| {
         let holder = style.layer.clone();
-        let mut visitor = Visitor { visit, holder: Holder::Layer(&holder) };
+        let mut visitor = ReferenceVisitor { visit, holder: ReferenceHolder::Layer(&holder) };
         style.intervals.retain_mut(|interval| visitor.name(TEXTURE, &mut interval.texture));
         visitor.name(LAYER, &mut style.layer)
     });
     scalars.retain_mut(|scalar| {
         let holder = scalar.volume.clone();
-        let mut visitor = Visitor { visit, holder: Holder::Scalars(&holder) };
+        let mut visitor = ReferenceVisitor { visit, holder: ReferenceHolder::Scalars(&holder) };
         scalar.intervals.retain_mut(|interval| visitor.name(TEXTURE, &mut interval.texture));
         visitor.name(VOLUME, &mut scalar.volume)
     });
 }
 
-pub(super) fn visit_scene(scene: &mut Scene, visitor: &mut Visitor<'_, '_, '_>) {
+pub(super) fn visit_scene(scene: &mut Scene, visitor: &mut ReferenceVisitor<'_, '_, '_>) {
     let Scene {
         size_px: _,
         samples: _,
@@ -244,7 +249,7 @@ pub(super) fn visit_scene(scene: &mut Scene, visitor: &mut Visitor<'_, '_, '_>) 
 }
 
 /// Whether the figure still shows something, if it did.
-fn visit_figure(figure: &mut Figure, visitor: &mut Visitor<'_, '_, '_>) -> bool {
+fn visit_figure(figure: &mut Figure, visitor: &mut ReferenceVisitor<'_, '_, '_>) -> bool {
     let Figure {
         size: _,
         dpi: _,
@@ -272,8 +277,8 @@ fn visit_figure(figure: &mut Figure, visitor: &mut Visitor<'_, '_, '_>) -> bool 
         }
         Part::Section(_) | Part::Fence(_) => true,
         Part::Map(MapPart { horizon, thickness_to }) => {
-            let [from, to] = [Some(horizon), thickness_to.as_mut()]
-                .map(|name| name.is_none_or(|name| visitor.name(HORIZON, name)));
+            let [from, to] =
+                [Some(horizon), thickness_to.as_mut()].map(|name| name.is_none_or(|name| visitor.name(HORIZON, name)));
             from && to
         }
         Part::Correlation(CorrelationPart { wells, datum, logs: _, range: _ }) => {

@@ -4,7 +4,7 @@ use super::order;
 use crate::content;
 use crate::derived;
 use crate::document::Document;
-use crate::document::{Assembly, HorizonEntry, Source, VolumeEntry};
+use crate::document::{Assembly, HorizonEntry, Id, Source, VolumeEntry};
 use crate::error::{Noun, ProjectError};
 use crate::folder::Draft;
 use crate::interpretation::candidates::Candidates;

@@ -8,7 +8,7 @@
 use crate::content;
 use crate::derived::{Scratch, folder, key_of, revision};
 use crate::document::Document;
-use crate::error::ProjectError;
+use crate::error::{Noun, ProjectError};
 use crate::folder::{history, storage};
 use crate::interpretation::assembly;
 use crate::interpretation::candidates::{Candidates, amplitudes};

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::command::SetVelocity;
+use crate::error::Noun;
 use survey::VerticalUnit;
 
 fn geometry() -> SurveyGeometry {

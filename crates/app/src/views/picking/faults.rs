@@ -1,8 +1,8 @@
 //! The panel of faults: drawn from sticks, proposed, accepted.
 
 use super::{go, palette};
-use crate::views::named::colour;
 use crate::state::{Action, PickingStep, Session, Tool};
+use crate::views::named::colour;
 use crate::widgets::obstacle::{needs, unless};
 use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Button, Label, TextEdit, Ui};

@@ -2,18 +2,15 @@
 
 use super::go;
 use super::palette::palette;
-use crate::views::named::{NameField, colour, remove};
 use crate::state::{Action, PickingStep, Session};
+use crate::views::named::{NameField, colour, remove};
 use crate::widgets::obstacle::{needs, unless};
 use crate::work::{Interpreted, InterpretedHorizon};
 use eframe::egui::{Button, CollapsingHeader, DragValue, RichText, TextEdit, Ui};
 use interp::assembly::Operation;
 use interp::holes::FillSettings;
 use interp::refine::SmoothSettings;
-use project::command::{
-    Command, FillHorizon, Move, MovePick, RemovePick, ReplayPicks,
-    SmoothHorizon, Unfit,
-};
+use project::command::{Command, FillHorizon, Move, MovePick, RemovePick, ReplayPicks, SmoothHorizon, Unfit};
 use project::document::HorizonEntry;
 use project::error::Noun;
 use survey::SurveyGeometry;
