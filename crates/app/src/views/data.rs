@@ -1,6 +1,6 @@
 //! The volumes, horizons, faults and wells of the project.
 
-use super::named::{NameField, colour, remove};
+use super::named::{self, NameField, colour};
 use super::notices;
 use super::picking::{palette, swatch};
 use crate::state::{Action, Blended, Choice, DataForm, Dialogue, Place, SectionVolumes, Session, State, Written};
@@ -85,7 +85,7 @@ impl Data {
                     }
                 }
                 if row.is_removed {
-                    actions.push(remove(Noun::Volume, &entry.name));
+                    actions.push(named::remove(Noun::Volume, &entry.name));
                 }
             });
             if is_chosen {
@@ -120,7 +120,7 @@ impl Data {
                     actions.push(Action::Horizon((!is_chosen).then(|| entry.name.clone())));
                 }
                 if row.is_removed {
-                    actions.push(remove(Noun::Horizon, &entry.name));
+                    actions.push(named::remove(Noun::Horizon, &entry.name));
                 }
             });
             if is_chosen {
@@ -157,7 +157,7 @@ impl Data {
                     self.fault = (!is_chosen).then(|| entry.name.clone());
                 }
                 if row.is_removed {
-                    actions.push(remove(Noun::Fault, &entry.name));
+                    actions.push(named::remove(Noun::Fault, &entry.name));
                 }
             });
             if let Some(other) = &entry.truncated_by {
@@ -231,7 +231,7 @@ impl Data {
                     self.well = (!is_chosen).then(|| entry.name.clone());
                 }
                 if row.is_removed {
-                    actions.push(remove(Noun::Well, &entry.name));
+                    actions.push(named::remove(Noun::Well, &entry.name));
                 }
             });
             if is_chosen {

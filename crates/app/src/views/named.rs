@@ -18,7 +18,7 @@ pub fn colour(noun: Noun, name: &str, colour: Colour) -> Action {
 }
 
 /// The field in which a name is changed, while it is.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct NameField(Option<(Noun, Renaming)>);
 
 impl NameField {

@@ -48,6 +48,9 @@ struct NamedThing {
 #[derive(Debug, Clone, Default)]
 struct NameIndex(Vec<NamedThing>);
 
+/// Most blanks in a name, which has at most 80 characters.
+const MOST_BLANKS: usize = 40;
+
 /// What a reference is translated from; it becomes the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum CalledBy {
@@ -67,33 +70,39 @@ impl NameIndex {
         })
     }
 
-    /// The words of a label with the things in them called the other way: a name alone; a well and its top; or what a
+    /// The words of a label with the things in them called the other way: a name alone, a well and its top, or what a
     /// panel is called, which may have horizons in it, and a label on it.
     fn words(&self, from: CalledBy, nouns: &[Noun], words: &str) -> Option<String> {
-        if let Some(other) = self.other(from, nouns, words) {
-            return Some(other.to_owned());
-        }
-        if nouns.contains(&Noun::Well) {
-            let well = words.match_indices(' ').find_map(|(at, _)| Some((at, self.other(from, WELL, &words[..at])?)));
-            if let Some((at, well)) = well {
-                return Some(format!("{well}{}", &words[at..]));
-            }
+        if let Some(alone) = self.name_or_top(from, nouns, words) {
+            return Some(alone);
         }
         let (panel, label) = words.split_once(": ")?;
         let title = self.between_blanks(from, panel);
-        let own = self.words(from, nouns, label);
+        let own = self.name_or_top(from, nouns, label);
         (title != panel || own.is_some()).then(|| format!("{title}: {}", own.as_deref().unwrap_or(label)))
+    }
+
+    fn name_or_top(&self, from: CalledBy, nouns: &[Noun], words: &str) -> Option<String> {
+        if let Some(other) = self.other(from, nouns, words) {
+            return Some(other.to_owned());
+        }
+        let mut blanks = words.match_indices(' ').take(MOST_BLANKS).filter(|_| nouns.contains(&Noun::Well));
+        blanks.find_map(|(at, _)| Some(format!("{}{}", self.other(from, WELL, &words[..at])?, &words[at..])))
     }
 
     /// A title with the horizons in it called the other way: the longest that stand between two blanks.
     fn between_blanks(&self, from: CalledBy, title: &str) -> String {
-        let Some(start) = title.find(' ').map(|blank| blank + 1) else { return title.to_owned() };
-        let (before, rest) = title.split_at(start);
-        let found = rest.rmatch_indices(' ').find_map(|(end, _)| Some((end, self.other(from, HORIZON, &rest[..end])?)));
-        match found {
-            Some((end, other)) => format!("{before}{other}{}", self.between_blanks(from, &rest[end..])),
-            None => format!("{before}{}", self.between_blanks(from, rest)),
+        let (mut said, mut rest) = (String::new(), title);
+        while let Some(blank) = rest.find(' ') {
+            let (before, after) = rest.split_at(blank + 1);
+            said += before;
+            let blanks = after.match_indices(' ').take(MOST_BLANKS);
+            let found = blanks.filter_map(|(end, _)| Some((end, self.other(from, HORIZON, &after[..end])?))).last();
+            let (end, other) = found.unwrap_or((0, ""));
+            said += other;
+            rest = &after[end..];
         }
+        said + rest
     }
 
     fn translated(&self, from: CalledBy, place: Reference<'_>, text: &str) -> Option<String> {
