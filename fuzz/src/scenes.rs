@@ -13,6 +13,7 @@ pub fn document() -> Document {
     let source = || Source { path: "a.csv".into(), bytes: 10, reading: "csv".into() };
     document.horizons = ["Top", "Base"]
         .map(|name| HorizonEntry {
+            id: Default::default(),
             name: name.into(),
             contact: Contact::Conformable,
             file: format!("horizons/{name}.zarr"),
@@ -24,6 +25,7 @@ pub fn document() -> Document {
         })
         .into();
     document.faults = vec![FaultEntry {
+        id: Default::default(),
         name: "F1".into(),
         truncated_by: None,
         grown_m: 0.0,

@@ -102,7 +102,7 @@ fn words(cure: &Cure, project: &Path) -> String {
             Noun::Horizon => "horizon remove",
             Noun::Fault => "fault remove",
             Noun::Well => "well remove",
-            Noun::Layer | Noun::Texture | Noun::Parameterization | Noun::Scene => return String::new(),
+            _ => return String::new(),
         };
         format!("remove it with `{}`, then ", line(command).value(name))
     };

@@ -5,7 +5,7 @@ use super::args::{
     StackArgs,
 };
 use super::assembly;
-use super::request::{Listing, Request, Usage};
+use super::request::{Listing, Request, Usage, coloured, remove, rename};
 use super::segy::segy_options;
 use attribute::{DipSettings, SemblanceSettings};
 use files::segy::WriteFormat;
@@ -14,11 +14,11 @@ use files::{
     ZPositive, ZUnit,
 };
 use project::command::{
-    AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, MoveStickPoint, RemoveFault,
-    RemoveHorizon, RemovePick, RenameFault, RenameHorizon, SetContact, SetFaultColour, SetFaultExtent,
-    SetHorizonColour, SetTruncation, Spacing, StackHorizons,
+    AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, MoveStickPoint, RemovePick,
+    SetContact, SetFaultExtent, SetTruncation, Spacing, StackHorizons,
 };
 use project::document::Polarity;
+use project::error::Noun;
 use project::memory_budget;
 use survey::Contact;
 
@@ -137,9 +137,7 @@ pub(super) fn horizon(action: HorizonAction) -> Result<Request, Usage> {
         HorizonAction::Add(typed) => add_horizon(*typed)?,
         HorizonAction::List { project } => Request::List { project, what: Listing::Horizons },
         HorizonAction::Show { project, name } => Request::List { project, what: Listing::Horizon(name) },
-        HorizonAction::Rename { project, from, to } => {
-            Request::Change { project, command: Command::RenameHorizon(RenameHorizon { from, to }) }
-        }
+        HorizonAction::Rename { project, from, to } => rename(project, Noun::Horizon, from, to),
         HorizonAction::Draw(typed) => assembly::draw(typed)?,
         HorizonAction::Track(typed) => assembly::track(typed)?,
         HorizonAction::Fill(typed) => assembly::fill(typed),
@@ -149,18 +147,12 @@ pub(super) fn horizon(action: HorizonAction) -> Result<Request, Usage> {
         HorizonAction::Unpick { project, id } => {
             Request::Change { project, command: Command::RemovePick(RemovePick { id }) }
         }
-        HorizonAction::Colour { project, name, colour } => {
-            let colour = colour.parse().map_err(|_| format!("colour {colour}: expected #rrggbb"))?;
-            let command = Command::SetHorizonColour(SetHorizonColour { horizon: name, colour });
-            Request::Change { project, command }
-        }
+        HorizonAction::Colour { project, name, colour } => coloured(project, Noun::Horizon, name, &colour)?,
         HorizonAction::Contact { project, name, contact: text } => {
             let contact = contact("contact", &text)?;
             Request::Change { project, command: Command::SetContact(SetContact { horizon: name, contact }) }
         }
-        HorizonAction::Remove { project, name } => {
-            Request::Change { project, command: Command::RemoveHorizon(RemoveHorizon { name }) }
-        }
+        HorizonAction::Remove { project, name } => remove(project, Noun::Horizon, name),
     })
 }
 
@@ -218,17 +210,9 @@ pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
             let grown_m = grown_m("extent", &extent)?;
             Request::Change { project, command: Command::SetFaultExtent(SetFaultExtent { fault: name, grown_m }) }
         }
-        FaultAction::Colour { project, name, colour } => {
-            let colour = colour.parse().map_err(|_| format!("colour {colour}: expected #rrggbb"))?;
-            let command = Command::SetFaultColour(SetFaultColour { fault: name, colour });
-            Request::Change { project, command }
-        }
-        FaultAction::Rename { project, from, to } => {
-            Request::Change { project, command: Command::RenameFault(RenameFault { from, to }) }
-        }
-        FaultAction::Remove { project, name } => {
-            Request::Change { project, command: Command::RemoveFault(RemoveFault { name }) }
-        }
+        FaultAction::Colour { project, name, colour } => coloured(project, Noun::Fault, name, &colour)?,
+        FaultAction::Rename { project, from, to } => rename(project, Noun::Fault, from, to),
+        FaultAction::Remove { project, name } => remove(project, Noun::Fault, name),
     })
 }
 

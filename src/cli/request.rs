@@ -19,10 +19,11 @@ use page::FileFormat;
 use param::KDefinition;
 use project::chains::illustrate::IllustrateSettings;
 use project::command::{
-    AddNote, AddTexture, Command, Extract, LinkVolume, RemoveNote, RemoveScalar, RemoveScene, RemoveVolume,
-    RenameScene, RenameVolume, ResetLayer, SetLayer, SetParameterization, SetScalar, SetVelocity,
+    AddNote, AddTexture, Command, Extract, LinkVolume, Remove, RemoveScalar, Rename, ResetLayer, SetColour, SetLayer,
+    SetParameterization, SetScalar, SetVelocity,
 };
 use project::document::{NoteEntry, Polarity};
+use project::error::Noun;
 use project::memory_budget;
 use project::pictures::Device;
 use project::pictures::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
@@ -255,6 +256,22 @@ impl TryFrom<Action> for Request {
     }
 }
 
+/// Gives something another name.
+pub(super) fn rename(project: PathBuf, noun: Noun, from: String, to: String) -> Request {
+    Request::Change { project, command: Command::Rename(Rename { noun, from, to }) }
+}
+
+/// Removes something.
+pub(super) fn remove(project: PathBuf, noun: Noun, name: String) -> Request {
+    Request::Change { project, command: Command::Remove(Remove { noun, name }) }
+}
+
+/// Gives something another colour.
+pub(super) fn coloured(project: PathBuf, noun: Noun, name: String, colour: &str) -> Result<Request, Usage> {
+    let colour = colour.parse().map_err(|_| format!("colour {colour}: expected #rrggbb"))?;
+    Ok(Request::Change { project, command: Command::SetColour(SetColour { noun, name, colour }) })
+}
+
 fn note(action: NoteAction) -> Result<Request, Usage> {
     Ok(match action {
         NoteAction::List { project } => Request::List { project, what: Listing::Notes },
@@ -262,9 +279,7 @@ fn note(action: NoteAction) -> Result<Request, Usage> {
             let at = numbers::<3>("--at", &at, ',')?;
             Request::Change { project, command: Command::AddNote(AddNote { note: NoteEntry { text, at, scene } }) }
         }
-        NoteAction::Remove { project, number } => {
-            Request::Change { project, command: Command::RemoveNote(RemoveNote { number }) }
-        }
+        NoteAction::Remove { project, number } => remove(project, Noun::Note, number.to_string()),
     })
 }
 
@@ -520,18 +535,13 @@ fn volume(action: VolumeAction) -> Request {
             let link = LinkVolume { url, name, polarity: Polarity::default() };
             Request::Import { project, command: Command::LinkVolume(link) }
         }
-        VolumeAction::Rename { project, from, to } => {
-            Request::Change { project, command: Command::RenameVolume(RenameVolume { from, to }) }
-        }
-        VolumeAction::Remove { project, name } => {
-            Request::Change { project, command: Command::RemoveVolume(RemoveVolume { name }) }
-        }
+        VolumeAction::Rename { project, from, to } => rename(project, Noun::Volume, from, to),
+        VolumeAction::Remove { project, name } => remove(project, Noun::Volume, name),
     }
 }
 
 /// What is asked for with scenes.
 fn scene(action: SceneAction) -> Result<Request, Usage> {
-    let change = |project: PathBuf, command: Command| Request::Change { project, command };
     Ok(match action {
         SceneAction::List { project } => Request::List { project, what: Listing::Scenes },
         SceneAction::Show { project, name } => Request::List { project, what: Listing::Scene(name) },
@@ -541,7 +551,7 @@ fn scene(action: SceneAction) -> Result<Request, Usage> {
             from: typed.from,
             view: typed.view.try_into()?,
         },
-        SceneAction::Rename { project, from, to } => change(project, Command::RenameScene(RenameScene { from, to })),
-        SceneAction::Remove { project, name } => change(project, Command::RemoveScene(RemoveScene { name })),
+        SceneAction::Rename { project, from, to } => rename(project, Noun::Scene, from, to),
+        SceneAction::Remove { project, name } => remove(project, Noun::Scene, name),
     })
 }

@@ -3,11 +3,11 @@
 use super::args::{WellAction, WellAddArgs};
 use super::interpretation::word;
 use super::report::Report;
-use super::request::{Listing, Request, Usage, numbers};
+use super::request::{Listing, Request, Usage, coloured, numbers, remove, rename};
 use files::ZUnit;
 use files::well::{WellFiles, WellOptions, WellReport};
 use project::Project;
-use project::command::{AddWell, Command, RemoveWell, RenameWell, SetWellColour, WellAdded};
+use project::command::{AddWell, Command, WellAdded};
 use project::content;
 use project::error::Noun;
 use survey::Progress;
@@ -18,16 +18,9 @@ pub(super) fn well(action: WellAction) -> Result<Request, Usage> {
         WellAction::Add(typed) => add(*typed)?,
         WellAction::List { project } => Request::List { project, what: Listing::Wells },
         WellAction::Show { project, name } => Request::List { project, what: Listing::Well(name) },
-        WellAction::Colour { project, name, colour } => {
-            let colour = colour.parse().map_err(|_| format!("colour {colour}: expected #rrggbb"))?;
-            Request::Change { project, command: Command::SetWellColour(SetWellColour { well: name, colour }) }
-        }
-        WellAction::Rename { project, from, to } => {
-            Request::Change { project, command: Command::RenameWell(RenameWell { from, to }) }
-        }
-        WellAction::Remove { project, name } => {
-            Request::Change { project, command: Command::RemoveWell(RemoveWell { name }) }
-        }
+        WellAction::Colour { project, name, colour } => coloured(project, Noun::Well, name, &colour)?,
+        WellAction::Rename { project, from, to } => rename(project, Noun::Well, from, to),
+        WellAction::Remove { project, name } => remove(project, Noun::Well, name),
     })
 }
 

@@ -27,6 +27,7 @@ mod kill;
 mod legibility;
 #[cfg(target_os = "linux")]
 mod memory;
+mod names;
 mod program;
 mod proposed_faults;
 #[cfg(feature = "remote")]

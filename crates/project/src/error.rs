@@ -173,6 +173,16 @@ pub enum ProjectError {
         /// The names there are.
         known: Vec<String>,
     },
+    /// What cannot be done with a thing of this kind.
+    #[error("the {noun} \"{name}\" {fact}")]
+    Refused {
+        /// What it is.
+        noun: Noun,
+        /// Its name.
+        name: String,
+        /// Why it cannot be done.
+        fact: &'static str,
+    },
     /// A name that cannot be used.
     #[error("\"{name}\" cannot be the name of a {noun}: {fact}")]
     BadName {

@@ -262,18 +262,14 @@ pub fn free_name(document: &Document, noun: Noun, word: &str) -> String {
 impl Picking {
     /// Drops references to what the project no longer has, such as a horizon that was renamed or removed.
     pub fn fit(&mut self, before: &Document, now: &Document) {
-        let Some(name) = &self.horizon else { return };
-        let had = before.horizons.iter().any(|entry| entry.name == *name);
-        let has = now.horizons.iter().any(|entry| entry.name == *name);
-        if had && !has {
-            let place = before.horizons.iter().position(|entry| entry.name == *name);
-            let renamed = (before.horizons.len() == now.horizons.len())
-                .then(|| now.horizons.get(place?).map(|entry| entry.name.clone()))
-                .flatten();
-            self.horizon = renamed;
-        }
-        if has {
+        let has = |document: &Document, name: &String| document.horizons.iter().any(|entry| entry.name == *name);
+        let Some(name) = &mut self.horizon else { return };
+        let had = has(before, name);
+        before.renamed_in(now).follow(Noun::Horizon, name);
+        if has(now, name) {
             self.colour = None;
+        } else if had {
+            self.horizon = None;
         }
     }
 

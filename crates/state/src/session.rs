@@ -3,7 +3,8 @@
 use super::picking::Tool;
 use super::view::{Panel, ViewState};
 use project::HistoryLine;
-use project::document::{Document, rename_volume_in};
+use project::document::Document;
+use project::error::Noun;
 use std::path::PathBuf;
 
 /// A project as read from disk.
@@ -79,15 +80,15 @@ impl Session {
         self.view.fit(&self.document);
     }
 
-    /// Lets the view follow volumes that have another name in the next state; their folders tell which they are.
+    /// Lets the view follow what has another name in the next state.
     fn follow_names(&mut self, next: &Document) {
-        for entry in &self.document.volumes {
-            let renamed = next.volumes.iter().find(|other| other.file == entry.file && other.name != entry.name);
-            let Some(renamed) = renamed else { continue };
-            rename_volume_in(&mut self.view.scene, &entry.name, &renamed.name);
-            let over = self.view.volumes.over.iter_mut().filter(|over| over.volume == entry.name);
-            over.for_each(|over| over.volume.clone_from(&renamed.name));
-        }
+        let renamed = self.document.renamed_in(next);
+        renamed.follow_in(&mut self.view.scene);
+        self.view.hidden.follow(&renamed);
+        let over = self.view.volumes.over.iter_mut().map(|over| (Noun::Volume, &mut over.volume));
+        let layer = self.view.layer.iter_mut().map(|name| (Noun::Layer, name));
+        let horizon = self.view.horizon.iter_mut().map(|name| (Noun::Horizon, name));
+        over.chain(layer).chain(horizon).for_each(|(noun, name)| renamed.follow(noun, name));
     }
 
     /// The project's name: its folder's name without the extension.

@@ -4,7 +4,8 @@ pub use figure::SectionKind;
 
 use super::picking::Picking;
 use files::SurfaceKind;
-use project::document::Document;
+use project::document::{Document, Renamed};
+use project::error::Noun;
 use project::pictures::scene;
 use render::{Scene, Unpicked, VoxelBox};
 use serde::{Deserialize, Serialize};
@@ -124,6 +125,17 @@ impl Hidden {
             names.insert(name);
         } else {
             names.remove(&name);
+        }
+    }
+
+    /// Lets what is hidden follow what has another name.
+    pub(crate) fn follow(&mut self, renamed: &Renamed) {
+        for (noun, names) in [(Noun::Horizon, &mut self.horizons), (Noun::Fault, &mut self.faults)] {
+            let followed = std::mem::take(names).into_iter().map(|mut name| {
+                renamed.follow(noun, &mut name);
+                name
+            });
+            names.extend(followed);
         }
     }
 

@@ -106,8 +106,17 @@ impl TextureLibrary {
     /// A file that cannot be read, is not an image, has no pixels or is too large; a name that is in use
     /// already.
     pub fn add_user(&mut self, path: &Path) -> Result<usize, TtfError> {
-        let (texture, svg, shape) = raster::read_tile(path)?;
         let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        self.add_user_as(&name, path)
+    }
+
+    /// The same under another name than that of its file.
+    ///
+    /// # Errors
+    /// As [`Self::add_user`].
+    pub fn add_user_as(&mut self, name: &str, path: &Path) -> Result<usize, TtfError> {
+        let (texture, svg, shape) = raster::read_tile(path)?;
+        let name = name.to_owned();
         let mean = texture.average_over([1.0; 3], None);
         let pattern = Pattern {
             title: name.clone(),

@@ -1,14 +1,15 @@
 //! The panel on the right: camera, display, block, and named scenes.
 
+use super::named::{NameField, remove};
 use super::{cut_shapes, notices};
 use crate::state::{Action, Panel, Place, Session, StandardView, State};
 use crate::widgets::form::{self, LABELS};
-use crate::widgets::keyboard::{Renamed, Renaming};
 use crate::widgets::obstacle::{needs, unless};
 use crate::widgets::percent;
 use eframe::egui::{Align, Button, ComboBox, DragValue, Grid, Layout, ScrollArea, Slider, TextEdit, Ui};
 use glam::DVec3;
-use project::command::{AddScene, Command, RemoveScene, RenameScene};
+use project::command::{AddScene, Command};
+use project::error::Noun;
 use render::{Corner, Ground, PatternSize, Projection, Scene, VoxelBox};
 use survey::VerticalUnit;
 use ttf::Preset;
@@ -29,7 +30,7 @@ const CUT_SHARE: [f64; 2] = [0.45, 0.45];
 pub struct Controls {
     scene_name: String,
     /// The scene whose name is being changed.
-    renaming: Option<Renaming>,
+    renaming: NameField,
 }
 
 impl Controls {
@@ -62,15 +63,8 @@ impl Controls {
     fn scenes(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         for entry in &session.document.scenes {
             ui.horizontal(|ui| {
-                if let Some(renaming) = self.renaming.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
-                    let renamed = renaming.show(ui, ui.available_width() - BESIDE_FIELD);
-                    if let Renamed::To(to) = &renamed {
-                        let command = RenameScene { from: entry.name.clone(), to: to.clone() };
-                        actions.push(Action::Apply(Box::new(Command::RenameScene(command))));
-                    }
-                    if renamed != Renamed::Typing {
-                        self.renaming = None;
-                    }
+                let width = ui.available_width() - BESIDE_FIELD;
+                if self.renaming.show(ui, width, (Noun::Scene, &entry.name), actions).is_some() {
                     return;
                 }
                 let shown = ui.scope(|ui| {
@@ -82,11 +76,10 @@ impl Controls {
                 }
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     if ui.button("Remove").on_hover_text(format!("Remove scene {}", entry.name)).clicked() {
-                        let command = RemoveScene { name: entry.name.clone() };
-                        actions.push(Action::Apply(Box::new(Command::RemoveScene(command))));
+                        actions.push(remove(Noun::Scene, &entry.name));
                     }
                     if ui.button("Rename").on_hover_text(format!("Rename scene {}", entry.name)).clicked() {
-                        self.renaming = Some(Renaming::of(&entry.name));
+                        self.renaming.begin(Noun::Scene, &entry.name);
                     }
                 });
             });

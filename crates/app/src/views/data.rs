@@ -1,21 +1,20 @@
 //! The volumes, horizons, faults and wells of the project.
 
+use super::named::{self, NameField, colour};
 use super::notices;
 use super::picking::{palette, swatch};
 use crate::state::{Action, Blended, Choice, DataForm, Dialogue, Place, SectionVolumes, Session, State, Written};
 use crate::widgets::form;
-use crate::widgets::keyboard::{Renamed, Renaming};
+use crate::widgets::keyboard::Renamed;
 use crate::widgets::obstacle::{needs, unless};
 use crate::widgets::percent;
 use eframe::egui::{
     Align, Button, ComboBox, DragValue, Id, Label, Layout, Response, ScrollArea, Ui, UiBuilder, WidgetInfo,
 };
 use files::SurfaceKind;
-use project::command::{
-    Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameFault, RenameHorizon, RenameVolume,
-    RenameWell, SetFaultColour, SetFaultExtent, SetRaw, SetVelocity, SetWellColour,
-};
+use project::command::{Command, SetFaultExtent, SetRaw, SetVelocity};
 use project::document::{FaultEntry, VolumeEntry};
+use project::error::Noun;
 use project::styles;
 use render::Scene;
 use survey::VerticalUnit;
@@ -27,15 +26,9 @@ const BESIDE_BAR: f32 = 8.0;
 /// The panel, with the text being typed in it.
 #[derive(Default)]
 pub struct Data {
-    renaming: Option<Renaming>,
-    /// The volume whose name is being changed.
-    renaming_volume: Option<Renaming>,
+    renaming: NameField,
     /// The volume whose buttons are shown.
     volume: Option<String>,
-    /// The fault whose name is being changed.
-    renaming_fault: Option<Renaming>,
-    /// The well whose name is being changed.
-    renaming_well: Option<Renaming>,
     /// The fault whose buttons are shown.
     fault: Option<String>,
     /// The well whose buttons are shown.
@@ -74,15 +67,9 @@ impl Data {
             let is_chosen = self.volume.as_ref() == Some(&entry.name);
             ui.horizontal(|ui| {
                 on_sections(ui, session, entry, is_raw, actions);
-                if let Some(renaming) = self.renaming_volume.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
-                    let renamed = renaming.show(ui, 150.0);
-                    if let Renamed::To(to) = &renamed {
-                        let command = RenameVolume { from: entry.name.clone(), to: to.clone() };
-                        actions.push(Action::Apply(Box::new(Command::RenameVolume(command))));
-                        self.volume = Some(to.clone());
-                    }
-                    if renamed != Renamed::Typing {
-                        self.renaming_volume = None;
+                if let Some(renamed) = self.renaming.show(ui, 150.0, (Noun::Volume, &entry.name), actions) {
+                    if let Renamed::To(to) = renamed {
+                        self.volume = Some(to);
                     }
                     return;
                 }
@@ -97,8 +84,7 @@ impl Data {
                     }
                 }
                 if row.is_removed {
-                    let command = RemoveVolume { name: entry.name.clone() };
-                    actions.push(Action::Apply(Box::new(Command::RemoveVolume(command))));
+                    actions.push(named::remove(Noun::Volume, &entry.name));
                 }
             });
             if is_chosen {
@@ -106,7 +92,7 @@ impl Data {
                     ui.horizontal(|ui| {
                         let rename = ui.button("Rename").on_hover_text(format!("Rename volume {}", entry.name));
                         if rename.clicked() {
-                            self.renaming_volume = Some(Renaming::of(&entry.name));
+                            self.renaming.begin(Noun::Volume, &entry.name);
                         }
                         export(ui, session, Written::Volume(None), &entry.name, actions);
                     });
@@ -125,15 +111,7 @@ impl Data {
             ui.horizontal(|ui| {
                 eye(ui, session, SurfaceKind::Horizon, &entry.name, actions);
                 swatch(ui, entry, index, actions);
-                if let Some(renaming) = self.renaming.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
-                    let renamed = renaming.show(ui, 150.0);
-                    if let Renamed::To(to) = &renamed {
-                        let command = RenameHorizon { from: entry.name.clone(), to: to.clone() };
-                        actions.push(Action::Apply(Box::new(Command::RenameHorizon(command))));
-                    }
-                    if renamed != Renamed::Typing {
-                        self.renaming = None;
-                    }
+                if self.renaming.show(ui, 150.0, (Noun::Horizon, &entry.name), actions).is_some() {
                     return;
                 }
                 let row = named(ui, &entry.name, Some(is_chosen), &format!("Remove horizon {}", entry.name));
@@ -141,8 +119,7 @@ impl Data {
                     actions.push(Action::Horizon((!is_chosen).then(|| entry.name.clone())));
                 }
                 if row.is_removed {
-                    let command = RemoveHorizon { name: entry.name.clone() };
-                    actions.push(Action::Apply(Box::new(Command::RemoveHorizon(command))));
+                    actions.push(named::remove(Noun::Horizon, &entry.name));
                 }
             });
             if is_chosen {
@@ -150,7 +127,7 @@ impl Data {
                     ui.horizontal(|ui| {
                         let rename = ui.button("Rename").on_hover_text(format!("Rename horizon {}", entry.name));
                         if rename.clicked() {
-                            self.renaming = Some(Renaming::of(&entry.name));
+                            self.renaming.begin(Noun::Horizon, &entry.name);
                         }
                         export(ui, session, Written::surface(SurfaceKind::Horizon), &entry.name, actions);
                     });
@@ -165,18 +142,12 @@ impl Data {
             let is_chosen = self.fault.as_ref() == Some(&entry.name);
             ui.horizontal(|ui| {
                 eye(ui, session, SurfaceKind::Fault, &entry.name, actions);
-                if let Some(colour) = palette(ui, entry.ink(), &format!("Colour of fault {}", entry.name)) {
-                    let command = SetFaultColour { fault: entry.name.clone(), colour };
-                    actions.push(Action::Apply(Box::new(Command::SetFaultColour(command))));
+                if let Some(chosen) = palette(ui, entry.ink(), &format!("Colour of fault {}", entry.name)) {
+                    actions.push(colour(Noun::Fault, &entry.name, chosen));
                 }
-                if let Some(renaming) = self.renaming_fault.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
-                    let renamed = renaming.show(ui, 150.0);
-                    if let Renamed::To(to) = &renamed {
-                        let command = RenameFault { from: entry.name.clone(), to: to.clone() };
-                        actions.push(Action::Apply(Box::new(Command::RenameFault(command))));
-                    }
-                    if renamed != Renamed::Typing {
-                        self.renaming_fault = None;
+                if let Some(renamed) = self.renaming.show(ui, 150.0, (Noun::Fault, &entry.name), actions) {
+                    if let Renamed::To(to) = renamed {
+                        self.fault = Some(to);
                     }
                     return;
                 }
@@ -185,8 +156,7 @@ impl Data {
                     self.fault = (!is_chosen).then(|| entry.name.clone());
                 }
                 if row.is_removed {
-                    let command = RemoveFault { name: entry.name.clone() };
-                    actions.push(Action::Apply(Box::new(Command::RemoveFault(command))));
+                    actions.push(named::remove(Noun::Fault, &entry.name));
                 }
             });
             if let Some(other) = &entry.truncated_by {
@@ -199,7 +169,7 @@ impl Data {
                 ui.indent("chosen", |ui| {
                     ui.horizontal(|ui| {
                         if ui.button("Rename").on_hover_text(format!("Rename fault {}", entry.name)).clicked() {
-                            self.renaming_fault = Some(Renaming::of(&entry.name));
+                            self.renaming.begin(Noun::Fault, &entry.name);
                         }
                         export(ui, session, Written::surface(SurfaceKind::Fault), &entry.name, actions);
                     });
@@ -246,26 +216,12 @@ impl Data {
                     actions.push(Action::Show(Box::new(scene)));
                 }
                 let ink = entry.colour.unwrap_or(session.view.scene.wells.colour);
-                if let Some(colour) = palette(ui, ink, &format!("Colour of well {}", entry.name)) {
-                    let command = SetWellColour { well: entry.name.clone(), colour };
-                    actions.push(Action::Apply(Box::new(Command::SetWellColour(command))));
+                if let Some(chosen) = palette(ui, ink, &format!("Colour of well {}", entry.name)) {
+                    actions.push(colour(Noun::Well, &entry.name, chosen));
                 }
-                if let Some(renaming) = self.renaming_well.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
-                    let renamed = renaming.show(ui, 150.0);
-                    if let Renamed::To(to) = &renamed {
-                        let command = RenameWell { from: entry.name.clone(), to: to.clone() };
-                        actions.push(Action::Apply(Box::new(Command::RenameWell(command))));
-                        // What is hidden stays so under its new name.
-                        let mut scene = session.view.scene.clone();
-                        scene
-                            .hidden_wells
-                            .iter_mut()
-                            .filter(|name| **name == entry.name)
-                            .for_each(|name| name.clone_from(to));
-                        actions.push(Action::Show(Box::new(scene)));
-                    }
-                    if renamed != Renamed::Typing {
-                        self.renaming_well = None;
+                if let Some(renamed) = self.renaming.show(ui, 150.0, (Noun::Well, &entry.name), actions) {
+                    if let Renamed::To(to) = renamed {
+                        self.well = Some(to);
                     }
                     return;
                 }
@@ -274,14 +230,13 @@ impl Data {
                     self.well = (!is_chosen).then(|| entry.name.clone());
                 }
                 if row.is_removed {
-                    let command = RemoveWell { name: entry.name.clone() };
-                    actions.push(Action::Apply(Box::new(Command::RemoveWell(command))));
+                    actions.push(named::remove(Noun::Well, &entry.name));
                 }
             });
             if is_chosen {
                 ui.indent("chosen", |ui| {
                     if ui.button("Rename").on_hover_text(format!("Rename well {}", entry.name)).clicked() {
-                        self.renaming_well = Some(Renaming::of(&entry.name));
+                        self.renaming.begin(Noun::Well, &entry.name);
                     }
                 });
             }

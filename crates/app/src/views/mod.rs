@@ -17,6 +17,7 @@ pub mod interpretation;
 pub mod lasso;
 pub mod layers;
 pub mod map;
+pub mod named;
 pub mod notices;
 pub mod overlay;
 pub mod parts;

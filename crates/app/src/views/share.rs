@@ -3,7 +3,7 @@
 //! The preview is the made thing itself, with coarser faces: its triangles turn under the hand, and a press on them
 //! points the arrow of a new note.
 
-use super::{export, notices, texture};
+use super::{export, named, notices, texture};
 use crate::state::picking::place_of;
 use crate::state::{Action, Dialogue, Place, Session, ShareForm, ShareKind, State};
 use crate::widgets::dialogue;
@@ -15,8 +15,9 @@ use eframe::egui::{
     Sense, Stroke, StrokeKind, TextEdit, TextureHandle, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
-use project::command::{AddNote, Command, RemoveNote};
+use project::command::{AddNote, Command};
 use project::document::NoteEntry;
+use project::error::Noun;
 use project::pictures::PickedShare;
 use review::preview::{Preview, Shown, draw};
 use review::{DENSITIES, MOST_SECTIONS, glb, html};
@@ -228,7 +229,7 @@ impl ShareView {
                         remove.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                         if remove.on_hover_text(&name).clicked() {
                             let number = index + 1;
-                            actions.push(Action::Apply(Box::new(Command::RemoveNote(RemoveNote { number }))));
+                            actions.push(named::remove(Noun::Note, &number.to_string()));
                         }
                         let [inline, crossline, z] = note.at;
                         let place = format!("inline {inline:.0}, crossline {crossline:.0}, {z:.0}");

@@ -21,7 +21,8 @@ use crate::widgets::theme;
 use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};
 use frames::FrameTimes;
 use project::Project;
-use project::command::Command;
+use project::command::{Command, Remove, Rename, SetColour};
+use project::error::Noun;
 use project_views::ProjectViews;
 use state::{Action, Appearance, DataForm, Dialogue, ExportForm, Notice, Place, Remembered, State, Task, Written};
 use std::path::{Path, PathBuf};
@@ -235,10 +236,9 @@ impl Window {
             _ if self.state.dialogue.is_some() => Place::Dialogue,
             Command::SetLayer(_) | Command::ResetLayer(_) | Command::SetContact(_) => Place::Layers,
             Command::AddScene(_)
-            | Command::RenameScene(_)
-            | Command::RemoveScene(_)
             | Command::AddNote(_)
-            | Command::RemoveNote(_) => Place::Scenes,
+            | Command::Rename(Rename { noun: Noun::Scene, .. })
+            | Command::Remove(Remove { noun: Noun::Scene | Noun::Note, .. }) => Place::Scenes,
             Command::Pick(_)
             | Command::PickSeveral(_)
             | Command::DrawHorizon(_)
@@ -247,7 +247,7 @@ impl Window {
             | Command::ReplayPicks(_)
             | Command::FillHorizon(_)
             | Command::SmoothHorizon(_)
-            | Command::SetHorizonColour(_)
+            | Command::SetColour(SetColour { noun: Noun::Horizon, .. })
             | Command::PickFault(_)
             | Command::AcceptFault(_) => Place::Interpret,
             _ if self.is_interpreting() => Place::Interpret,

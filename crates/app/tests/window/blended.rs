@@ -3,7 +3,8 @@
 use super::command::{applied, choose};
 use super::driven::{Driven, click, open, state, wait};
 use egui_kittest::kittest::Queryable;
-use project::command::{AttributeKind, Command, ComputeAttribute, RemoveVolume};
+use project::command::{AttributeKind, Command, ComputeAttribute, Remove};
+use project::error::Noun;
 use ttf::ColourMap;
 
 fn settled(harness: &mut Driven) {
@@ -49,7 +50,7 @@ fn a_second_volume_lies_over_the_sections_and_volumes_are_hidden() {
     click(&mut harness, "Show volume strength");
     settled(&mut harness);
     // What is gone is not shown any longer.
-    applied(&mut harness, &Command::RemoveVolume(RemoveVolume { name: "strength".into() }));
+    applied(&mut harness, &Command::Remove(Remove { noun: Noun::Volume, name: "strength".into() }));
     settled(&mut harness);
     assert_eq!(over(&harness), None);
 }

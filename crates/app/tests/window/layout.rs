@@ -5,7 +5,8 @@ use super::driven::{Driven, open, state, wait};
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Event, Rect};
 use egui_kittest::kittest::{NodeT, Queryable};
-use project::command::{AddScene, Command, PickFault, RenameHorizon, RenameVolume};
+use project::command::{AddScene, Command, PickFault, Rename};
+use project::error::Noun;
 use state::{Action, Panel};
 use std::collections::BTreeMap;
 
@@ -102,8 +103,8 @@ fn long_names_stay_inside_the_panels_and_are_read_whole_under_the_pointer() {
     let name = |what: &str| format!("{what} {LONG}");
     let scene = state(&harness).session.as_ref().unwrap().view.scene.clone();
     for command in [
-        Command::RenameVolume(RenameVolume { from: "seismic".into(), to: name("Volume") }),
-        Command::RenameHorizon(RenameHorizon { from: "Top".into(), to: name("Horizon") }),
+        Command::Rename(Rename { noun: Noun::Volume, from: "seismic".into(), to: name("Volume") }),
+        Command::Rename(Rename { noun: Noun::Horizon, from: "Top".into(), to: name("Horizon") }),
         Command::PickFault(PickFault { name: name("Fault"), sticks: vec![stick(2.0), stick(18.0)] }),
         Command::AddScene(AddScene { name: name("Scene"), scene }),
     ] {

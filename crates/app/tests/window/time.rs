@@ -5,7 +5,8 @@ use super::driven::{Driven, click, document, state, wait};
 use super::picking::{click_in, interpreting, picking};
 use eframe::egui::Modifiers;
 use egui_kittest::kittest::{NodeT, Queryable};
-use project::command::{Command, RemoveHorizon};
+use project::command::{Command, Remove};
+use project::error::Noun;
 use state::Tool;
 
 #[test]
@@ -55,7 +56,7 @@ fn a_volume_without_horizons_gets_layers_by_one_button() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = interpreting(folder.path());
     for name in ["Top", "Base"] {
-        applied(&mut harness, &Command::RemoveHorizon(RemoveHorizon { name: name.to_owned() }));
+        applied(&mut harness, &Command::Remove(Remove { noun: Noun::Horizon, name: name.to_owned() }));
     }
     wait(&mut harness, "they are gone", |h| document(h).horizons.is_empty());
     click(&mut harness, "Interpret");

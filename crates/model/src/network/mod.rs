@@ -134,6 +134,13 @@ impl FaultNetwork {
         Ok(Self { surfaces, truncation, order, signatures, table: Vec::new() }.with_table())
     }
 
+    /// The same with its faults called by these names.
+    #[must_use]
+    pub fn named(mut self, names: impl IntoIterator<Item = String>) -> Self {
+        self.surfaces.iter_mut().zip(names).for_each(|(surface, name)| surface.name = name);
+        self
+    }
+
     /// The network that [`Self::surfaces`], [`Self::truncation`] and [`Self::signatures`] are of; `None`
     /// where they do not go together.
     pub fn of_parts(

@@ -43,6 +43,7 @@ use objects::Object;
 use states::States;
 use std::path::Path;
 use survey::Progress;
+use ttf::TextureLibrary;
 
 /// Checks the project in the folder `root`; nothing is written.
 ///
@@ -114,6 +115,10 @@ fn examine(root: &Path, lock: Option<&Lock>, progress: &Progress) -> Result<(Che
         ..CheckReport::default()
     };
     states::report(&states, &mut report);
+    if let Some(document) = states.present() {
+        let patterns = TextureLibrary::builtin()?;
+        report.notes.extend(document.dangling(|name| patterns.find(name).is_some()));
+    }
     let objects = objects::of(&states);
     for object in &objects {
         progress.begin(&format!("checking {}", object.entry.file()), 1);

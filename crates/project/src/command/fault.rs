@@ -1,8 +1,8 @@
-//! Adding faults, stating at which other fault each ends, and removing them.
+//! Adding faults, and stating at which other fault each ends.
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
-use crate::document::{FaultEntry, is_zero};
+use crate::document::{FaultEntry, Id, is_zero};
 use crate::folder::Draft;
 use crate::interpretation::assembly::rebuild_all;
 use files::{ImportOptions, ImportReport};
@@ -11,7 +11,6 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use survey::fault::Fault;
 use survey::{Note, Progress, SurveyGeometry};
-use ttf::Colour;
 
 /// Reads a fault into the project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,31 +50,6 @@ pub struct SetFaultExtent {
     pub grown_m: f64,
 }
 
-/// Gives a fault another name.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RenameFault {
-    /// Its name.
-    pub from: String,
-    /// Its new name.
-    pub to: String,
-}
-
-/// Gives a fault another colour.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct SetFaultColour {
-    /// Name of the fault.
-    pub fault: String,
-    /// Colour of its lines, on sections and on the block, and of its sticks.
-    pub colour: Colour,
-}
-
-/// Removes a fault.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RemoveFault {
-    /// Its name.
-    pub name: String,
-}
-
 impl AddFault {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         draft.document.check_new_name(Noun::Fault, &self.name)?;
@@ -102,6 +76,7 @@ impl AddFault {
         let (file, new) = draft.generation("faults", &self.name, "json")?;
         store::write_fault(&new, &fault)?;
         draft.document.faults.push(FaultEntry {
+            id: Id::default(),
             name: self.name.clone(),
             truncated_by: self.truncated_by.clone(),
             grown_m: self.grown_m,
@@ -179,43 +154,5 @@ impl SetFaultExtent {
             grown_m => format!("fault {} reaches {grown_m} m beyond what was drawn", self.fault),
         };
         Ok(Effect::Changed { summary })
-    }
-}
-
-impl SetFaultColour {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
-        let index = draft.document.position(Noun::Fault, &self.fault)?;
-        draft.document.faults[index].colour = Some(self.colour);
-        Ok(Effect::Changed { summary: format!("colour of fault {}", self.fault) })
-    }
-}
-
-impl RenameFault {
-    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
-        let index = draft.document.position(Noun::Fault, &self.from)?;
-        // The fault's own name in another case is not a duplicate.
-        if self.from.to_lowercase() != self.to.to_lowercase() {
-            draft.document.check_new_name(Noun::Fault, &self.to)?;
-        }
-        let document = &mut draft.document;
-        document.faults[index].name.clone_from(&self.to);
-        let ends = document.faults.iter_mut().filter_map(|fault| fault.truncated_by.as_mut());
-        let drawn = document.sticks.iter_mut().map(|drawn| &mut drawn.fault);
-        ends.chain(drawn).filter(|name| **name == self.from).for_each(|name| name.clone_from(&self.to));
-        rebuild_all(draft, progress)?;
-        Ok(Effect::Changed { summary: format!("fault {} is now {}", self.from, self.to) })
-    }
-}
-
-impl RemoveFault {
-    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
-        let index = draft.document.position(Noun::Fault, &self.name)?;
-        draft.document.faults.remove(index);
-        draft.document.sticks.retain(|drawn| drawn.fault != self.name);
-        for fault in &mut draft.document.faults {
-            fault.truncated_by = fault.truncated_by.take().filter(|by| *by != self.name);
-        }
-        rebuild_all(draft, progress)?;
-        Ok(Effect::Changed { summary: format!("removed fault {}", self.name) })
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
-use crate::document::{FaultEntry, FaultSticks, Origin};
+use crate::document::{FaultEntry, FaultSticks, Id, Origin};
 use crate::folder::Draft;
 use crate::interpretation::assembly::rebuild_all;
 use crate::interpretation::proposals;
@@ -136,10 +136,11 @@ fn put(draft: &mut Draft, fault: &Fault, origin: Origin) -> Result<(), ProjectEr
     let before = old.map(|old| &draft.document.faults[old]);
     let (truncated_by, grown_m) = before.map_or((None, 0.0), |entry| (entry.truncated_by.clone(), entry.grown_m));
     let colour = before.and_then(|entry| entry.colour);
+    let id = before.map_or_else(Id::default, |entry| entry.id.clone());
     let (file, new) = draft.generation("faults", &fault.name, "json")?;
     store::write_fault(&new, fault)?;
     let (name, hash) = (fault.name.clone(), content::hash_fault(fault));
-    let entry = FaultEntry { name, truncated_by, grown_m, file, hash, origin, colour };
+    let entry = FaultEntry { id, name, truncated_by, grown_m, file, hash, origin, colour };
     match old {
         Some(old) => draft.document.faults[old] = entry,
         None => draft.document.faults.push(entry),

@@ -5,7 +5,7 @@
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
-use crate::document::{HorizonEntry, Origin};
+use crate::document::{HorizonEntry, Id, Origin};
 use crate::folder::Draft;
 use crate::interpretation::order;
 use files::{Gridding, ImportOptions, ImportReport};
@@ -48,22 +48,6 @@ pub struct AddHorizon {
     /// What the user states about the file.
     #[serde(default)]
     pub options: ImportOptions,
-}
-
-/// Gives a horizon another name.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RenameHorizon {
-    /// Its name.
-    pub from: String,
-    /// Its new name.
-    pub to: String,
-}
-
-/// Removes a horizon; the two layers that it separates become one.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RemoveHorizon {
-    /// Its name.
-    pub name: String,
 }
 
 impl AddHorizon {
@@ -109,6 +93,7 @@ impl AddHorizon {
         let (file, new) = draft.generation("horizons", &self.name, "zarr")?;
         store::write_horizon(&new, &horizon, progress)?;
         let entry = HorizonEntry {
+            id: Id::default(),
             name: self.name.clone(),
             contact,
             file,
@@ -269,6 +254,7 @@ pub(super) fn insert_among(
     store::write_horizon(&new, horizon, progress)?;
     let hash = content::hash_horizon(horizon);
     let entry = HorizonEntry {
+        id: Id::default(),
         name: horizon.name.clone(),
         contact,
         file,
@@ -310,28 +296,4 @@ pub(super) fn reading(report: &ImportReport) -> String {
 pub(super) fn load_all(draft: &Draft, progress: &Progress) -> Result<Vec<Horizon>, ProjectError> {
     let load = |entry: &HorizonEntry| content::read_horizon(draft.root(), entry, progress);
     draft.document.horizons.par_iter().map(load).collect()
-}
-
-impl RenameHorizon {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
-        let index = draft.document.position(Noun::Horizon, &self.from)?;
-        // The horizon's own name in another case is not a duplicate.
-        if self.from.to_lowercase() != self.to.to_lowercase() {
-            draft.document.check_new_name(Noun::Horizon, &self.to)?;
-        }
-        draft.document.rename_in_origins(Noun::Horizon, &self.from, &self.to);
-        draft.document.keep_styles(|document| {
-            document.horizons[index].name.clone_from(&self.to);
-            Ok::<(), ProjectError>(())
-        })?;
-        Ok(Effect::Changed { summary: format!("horizon {} is now {}", self.from, self.to) })
-    }
-}
-
-impl RemoveHorizon {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
-        let index = draft.document.position(Noun::Horizon, &self.name)?;
-        draft.document.join_layers(index, |document| drop(document.horizons.remove(index)));
-        Ok(Effect::Changed { summary: format!("removed horizon {}", self.name) })
-    }
 }

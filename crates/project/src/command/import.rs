@@ -2,7 +2,7 @@
 
 use super::{Effect, Noun, ProjectError, import_stored};
 use crate::content::volume_facts::{self, Facts};
-use crate::document::{Origin, Polarity, rename_volume_in};
+use crate::document::{Origin, Polarity};
 use crate::folder::{Draft, IMPORTING};
 use crate::memory_budget;
 use crate::placement;
@@ -64,22 +64,6 @@ pub struct VolumeImported {
     pub evidence: Vec<Note>,
     /// What was assumed.
     pub assumptions: Vec<Note>,
-}
-
-/// Gives a volume another name, also where it is shown.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RenameVolume {
-    /// Its name.
-    pub from: String,
-    /// Its new name.
-    pub to: String,
-}
-
-/// Removes a volume.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RemoveVolume {
-    /// Its name.
-    pub name: String,
 }
 
 impl ImportVolume {
@@ -257,37 +241,5 @@ pub(super) fn cancelled_within(error: StoreError) -> ProjectError {
             Err(source) => StoreError::Source { path, source }.into(),
         },
         other => other.into(),
-    }
-}
-
-impl RenameVolume {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
-        let Self { from, to } = self;
-        let document = &mut draft.document;
-        let index = document.position(Noun::Volume, from)?;
-        // The volume's own name in another case is not a duplicate.
-        if from.to_lowercase() != to.to_lowercase() {
-            document.check_new_name(Noun::Volume, to)?;
-        }
-        document.volumes[index].name.clone_from(to);
-        document.rename_in_origins(Noun::Volume, from, to);
-        let style = &mut document.style;
-        let shown = style.scalars.iter_mut().map(|function| &mut function.volume);
-        let shown = shown.chain(style.raw.iter_mut().map(|raw| &mut raw.volume));
-        let extracted = document.extraction.iter_mut().map(|extraction| &mut extraction.volume);
-        shown.chain(extracted).filter(|name| *name == from).for_each(|name| name.clone_from(to));
-        document.scenes.iter_mut().for_each(|entry| rename_volume_in(&mut entry.scene, from, to));
-        Ok(Effect::Changed { summary: format!("volume {from} is now {to}") })
-    }
-}
-
-impl RemoveVolume {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
-        let index = draft.document.position(Noun::Volume, &self.name)?;
-        let style = &mut draft.document.style;
-        style.scalars.retain(|function| function.volume != self.name);
-        style.raw = style.raw.take().filter(|raw| raw.volume != self.name);
-        draft.document.volumes.remove(index);
-        Ok(Effect::Changed { summary: format!("removed volume {}", self.name) })
     }
 }

@@ -15,6 +15,7 @@ mod import;
 mod import_stored;
 mod layer;
 mod link;
+mod named;
 mod note;
 mod parameterization;
 pub(crate) mod pick;
@@ -33,28 +34,28 @@ pub use attribute::{AttributeComputed, AttributeKind, ComputeAttribute};
 pub use contact::SetContact;
 pub use draw::{DrawHorizon, HorizonDrawn};
 pub use extract::{Extract, ProposeFaults};
-pub use fault::{AddFault, FaultAdded, RemoveFault, RenameFault, SetFaultColour, SetFaultExtent, SetTruncation};
+pub use fault::{AddFault, FaultAdded, SetFaultExtent, SetTruncation};
 pub use fault_pick::{AcceptFault, MoveStickPoint, PickFault};
-pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
-pub use import::{ImportVolume, RemoveVolume, RenameVolume, VolumeImported};
+pub use horizon::{AddHorizon, Age, HorizonAdded};
+pub use import::{ImportVolume, VolumeImported};
 pub use layer::{ResetLayer, SetLayer};
 pub use link::LinkVolume;
-pub use note::{AddNote, RemoveNote};
+pub use named::{Remove, Rename, SetColour};
+pub use note::AddNote;
 pub use parameterization::SetParameterization;
 pub use pick::{
-    Climb, Move, MovePick, PickNode, PickNodes, Picked, RemovePick, ReplayPicks, Replayed, ReplayedPick,
-    SetHorizonColour, Unfit,
+    Climb, Move, MovePick, PickNode, PickNodes, Picked, RemovePick, ReplayPicks, Replayed, ReplayedPick, Unfit,
 };
 pub use pick_by_time::{PickByTime, PickedByTime, TimeLevel};
 pub use refine::{FillHorizon, HorizonRefined, SmoothHorizon};
 pub use scalar::{RemoveScalar, SetRaw, SetScalar};
-pub use scene::{AddScene, RemoveScene, RenameScene};
+pub use scene::AddScene;
 pub use stack::{Spacing, StackHorizons, Stacked};
 pub use survey_frame::SetVelocity;
 pub use texture::AddTexture;
 pub use time::{ComputeTime, TimeComputed};
 pub use time_slabs::TimeSlabs;
-pub use well::{AddWell, RemoveWell, RenameWell, SetWellColour, WellAdded};
+pub use well::{AddWell, WellAdded};
 
 use crate::document::{Document, Origin};
 use crate::error::{Noun, ProjectError};
@@ -77,6 +78,12 @@ pub enum Command {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         geometry: Option<SurveyGeometry>,
     },
+    /// Give something another name.
+    Rename(Rename),
+    /// Remove something.
+    Remove(Remove),
+    /// Give something another colour.
+    SetColour(SetColour),
     /// Import a volume.
     Import(ImportVolume),
     /// Compute a volume from a volume.
@@ -89,16 +96,8 @@ pub enum Command {
     ProposeFaults(ProposeFaults),
     /// Take in a volume that stays in object storage.
     LinkVolume(LinkVolume),
-    /// Rename a volume.
-    RenameVolume(RenameVolume),
-    /// Remove a volume.
-    RemoveVolume(RemoveVolume),
     /// Add a horizon from a file.
     AddHorizon(AddHorizon),
-    /// Rename a horizon.
-    RenameHorizon(RenameHorizon),
-    /// Remove a horizon.
-    RemoveHorizon(RemoveHorizon),
     /// Add a node of a surface tree to a horizon, or remove it.
     Pick(PickNode),
     /// Add a horizon that is a level of geologic time.
@@ -113,8 +112,6 @@ pub enum Command {
     MovePick(MovePick),
     /// Remove a pick from its horizon's log.
     RemovePick(RemovePick),
-    /// Give a horizon another colour.
-    SetHorizonColour(SetHorizonColour),
     /// Repeat picks on the present extraction.
     ReplayPicks(ReplayPicks),
     /// Fill the holes of a horizon.
@@ -133,20 +130,8 @@ pub enum Command {
     SetTruncation(SetTruncation),
     /// State how far a fault reaches beyond what was drawn.
     SetFaultExtent(SetFaultExtent),
-    /// Give a fault another colour.
-    SetFaultColour(SetFaultColour),
-    /// Rename a fault.
-    RenameFault(RenameFault),
-    /// Remove a fault.
-    RemoveFault(RemoveFault),
     /// Add a well from its files.
     AddWell(AddWell),
-    /// Rename a well.
-    RenameWell(RenameWell),
-    /// Give a well another colour.
-    SetWellColour(SetWellColour),
-    /// Remove a well.
-    RemoveWell(RemoveWell),
     /// State the velocity that turns two-way time into metres.
     SetVelocity(SetVelocity),
     /// State the contact of a horizon with its neighbours.
@@ -167,14 +152,8 @@ pub enum Command {
     SetParameterization(SetParameterization),
     /// Save a scene under a name.
     AddScene(AddScene),
-    /// Give a scene another name.
-    RenameScene(RenameScene),
-    /// Remove a scene.
-    RemoveScene(RemoveScene),
     /// Write a note on a place.
     AddNote(AddNote),
-    /// Remove a note.
-    RemoveNote(RemoveNote),
 }
 
 /// What a command did: the facts to report to the user.
@@ -238,6 +217,9 @@ impl Command {
     pub(crate) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         match self {
             Self::Create { .. } => Err(ProjectError::Exists { path: draft.root().to_owned() }),
+            Self::Rename(change) => change.execute(draft),
+            Self::Remove(change) => change.execute(draft, progress),
+            Self::SetColour(change) => change.execute(draft),
             Self::Import(change) => change.execute(draft, progress),
             Self::Attribute(change) => change.execute(draft, progress),
             Self::Extract(change) => change.execute(draft, progress),
@@ -246,17 +228,12 @@ impl Command {
             Self::StackHorizons(change) => change.execute(draft, progress),
             Self::ProposeFaults(change) => change.execute(draft, progress),
             Self::LinkVolume(change) => change.execute(draft, progress),
-            Self::RenameVolume(change) => change.execute(draft),
-            Self::RemoveVolume(change) => change.execute(draft),
             Self::AddHorizon(change) => change.execute(draft, progress),
-            Self::RenameHorizon(change) => change.execute(draft),
-            Self::RemoveHorizon(change) => change.execute(draft),
             Self::Pick(change) => change.execute(draft, progress),
             Self::PickSeveral(change) => change.execute(draft, progress),
             Self::DrawHorizon(change) => change.execute(draft, progress),
             Self::MovePick(change) => change.execute(draft, progress),
             Self::RemovePick(change) => change.execute(draft, progress),
-            Self::SetHorizonColour(change) => change.execute(draft),
             Self::ReplayPicks(change) => change.execute(draft, progress),
             Self::FillHorizon(change) => change.execute(draft, progress),
             Self::SmoothHorizon(change) => change.execute(draft, progress),
@@ -265,14 +242,8 @@ impl Command {
             Self::AcceptFault(change) => change.execute(draft, progress),
             Self::AddFault(change) => change.execute(draft, progress),
             Self::AddWell(change) => change.execute(draft, progress),
-            Self::RenameWell(change) => change.execute(draft),
-            Self::SetWellColour(change) => change.execute(draft),
-            Self::RemoveWell(change) => change.execute(draft),
             Self::SetTruncation(change) => change.execute(draft, progress),
             Self::SetFaultExtent(change) => change.execute(draft, progress),
-            Self::SetFaultColour(change) => change.execute(draft),
-            Self::RenameFault(change) => change.execute(draft, progress),
-            Self::RemoveFault(change) => change.execute(draft, progress),
             Self::SetVelocity(change) => change.execute(draft),
             Self::SetContact(change) => change.execute(draft),
             Self::SetLayer(change) => change.execute(draft),
@@ -283,10 +254,7 @@ impl Command {
             Self::AddTexture(change) => change.execute(draft),
             Self::SetParameterization(change) => change.execute(draft, progress),
             Self::AddScene(change) => change.execute(draft),
-            Self::RenameScene(change) => change.execute(draft),
-            Self::RemoveScene(change) => change.execute(draft),
             Self::AddNote(change) => change.execute(draft),
-            Self::RemoveNote(change) => change.execute(draft),
         }
     }
 }

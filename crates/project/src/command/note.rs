@@ -16,13 +16,6 @@ pub struct AddNote {
     pub note: NoteEntry,
 }
 
-/// Removes a note.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RemoveNote {
-    /// Its number in the list, from 1.
-    pub number: usize,
-}
-
 impl AddNote {
     pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
         let NoteEntry { text, at, scene } = &self.note;
@@ -66,19 +59,4 @@ fn is_inside(frame: &SurveyGeometry, [inline, crossline, z]: [f64; 3]) -> bool {
     let voxel = frame.voxel_from_lines(inline, crossline).extend(frame.vertical.index_of(z));
     let size = frame.size();
     (0..3).all(|axis| voxel[axis] >= -1e-6 && voxel[axis] <= (size[axis].max(1) - 1) as f64 + 1e-6)
-}
-
-impl RemoveNote {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
-        let count = draft.document.notes.len();
-        if !(1..=count).contains(&self.number) {
-            let fact = match count {
-                0 => format!("there is no note {}: the project has none", self.number),
-                _ => format!("there is no note {}: they are numbered 1 to {count}", self.number),
-            };
-            return Err(ProjectError::BadNote(fact));
-        }
-        draft.document.notes.remove(self.number - 1);
-        Ok(Effect::Changed { summary: format!("removed note {}", self.number) })
-    }
 }

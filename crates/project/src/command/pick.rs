@@ -1,7 +1,7 @@
 //! Picking: a place selects a leaf, the climb a node of its tree, and the node becomes part of a horizon. A pick can be
 //! moved later.
 
-use super::{Effect, Noun, ProjectError};
+use super::{Effect, ProjectError};
 use crate::document::{Assembly, PickEntry};
 use crate::folder::Draft;
 use crate::interpretation::assembly::{self, AssemblyReport, ReportedOverlap, rebuild};
@@ -304,27 +304,6 @@ fn find(draft: &Draft, id: u32) -> Result<(String, Assembly), ProjectError> {
 /// The numbers of the picks of a log and of what was drawn.
 fn numbers(log: &Assembly) -> impl Iterator<Item = u32> {
     log.picks.iter().map(|pick| pick.id).chain(log.drawn.iter().map(|drawn| drawn.id))
-}
-
-/// Gives a horizon another colour.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SetHorizonColour {
-    /// The horizon.
-    pub horizon: String,
-    /// Its colour.
-    pub colour: Colour,
-}
-
-impl SetHorizonColour {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
-        let index = draft.document.position(Noun::Horizon, &self.horizon)?;
-        let entry = &mut draft.document.horizons[index];
-        match &mut entry.assembly {
-            Some(log) => log.colour = self.colour,
-            None => entry.colour = Some(self.colour),
-        }
-        Ok(Effect::Changed { summary: format!("colour of {}", self.horizon) })
-    }
 }
 
 /// A number that no pick has yet, and nothing that was drawn.

@@ -2,7 +2,7 @@
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
-use crate::document::TextureEntry;
+use crate::document::{Id, TextureEntry};
 use crate::folder::Draft;
 use crate::styles;
 use serde::{Deserialize, Serialize};
@@ -38,6 +38,7 @@ impl AddTexture {
         draft.document.check_new_name(Noun::Texture, &name)?;
         fs::copy(&self.path, &new).map_err(|source| ProjectError::io("written", &new, source))?;
         draft.document.textures.push(TextureEntry {
+            id: Id::default(),
             name: name.clone(),
             file,
             tile_mm: [width_mm, height * width_mm / width],

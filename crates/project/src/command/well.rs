@@ -2,7 +2,7 @@
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
-use crate::document::{Document, WellEntry};
+use crate::document::{Document, Id, WellEntry};
 use crate::folder::Draft;
 use files::well::{self, WellFiles, WellOptions, WellReport};
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,6 @@ use std::fmt;
 use std::path::Path;
 use survey::well::{LogSet, TopPlace, WellPlacement, is_same_surface};
 use survey::{Horizon, Progress, Well};
-use ttf::Colour;
 
 /// Reads a well into the project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -22,31 +21,6 @@ pub struct AddWell {
     /// What the user states about them.
     #[serde(default)]
     pub options: WellOptions,
-}
-
-/// Gives a well another name.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RenameWell {
-    /// Its name.
-    pub from: String,
-    /// Its new name.
-    pub to: String,
-}
-
-/// Gives a well another colour.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct SetWellColour {
-    /// Name of the well.
-    pub well: String,
-    /// Colour of its path, in the block and on sections.
-    pub colour: Colour,
-}
-
-/// Removes a well.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RemoveWell {
-    /// Its name.
-    pub name: String,
 }
 
 /// A top of a well relative to the survey.
@@ -242,38 +216,14 @@ impl AddWell {
             done.curves.len()
         );
         let origin = super::imported(&self.files.deviation, reading)?;
-        draft.document.wells.push(WellEntry { name: self.name.clone(), file, hash, colour: None, origin });
+        draft.document.wells.push(WellEntry {
+            id: Id::default(),
+            name: self.name.clone(),
+            file,
+            hash,
+            colour: None,
+            origin,
+        });
         Ok(Effect::WellAdded(Box::new(done)))
-    }
-}
-
-impl SetWellColour {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
-        let index = draft.document.position(Noun::Well, &self.well)?;
-        draft.document.wells[index].colour = Some(self.colour);
-        Ok(Effect::Changed { summary: format!("colour of well {}", self.well) })
-    }
-}
-
-impl RenameWell {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
-        let index = draft.document.position(Noun::Well, &self.from)?;
-        // The well's own name in another case is not a duplicate.
-        if self.from.to_lowercase() != self.to.to_lowercase() {
-            draft.document.check_new_name(Noun::Well, &self.to)?;
-        }
-        draft.document.wells[index].name.clone_from(&self.to);
-        // Where a scene hides it, it hides it under its new name.
-        let hidden = draft.document.scenes.iter_mut().flat_map(|entry| &mut entry.scene.hidden_wells);
-        hidden.filter(|name| **name == self.from).for_each(|name| name.clone_from(&self.to));
-        Ok(Effect::Changed { summary: format!("well {} is now {}", self.from, self.to) })
-    }
-}
-
-impl RemoveWell {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
-        let index = draft.document.position(Noun::Well, &self.name)?;
-        draft.document.wells.remove(index);
-        Ok(Effect::Changed { summary: format!("removed well {}", self.name) })
     }
 }

@@ -1,7 +1,7 @@
 //! The facts that a project keeps about a stored volume, found by reading as little of it as necessary.
 
 use crate::content;
-use crate::document::{Origin, Polarity, VolumeEntry};
+use crate::document::{Id, Origin, Polarity, VolumeEntry};
 use crate::error::ProjectError;
 use rayon::prelude::*;
 use std::path::Path;
@@ -34,6 +34,7 @@ pub(crate) fn entry(path: &Path, facts: Facts, progress: &Progress) -> Result<Vo
     let (_, ranges) = stored.brick_ranges(0)?;
     let lowest = ranges.iter().map(|range| range[0]).filter(|low| !low.is_nan()).fold(f32::INFINITY, f32::min);
     Ok(VolumeEntry {
+        id: Id::default(),
         hash: content::hash_stored(&stored)?,
         clip: clip_of(&stored, progress)?,
         lowest: if lowest.is_finite() { lowest } else { 0.0 },

@@ -10,7 +10,7 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 use survey::{HeightField, Progress};
 
-const BLOCKS: Kind = Kind { prefix: "blocks", magic: b"PGBLOCK\x01", what: "the fault blocks" };
+const BLOCKS: Kind = Kind { prefix: "blocks", magic: b"PGBLOCK\x02", what: "the fault blocks" };
 
 /// Numbers in a fault's frame: a matrix, an offset, the spacing of its nodes.
 const FRAME: usize = 13;
@@ -21,16 +21,12 @@ pub fn blocks_key(document: &Document) -> String {
     struct Inputs<'a> {
         revision: u32,
         geometry: &'a Option<survey::SurveyGeometry>,
-        faults: Vec<(&'a str, String)>,
+        faults: Vec<String>,
     }
-    key_of(&Inputs {
-        revision: revision::MODEL,
-        geometry: &document.geometry,
-        faults: document.faults.iter().map(|entry| (entry.name.as_str(), entry.shape())).collect(),
-    })
+    key_of(&Inputs { revision: revision::MODEL, geometry: &document.geometry, faults: document.fault_shapes() })
 }
 
-/// The fault blocks stored under `key`, if there is an intact file.
+/// The fault blocks stored under `key`, if there is an intact file; its faults have no names ([`FaultNetwork::named`]).
 pub fn load_blocks(root: &Path, key: &str) -> Option<FaultNetwork> {
     BLOCKS.load(root, key, read)
 }
@@ -49,7 +45,6 @@ struct Header {
 
 #[derive(Serialize, Deserialize)]
 struct FaultHeader {
-    name: String,
     /// The fault it ends at, and whether it lies on the positive side of that fault.
     truncation: Option<(usize, bool)>,
     origin: [i32; 2],
@@ -68,7 +63,6 @@ fn write_parts(
     signatures: &[BlockSignature],
 ) -> io::Result<()> {
     let faults = surfaces.iter().zip(truncation).map(|(fault, truncation)| FaultHeader {
-        name: fault.name.clone(),
         truncation: truncation.map(|truncation| (truncation.by, truncation.positive)),
         origin: fault.surface.origin,
         size: fault.surface.size,
@@ -90,12 +84,12 @@ fn read(input: &mut dyn Read, length: u64) -> io::Result<FaultNetwork> {
     let header: Header = read_header(input, length)?;
     let mut surfaces = Vec::with_capacity(header.faults.len());
     let mut truncation = Vec::with_capacity(header.faults.len());
-    for FaultHeader { name, truncation: ends, origin, size } in header.faults {
+    for FaultHeader { truncation: ends, origin, size } in header.faults {
         let frame: Vec<f64> = read_array(input, FRAME, length)?;
         let nodes = size[0].checked_mul(size[1]).ok_or_else(damaged)?;
         let mut field = || Ok::<_, io::Error>(HeightField { origin, size, z: read_array(input, nodes, length)? });
         surfaces.push(FaultSurface {
-            name,
+            name: String::new(),
             frame_from_voxel: DMat3::from_cols_slice(&frame[..9]),
             frame_offset: DVec3::from_slice(&frame[9..12]),
             spacing_m: frame[12],

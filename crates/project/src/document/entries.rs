@@ -1,10 +1,11 @@
 //! The named entries of a project as `project.toml` lists them. Files are relative to the project's folder; a hash
 //! identifies data by its content.
 
+use super::ids::Id;
 use super::origin::Origin;
 use super::picks::Assembly;
 use figure::Figure;
-use render::{IsosurfaceSource, Scene};
+use render::Scene;
 use serde::{Deserialize, Serialize};
 use survey::{Contact, Quantity, SurveyGeometry};
 use ttf::{Colour, LayerTtf, RawColour, ScalarTtf, TransferFunctions, TtfSettings};
@@ -33,6 +34,9 @@ impl std::fmt::Display for Polarity {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VolumeEntry {
+    /// By which `project.toml` refers to it.
+    #[serde(default, skip_serializing_if = "Id::is_none")]
+    pub id: Id,
     /// Unique name.
     pub name: String,
     /// Data, relative to the project's folder.
@@ -78,6 +82,9 @@ pub struct ProposalsEntry {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HorizonEntry {
+    /// By which `project.toml` refers to it.
+    #[serde(default, skip_serializing_if = "Id::is_none")]
+    pub id: Id,
     /// Unique name.
     pub name: String,
     /// Its contact with its neighbours.
@@ -124,12 +131,23 @@ impl HorizonEntry {
     pub fn own_colour(&self) -> Option<Colour> {
         self.assembly.as_ref().map(|log| log.colour).or(self.colour)
     }
+
+    /// Gives it a colour, where it keeps its own.
+    pub fn set_colour(&mut self, colour: Colour) {
+        match &mut self.assembly {
+            Some(log) => log.colour = colour,
+            None => self.colour = Some(colour),
+        }
+    }
 }
 
 /// A fault of the project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FaultEntry {
+    /// By which `project.toml` refers to it.
+    #[serde(default, skip_serializing_if = "Id::is_none")]
+    pub id: Id,
     /// Unique name.
     pub name: String,
     /// The fault it ends at.
@@ -154,11 +172,6 @@ impl FaultEntry {
     pub fn ink(&self) -> Colour {
         self.colour.unwrap_or(Colour::BLACK)
     }
-
-    /// What its part in the model depends on: its triangles, where it ends, how far it grows.
-    pub fn shape(&self) -> String {
-        format!("{} {:?} {}", self.hash, self.truncated_by, self.grown_m)
-    }
 }
 
 /// Whether a fault ends where it was drawn.
@@ -171,6 +184,9 @@ pub(crate) fn is_zero(metres: &f64) -> bool {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WellEntry {
+    /// By which `project.toml` refers to it.
+    #[serde(default, skip_serializing_if = "Id::is_none")]
+    pub id: Id,
     /// Unique name.
     pub name: String,
     /// Data, relative to the project's folder.
@@ -188,6 +204,9 @@ pub struct WellEntry {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TextureEntry {
+    /// By which `project.toml` refers to it.
+    #[serde(default, skip_serializing_if = "Id::is_none")]
+    pub id: Id,
     /// Unique name, by which layers refer to it: the file's name without its extension.
     pub name: String,
     /// The picture, relative to the project's folder.
@@ -246,6 +265,9 @@ impl Style {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneEntry {
+    /// By which `project.toml` refers to it.
+    #[serde(default, skip_serializing_if = "Id::is_none")]
+    pub id: Id,
     /// Unique name.
     pub name: String,
     /// The scene.
@@ -291,17 +313,4 @@ pub fn volumes_within(scene: &Scene) -> impl Iterator<Item = &str> {
         .map(|medium| medium.volume.as_str())
         .chain(media.isosurface_volumes().map(String::as_str))
         .chain(painted)
-}
-
-/// Gives a volume its new name wherever a scene shows it.
-pub fn rename_volume_in(scene: &mut Scene, from: &str, to: &str) {
-    let Scene { media, raw, .. } = scene;
-    let of_media = media.surroundings.iter_mut().chain(&mut media.cut_outs).map(|medium| &mut medium.volume);
-    let of_isosurfaces = media.isosurfaces.iter_mut().filter_map(|surface| match &mut surface.of {
-        IsosurfaceSource::Volume(name) => Some(name),
-        IsosurfaceSource::Depth => None,
-    });
-    let painted = media.horizons.iter_mut().filter_map(|horizon| Some(&mut horizon.paint.as_mut()?.volume));
-    let names = of_media.chain(of_isosurfaces).chain(painted).chain(raw.iter_mut().map(|raw| &mut raw.volume));
-    names.filter(|name| *name == from).for_each(|name| to.clone_into(name));
 }

@@ -1,8 +1,8 @@
 //! Layers of a project: their names, and how their styles persist when the horizons change.
 //!
-//! Styles belong to layers by name. A horizon put into a layer splits it: the part that keeps the old base
-//! keeps the name and the style, the part above the new horizon starts without them. Removing a horizon joins
-//! two layers into one, which keeps the name and the style of the lower one.
+//! A layer is called after the horizon at its base ([`super::ids`]). So a horizon put into a layer splits it: the part
+//! that keeps the old base keeps the name and the style, the part above the new horizon starts without them. Removing a
+//! horizon joins two layers into one, which keeps the name and the style of the lower one.
 
 use super::{Document, HorizonEntry};
 use crate::error::{Noun, ProjectError};
@@ -25,15 +25,6 @@ impl Document {
         names.iter().zip(by_contact).map(|(name, usual)| self.k.get(name).copied().unwrap_or(usual)).collect()
     }
 
-    /// Makes a change that keeps the number of layers, and moves the styles when the names of their layers change.
-    pub fn keep_styles<E>(&mut self, change: impl FnOnce(&mut Self) -> Result<(), E>) -> Result<(), E> {
-        let before = self.layers();
-        change(self)?;
-        let after = self.layers();
-        self.rename_styles(before.iter().map(String::as_str).zip(after.iter().map(|name| Some(name.as_str()))));
-        Ok(())
-    }
-
     /// Puts a horizon at `position` (0 = youngest). It gets a colour of its own unless it has one, and the others keep
     /// those in which they were drawn until now.
     pub fn insert_horizon(&mut self, position: usize, mut entry: HorizonEntry) {
@@ -45,7 +36,7 @@ impl Document {
                 other.colour = Some(horizon_colour(None, index));
             }
         }
-        self.split_layer(position, |document| document.horizons.insert(position, entry));
+        self.by_ids(|document| document.put_in(position, entry, String::new()));
     }
 
     /// A colour for the next horizon: the first of those that the fewest horizons have.
@@ -58,32 +49,27 @@ impl Document {
         HORIZON_COLOURS.into_iter().min_by_key(taken).unwrap_or(HORIZON_COLOURS[0])
     }
 
-    /// Inserts the layer boundary of a horizon at `position` (0 = youngest); `insert` adds the horizon itself.
-    fn split_layer(&mut self, position: usize, insert: impl FnOnce(&mut Self)) {
-        let before = self.layers();
-        insert(self);
+    /// Puts a horizon in, and the name of the layer above it if layers have names.
+    fn put_in(&mut self, position: usize, entry: HorizonEntry, layer: String) {
+        self.horizons.insert(position, entry);
         if !self.layer_names.is_empty() {
-            self.layer_names.insert(position, String::new());
+            self.layer_names.insert(position, layer);
         }
-        let after = self.layers();
-        let now = |index: usize| Some(after[if index < position { index } else { index + 1 }].as_str());
-        self.rename_styles(before.iter().enumerate().map(|(index, name)| (name.as_str(), now(index))));
     }
 
-    /// Removes the layer boundary at `position`; `remove` removes the horizon itself.
-    pub fn join_layers(&mut self, position: usize, remove: impl FnOnce(&mut Self)) {
-        let before = self.layers();
-        remove(self);
-        if !self.layer_names.is_empty() {
-            self.layer_names.remove(position);
-        }
-        let after = self.layers();
-        let now = |index: usize| match index.cmp(&position) {
-            std::cmp::Ordering::Less => Some(after[index].as_str()),
-            std::cmp::Ordering::Equal => None,
-            std::cmp::Ordering::Greater => Some(after[index - 1].as_str()),
-        };
-        self.rename_styles(before.iter().enumerate().map(|(index, name)| (name.as_str(), now(index))));
+    /// Takes a horizon out with the name of the layer above it.
+    pub(crate) fn take_out(&mut self, position: usize) -> (HorizonEntry, String) {
+        let has_names = !self.layer_names.is_empty();
+        let layer = if has_names { self.layer_names.remove(position) } else { String::new() };
+        (self.horizons.remove(position), layer)
+    }
+
+    /// Puts `entry` in place of the horizon at `old`, at another position; the layer above comes along.
+    pub fn move_horizon(&mut self, old: usize, position: usize, entry: HorizonEntry) {
+        self.by_ids(|document| {
+            let (before, layer) = document.take_out(old);
+            document.put_in(position, HorizonEntry { id: before.id, ..entry }, layer);
+        });
     }
 
     /// Renames a layer.
@@ -91,33 +77,17 @@ impl Document {
     /// # Errors
     /// The name cannot be used or is taken by another layer.
     pub fn name_layer(&mut self, position: usize, name: &str) -> Result<(), ProjectError> {
-        let before = self.layers();
-        if before[position] == name {
-            return Ok(());
+        let layers = self.layers();
+        if layers[position] != name {
+            if layers[position].to_lowercase() != name.to_lowercase() {
+                self.check_new_name(Noun::Layer, name)?;
+            }
+            self.by_ids(|document| {
+                document.layer_names.resize(layers.len(), String::new());
+                name.clone_into(&mut document.layer_names[position]);
+            });
         }
-        self.check_new_name(Noun::Layer, name)?;
-        self.keep_styles(|document| {
-            document.layer_names.resize(before.len(), String::new());
-            document.layer_names[position] = name.to_owned();
-            Ok(())
-        })
-    }
-
-    /// Moves styles and definitions of k from old to new layer names at once; those without a new name are dropped.
-    fn rename_styles<'a>(&mut self, names: impl Iterator<Item = (&'a str, Option<&'a str>)>) {
-        let names: Vec<_> = names.collect();
-        let styles = std::mem::take(&mut self.style.layers.styles);
-        self.style.layers.styles = styles
-            .into_iter()
-            .filter_map(|mut style| {
-                let now = names.iter().find(|(before, _)| *before == style.layer).map(|(_, now)| *now)?;
-                style.layer = now?.to_owned();
-                Some(style)
-            })
-            .collect();
-        let k = std::mem::take(&mut self.k);
-        let now = |before: &str| names.iter().find(|(name, _)| *name == before)?.1.map(str::to_owned);
-        self.k = k.into_iter().filter_map(|(name, k)| Some((now(&name)?, k))).collect();
+        Ok(())
     }
 }
 

@@ -7,20 +7,24 @@
 mod comments;
 pub(crate) mod data_file;
 mod entries;
+mod ids;
 mod layers;
 mod migration;
 mod origin;
 mod picks;
+mod references;
 
 use crate::error::{Noun, ProjectError};
 pub(crate) use entries::is_zero;
 pub use entries::{
     ExtractionEntry, FaultEntry, FigureEntry, HorizonEntry, NoteEntry, ParameterizationEntry, Polarity, ProposalsEntry,
-    Refinement, SceneEntry, Style, TextureEntry, VolumeEntry, WellEntry, rename_volume_in, volumes_within,
+    Refinement, SceneEntry, Style, TextureEntry, VolumeEntry, WellEntry, volumes_within,
 };
+pub use ids::{Id, Renamed};
 pub use origin::{AttributeKind, Chooser, Origin, Uninterpreted};
 use param::KDefinition;
 pub use picks::{Assembly, Drawn, DrawnEntry, FaultSticks, PickEntry};
+pub use references::{Reference, ReferenceHolder, ReferenceKind, VisitReference};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -53,6 +57,9 @@ pub struct Document {
     pub version: u32,
     /// Position in the history: the number of the command that led here.
     pub step: u32,
+    /// The number of the last id that was given; none is given twice.
+    #[serde(default)]
+    pub last_id: u32,
     /// The lattice in which everything is placed; `None` until a volume is imported or bounds are given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub geometry: Option<SurveyGeometry>,
@@ -117,6 +124,7 @@ impl Document {
         Self {
             version: VERSION,
             step: 0,
+            last_id: 0,
             geometry,
             layer_names: Vec::new(),
             fonts: Vec::new(),
@@ -144,7 +152,7 @@ impl Document {
 
     /// The text of `project.toml`.
     pub fn to_text(&self, path: &Path) -> Result<String, ProjectError> {
-        let body = toml::to_string_pretty(self)
+        let body = toml::to_string_pretty(&self.with_ids())
             .map_err(|error| ProjectError::Malformed { path: path.to_owned(), detail: error.to_string() })?;
         Ok(format!("{HEADER}{body}"))
     }
@@ -163,10 +171,11 @@ impl Document {
         if version > VERSION {
             return Err(ProjectError::Newer { path: path.to_owned(), found: version, supported: VERSION });
         }
-        let document: Self = match version {
+        let mut document: Self = match version {
             VERSION => toml::from_str(text).map_err(|error| malformed(error.to_string()))?,
             _ => migration::read(text, path).map_err(malformed)?,
         };
+        document.resolve_ids();
         document.check().map_err(malformed)?;
         Ok(document)
     }
@@ -225,6 +234,8 @@ impl Document {
             Noun::Texture => self.textures.iter().map(|entry| entry.name.clone()).collect(),
             Noun::Parameterization => self.parameterization.iter().map(|entry| entry.name.clone()).collect(),
             Noun::Scene => self.scenes.iter().map(|entry| entry.name.clone()).collect(),
+            Noun::Note => (1..=self.notes.len()).map(|number| number.to_string()).collect(),
+            Noun::Figure => self.figures.iter().map(|entry| entry.file.clone()).collect(),
         }
     }
 
@@ -256,6 +267,15 @@ impl Document {
     /// [`ProjectError::NoGeometry`] while there is none.
     pub fn frame(&self) -> Result<&SurveyGeometry, ProjectError> {
         self.geometry.as_ref().ok_or(ProjectError::NoGeometry)
+    }
+
+    /// What the part of each fault in the model depends on: its triangles, at which fault it ends, how far it grows.
+    pub fn fault_shapes(&self) -> Vec<String> {
+        let ends_at = |name: &String| self.faults.iter().position(|fault| fault.name == *name);
+        let shape = |fault: &FaultEntry| {
+            format!("{} {:?} {}", fault.hash, fault.truncated_by.as_ref().and_then(ends_at), fault.grown_m)
+        };
+        self.faults.iter().map(shape).collect()
     }
 
     /// Refuses faults that end at one another in a circle, and faults that end at a fault that does not exist.
@@ -295,10 +315,12 @@ impl Document {
     /// [`ProjectError::Unknown`] with the names that exist.
     pub fn position(&self, noun: Noun, name: &str) -> Result<usize, ProjectError> {
         let names = self.names(noun);
-        names.iter().position(|present| present == name).ok_or_else(|| ProjectError::Unknown {
-            noun,
-            name: name.to_owned(),
-            known: names,
+        names.iter().position(|present| present == name).ok_or_else(|| match (noun, names.len()) {
+            (Noun::Note, 0) => ProjectError::BadNote(format!("there is no note {name}: the project has none")),
+            (Noun::Note, count) => {
+                ProjectError::BadNote(format!("there is no note {name}: they are numbered 1 to {count}"))
+            }
+            _ => ProjectError::Unknown { noun, name: name.to_owned(), known: names },
         })
     }
 
@@ -336,6 +358,7 @@ mod tests {
 
     fn horizon(name: &str) -> HorizonEntry {
         HorizonEntry {
+            id: Id::default(),
             name: name.into(),
             contact: Contact::Erosional,
             file: format!("horizons/{name}.zarr"),
@@ -356,7 +379,8 @@ mod tests {
 
     #[test]
     fn text_and_state_invert() {
-        let document = document();
+        let mut document = document();
+        document.resolve_ids();
         let path = Path::new("project.toml");
         let text = document.to_text(path).unwrap();
         let read = Document::from_text(&text, path).unwrap();

@@ -1,5 +1,6 @@
 //! Where the data of a project came from. It is a fact that is asked for; words are made of it only where they are shown.
 
+use super::references::{HORIZON, VOLUME};
 use super::{Document, VolumeEntry};
 use crate::error::Noun;
 use serde::{Deserialize, Serialize};
@@ -126,14 +127,12 @@ impl Origin {
         }
     }
 
-    /// The names of things of this kind in it.
-    fn names_mut(&mut self, noun: Noun) -> Vec<&mut String> {
-        match (noun, self) {
-            (Noun::Volume, Self::Attribute { of, .. } | Self::GeologicTime { of } | Self::TimeFraction { of }) => {
-                vec![of]
-            }
-            (Noun::Horizon, Self::Share { between, .. }) => between.iter_mut().collect(),
-            (Noun::Horizon, Self::Proposed { horizons }) => horizons.iter_mut().collect(),
+    /// The names in it, each with what it can be the name of.
+    pub(super) fn names_mut(&mut self) -> Vec<(&'static [Noun], &mut String)> {
+        match self {
+            Self::Attribute { of, .. } | Self::GeologicTime { of } | Self::TimeFraction { of } => vec![(VOLUME, of)],
+            Self::Share { between, .. } => between.iter_mut().map(|name| (HORIZON, name)).collect(),
+            Self::Proposed { horizons } => horizons.iter_mut().map(|name| (HORIZON, name)).collect(),
             _ => Vec::new(),
         }
     }
@@ -205,16 +204,6 @@ impl Document {
                 (!self.horizons.iter().any(|entry| is_chosen(&entry.origin))).then_some(Uninterpreted::ComputedLevels)
             }
         }
-    }
-
-    /// Gives something its new name in the origins of others.
-    pub(crate) fn rename_in_origins(&mut self, noun: Noun, from: &str, to: &str) {
-        let volumes = self.volumes.iter_mut().map(|entry| &mut entry.origin);
-        let horizons = self.horizons.iter_mut().map(|entry| &mut entry.origin);
-        let faults = self.faults.iter_mut().map(|entry| &mut entry.origin);
-        let maps = self.parameterization.iter_mut().map(|entry| &mut entry.origin);
-        let names = volumes.chain(horizons).chain(faults).chain(maps).flat_map(|origin| origin.names_mut(noun));
-        names.filter(|name| *name == from).for_each(|name| to.clone_into(name));
     }
 
     /// The newest volume of geologic time on the project's lattice, wherever it was computed.

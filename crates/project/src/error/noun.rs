@@ -1,10 +1,10 @@
 //! What a project has several of, each with a name.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Kinds of named things in a project.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Noun {
     /// A seismic or attribute volume.
     Volume,
@@ -22,6 +22,26 @@ pub enum Noun {
     Parameterization,
     /// A named view.
     Scene,
+    /// A note on a place, called by its number.
+    Note,
+    /// A figure that is made with the others, called by its file.
+    Figure,
+}
+
+impl Noun {
+    /// All of them.
+    pub const ALL: [Self; 10] = [
+        Self::Volume,
+        Self::Horizon,
+        Self::Fault,
+        Self::Well,
+        Self::Layer,
+        Self::Texture,
+        Self::Parameterization,
+        Self::Scene,
+        Self::Note,
+        Self::Figure,
+    ];
 }
 
 impl std::fmt::Display for Noun {
@@ -35,6 +55,8 @@ impl std::fmt::Display for Noun {
             Self::Texture => "texture",
             Self::Parameterization => "parameterization",
             Self::Scene => "scene",
+            Self::Note => "note",
+            Self::Figure => "figure",
         })
     }
 }

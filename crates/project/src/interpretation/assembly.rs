@@ -176,10 +176,11 @@ pub fn sentence(conflict: &ReportedConflict) -> String {
 /// The fault blocks of the project. They take longer to compute than everything else that a pick needs, so they are
 /// stored beside the project, and a caller that makes several picks holds them.
 pub fn blocks(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<FaultNetwork>, ProjectError> {
-    static HELD: WeakCache<(SurveyGeometry, Vec<String>), FaultNetwork> = WeakCache::nothing();
+    static HELD: WeakCache<(SurveyGeometry, Vec<String>, Vec<String>), FaultNetwork> = WeakCache::nothing();
     let geometry = document.frame()?;
-    let key = document.faults.iter().map(|entry| format!("{} {}", entry.name, entry.shape()));
-    HELD.get_or_make((geometry.clone(), key.collect()), || {
+    // The value calls the faults by their names, so they are part of the key; what is stored is not called anything.
+    let names = document.names(Noun::Fault);
+    HELD.get_or_make((geometry.clone(), document.fault_shapes(), names.clone()), || {
         if document.faults.is_empty() {
             return Ok(FaultNetwork::none());
         }
@@ -188,7 +189,7 @@ pub fn blocks(root: &Path, document: &Document, progress: &Progress) -> Result<A
         let faults = document.faults.iter().map(|entry| content::read_fault(root, entry));
         let faults = faults.collect::<Result<Vec<_>, _>>()?;
         if let Some(kept) = derived::load_blocks(root, &key) {
-            return Ok(kept);
+            return Ok(kept.named(names));
         }
         let made = FaultNetwork::build(geometry, &faults, progress)?;
         derived::keep_blocks(root, &key, &made, progress);
@@ -373,18 +374,15 @@ pub(crate) fn put(
         (None, Some(before)) => before.origin.clone(),
         (None, None) => return Err(ProjectError::NothingLeft { horizon: name.clone() }),
     };
-    let (contact, colour, mut refined) =
-        before.map_or_else(Default::default, |before| (before.contact, before.colour, before.refined));
+    let (id, contact, colour, mut refined) =
+        before.map_or_else(Default::default, |before| (before.id, before.contact, before.colour, before.refined));
     if refined.last() != done.as_ref() {
         refined.extend(done);
     }
-    let entry = HorizonEntry { name: name.clone(), contact, file, hash, origin, assembly: log, colour, refined };
+    let entry = HorizonEntry { id, name: name.clone(), contact, file, hash, origin, assembly: log, colour, refined };
     match old {
         Some(old) if old == position => document.horizons[old] = entry,
-        Some(old) => {
-            document.join_layers(old, |document| drop(document.horizons.remove(old)));
-            document.insert_horizon(position, entry);
-        }
+        Some(old) => document.move_horizon(old, position, entry),
         None => document.insert_horizon(position, entry),
     }
     Ok(())

@@ -8,7 +8,7 @@
 use crate::content;
 use crate::derived::{Scratch, folder, key_of, revision};
 use crate::document::{Document, Origin};
-use crate::error::ProjectError;
+use crate::error::{Noun, ProjectError};
 use crate::folder::{history, storage};
 use crate::interpretation::assembly;
 use crate::interpretation::candidates::{Candidates, amplitudes};
@@ -134,7 +134,7 @@ fn whole_key(document: &Document, settings: &ProposeSettings) -> String {
 
 /// The key of proposals: a hash of everything that they are made from.
 fn key(document: &Document, settings: &ProposeSettings) -> String {
-    let faults: Vec<_> = document.faults.iter().map(|entry| (&entry.name, entry.shape())).collect();
+    let faults = document.fault_shapes();
     let volume = document.volumes.iter().find(|entry| entry.geometry.is_none()).map(|entry| &entry.hash);
     let revisions = [revision::PROPOSALS, revision::MODEL];
     key_of(&(revisions, &document.geometry, hashes(document), faults, volume, settings))
@@ -172,7 +172,7 @@ pub(crate) fn compute(
     if let Some(entry) = volume {
         content::open_recorded(root, entry, geometry)?;
     }
-    if let Some(known) = read(root, &key) {
+    if let Some(known) = read(root, document, &key) {
         return Ok((key, known));
     }
     let horizons: Vec<Evidence> =
@@ -194,7 +194,7 @@ pub(crate) fn compute(
         join(&mut all, new_faults(root, document, &blocks, progress)?, geometry);
     }
     let proposals = Proposals::new(document, geometry, all, found.repeats);
-    write(root, &key, &proposals)?;
+    write(root, document, &key, proposals.clone())?;
     Ok((key, proposals))
 }
 
@@ -213,12 +213,12 @@ fn from_candidates(
     // The key relies on the hashes that were recorded.
     content::open_recorded(root, amplitudes(document)?, geometry)?;
     let blocks = assembly::blocks(root, document, progress)?;
-    if let Some(known) = read(root, &key) {
+    if let Some(known) = read(root, document, &key) {
         return Ok((key, known));
     }
     let new = new_faults(root, document, &blocks, progress)?;
     let proposals = Proposals::new(document, geometry, ::time::proposals(&new, geometry), Vec::new());
-    write(root, &key, &proposals)?;
+    write(root, document, &key, proposals.clone())?;
     Ok((key, proposals))
 }
 
@@ -269,19 +269,30 @@ fn join(all: &mut Vec<Proposal>, mut found: Vec<FoundFault>, geometry: &SurveyGe
     }
 }
 
-fn write(root: &Path, key: &str, proposals: &Proposals) -> Result<(), ProjectError> {
+/// Changes what horizons and faults are called in proposals.
+fn call(proposals: &mut Proposals, mut call: impl FnMut(Noun, &mut String)) {
+    let horizons = proposals.proposals.iter_mut().flat_map(|proposal| &mut proposal.horizons);
+    horizons.for_each(|name| call(Noun::Horizon, name));
+    proposals.repeats.iter_mut().for_each(|repeat| call(Noun::Fault, &mut repeat.fault));
+}
+
+/// Stores proposals, in which ids stand in place of names.
+fn write(root: &Path, document: &Document, key: &str, mut proposals: Proposals) -> Result<(), ProjectError> {
+    call(&mut proposals, document.ids_of_names());
     let (scratch, file) = (Scratch::begin(root)?, file_of(key));
     let path = scratch.path(&file);
-    let text = serde_json::to_string_pretty(proposals)
+    let text = serde_json::to_string_pretty(&proposals)
         .map_err(|error| ProjectError::Malformed { path: path.clone(), detail: error.to_string() })?;
     store::replace_file(&path, text.as_bytes())?;
     scratch.publish(&file)
 }
 
 /// The proposals stored under a key, if there is an intact file.
-fn read(root: &Path, key: &str) -> Option<Proposals> {
+fn read(root: &Path, document: &Document, key: &str) -> Option<Proposals> {
     let text = file::read_text(&folder(root).join(file_of(key)), file::MAX_INTERPRETATION_BYTES).ok()?;
-    serde_json::from_str(&text).ok()
+    let mut proposals = serde_json::from_str(&text).ok()?;
+    call(&mut proposals, document.names_of_ids());
+    Some(proposals)
 }
 
 /// Checks that proposals can be read.
@@ -327,7 +338,7 @@ pub fn find(root: &Path, document: &Document, id: u32) -> Result<Proposal, Proje
 /// There are none, or they were made for another state.
 pub fn kept(root: &Path, document: &Document) -> Result<Proposals, ProjectError> {
     let entry = document.fault_proposals.as_ref().ok_or(ProjectError::NoProposals)?;
-    let kept = read(root, &entry.key).ok_or(ProjectError::NoProposals)?;
+    let kept = read(root, document, &entry.key).ok_or(ProjectError::NoProposals)?;
     // Accepting one proposal makes the sheets again; the other proposals were made from the same picks.
     let accepted = document.faults.iter().any(|fault| matches!(fault.origin, Origin::Proposed { .. }));
     if !accepted && kept.horizons != hashes(document) {

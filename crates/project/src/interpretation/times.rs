@@ -50,7 +50,7 @@ impl Times {
     pub fn load(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<Self>, ProjectError> {
         let entry = time_volume(document)?;
         let candidates = document.extraction.as_ref().map_or_else(String::new, |entry| entry.key.clone());
-        let faults = document.faults.iter().map(|entry| format!("{} {}", entry.name, entry.shape())).collect();
+        let faults = document.fault_shapes();
         HELD.get_or_make((root.join(&entry.file), entry.hash.clone(), candidates, faults), || {
             memory::check("geologic time and all reflections", &document.frame()?.size(), HELD_BYTES)?;
             let candidates = Candidates::load(root, document, progress)?;

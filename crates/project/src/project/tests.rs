@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::command::SetVelocity;
+use crate::error::Noun;
 use survey::VerticalUnit;
 
 fn geometry() -> SurveyGeometry {
@@ -272,7 +273,7 @@ fn command_of(dice: &mut Dice, turn: u64, folder: &Path) -> Command {
             name: format!("s{}", dice.throw(5)),
             scene: render::Scene { exaggeration: 1.0 + turn as f64, ..render::Scene::default() },
         }),
-        2 => Command::RemoveScene(crate::command::RemoveScene { name: format!("s{}", dice.throw(5)) }),
+        2 => Command::Remove(crate::command::Remove { noun: Noun::Scene, name: format!("s{}", dice.throw(5)) }),
         _ => {
             let path = folder.join(format!("t{turn}.png"));
             image::RgbImage::from_pixel(2, 2, image::Rgb([turn as u8, 0, 0])).save(&path).unwrap();

@@ -13,7 +13,7 @@ use ttf::TextureLibrary;
 pub fn pattern_library(root: &Path, document: &Document) -> Result<TextureLibrary, ProjectError> {
     let mut library = TextureLibrary::builtin()?;
     for entry in &document.textures {
-        let index = library.add_user(&content::texture_path(root, entry)?)?;
+        let index = library.add_user_as(&entry.name, &content::texture_path(root, entry)?)?;
         library.set_tile_mm(index, entry.tile_mm);
     }
     Ok(library)

@@ -13,6 +13,7 @@ from petroglyph._types import Options, Path, Progress
 
 Effect = dict[str, Any]
 Place = tuple[float, float, float]
+Noun = Literal["volume", "horizon", "fault", "well", "layer", "texture", "parameterization", "scene", "note", "figure"]
 Contact = Literal["conformable", "erosional", "onlap", "intrusive"]
 
 
@@ -137,13 +138,25 @@ class Commands:
         fields = _given(url=url, name=name, polarity=polarity)
         return self.apply({"link-volume": fields}, progress=progress)
 
+    def rename(self, noun: Noun, from_: str, to: str) -> Effect:
+        """Gives something another name; what refers to it follows, and nothing is computed anew."""
+        return self.apply({"rename": {"noun": noun, "from": from_, "to": to}})
+
+    def remove(self, noun: Noun, name: str) -> Effect:
+        """Removes something, and with it what refers to it: a map of a horizon goes with the horizon."""
+        return self.apply({"remove": {"noun": noun, "name": name}})
+
+    def set_colour(self, noun: Literal["horizon", "fault", "well", "layer"], name: str, colour: str) -> Effect:
+        """Gives something another colour."""
+        return self.apply({"set-colour": {"noun": noun, "name": name, "colour": colour}})
+
     def rename_volume(self, from_: str, to: str) -> Effect:
         """Gives a volume another name, also where it is shown."""
-        return self.apply({"rename-volume": {"from": from_, "to": to}})
+        return self.apply({"rename": {"noun": "volume", "from": from_, "to": to}})
 
     def remove_volume(self, name: str) -> Effect:
         """Removes a volume."""
-        return self.apply({"remove-volume": {"name": name}})
+        return self.apply({"remove": {"noun": "volume", "name": name}})
 
     # Horizons.
 
@@ -179,11 +192,11 @@ class Commands:
 
     def rename_horizon(self, from_: str, to: str) -> Effect:
         """Gives a horizon another name."""
-        return self.apply({"rename-horizon": {"from": from_, "to": to}})
+        return self.apply({"rename": {"noun": "horizon", "from": from_, "to": to}})
 
     def remove_horizon(self, name: str) -> Effect:
         """Removes a horizon."""
-        return self.apply({"remove-horizon": {"name": name}})
+        return self.apply({"remove": {"noun": "horizon", "name": name}})
 
     def pick(
         self,
@@ -272,7 +285,7 @@ class Commands:
 
     def set_horizon_colour(self, horizon: str, colour: str) -> Effect:
         """Gives a horizon another colour."""
-        return self.apply({"set-horizon-colour": {"horizon": horizon, "colour": colour}})
+        return self.apply({"set-colour": {"noun": "horizon", "name": horizon, "colour": colour}})
 
     def replay_picks(
         self,
@@ -368,15 +381,15 @@ class Commands:
 
     def set_fault_colour(self, fault: str, colour: str) -> Effect:
         """Gives a fault another colour, on sections and on the block."""
-        return self.apply({"set-fault-colour": {"fault": fault, "colour": colour}})
+        return self.apply({"set-colour": {"noun": "fault", "name": fault, "colour": colour}})
 
     def rename_fault(self, from_: str, to: str) -> Effect:
         """Gives a fault another name."""
-        return self.apply({"rename-fault": {"from": from_, "to": to}})
+        return self.apply({"rename": {"noun": "fault", "from": from_, "to": to}})
 
     def remove_fault(self, name: str) -> Effect:
         """Removes a fault."""
-        return self.apply({"remove-fault": {"name": name}})
+        return self.apply({"remove": {"noun": "fault", "name": name}})
 
     # Wells.
 
@@ -388,15 +401,15 @@ class Commands:
 
     def rename_well(self, from_: str, to: str) -> Effect:
         """Gives a well another name."""
-        return self.apply({"rename-well": {"from": from_, "to": to}})
+        return self.apply({"rename": {"noun": "well", "from": from_, "to": to}})
 
     def set_well_colour(self, well: str, colour: str) -> Effect:
         """Gives a well another colour, in the block and on sections."""
-        return self.apply({"set-well-colour": {"well": well, "colour": colour}})
+        return self.apply({"set-colour": {"noun": "well", "name": well, "colour": colour}})
 
     def remove_well(self, name: str) -> Effect:
         """Removes a well."""
-        return self.apply({"remove-well": {"name": name}})
+        return self.apply({"remove": {"noun": "well", "name": name}})
 
     # Looks.
 
@@ -489,11 +502,11 @@ class Commands:
 
     def rename_scene(self, from_: str, to: str) -> Effect:
         """Gives a scene another name, also in notes and figures."""
-        return self.apply({"rename-scene": {"from": from_, "to": to}})
+        return self.apply({"rename": {"noun": "scene", "from": from_, "to": to}})
 
     def remove_scene(self, name: str) -> Effect:
         """Removes a scene."""
-        return self.apply({"remove-scene": {"name": name}})
+        return self.apply({"remove": {"noun": "scene", "name": name}})
 
     def add_note(self, text: str, at: Place, *, scene: str | None = None) -> Effect:
         """Writes a note on a place."""
@@ -501,4 +514,4 @@ class Commands:
 
     def remove_note(self, number: int) -> Effect:
         """Removes a note, counted from 1."""
-        return self.apply({"remove-note": {"number": number}})
+        return self.apply({"remove": {"noun": "note", "name": str(number)}})

@@ -2,11 +2,13 @@
 
 use super::{go, palette};
 use crate::state::{Action, PickingStep, Session, Tool};
+use crate::views::named::colour;
 use crate::widgets::obstacle::{needs, unless};
 use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Button, Label, TextEdit, Ui};
 use interp::faults::Proposal;
-use project::command::{AcceptFault, Command, SetFaultColour};
+use project::command::{AcceptFault, Command};
+use project::error::Noun;
 use std::collections::HashMap;
 use survey::SurveyGeometry;
 
@@ -73,9 +75,8 @@ impl FaultsPanel {
         }
         for entry in &session.document.faults {
             ui.horizontal(|ui| {
-                if let Some(colour) = palette(ui, entry.ink(), &format!("Colour of fault {}", entry.name)) {
-                    let command = SetFaultColour { fault: entry.name.clone(), colour };
-                    actions.push(Action::Apply(Box::new(Command::SetFaultColour(command))));
+                if let Some(chosen) = palette(ui, entry.ink(), &format!("Colour of fault {}", entry.name)) {
+                    actions.push(colour(Noun::Fault, &entry.name, chosen));
                 }
                 ui.add(Label::new(&entry.name).truncate()).on_hover_text(format!("{}: {}", entry.name, entry.origin));
             });

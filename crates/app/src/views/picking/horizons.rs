@@ -3,18 +3,16 @@
 use super::go;
 use super::palette::palette;
 use crate::state::{Action, PickingStep, Session};
-use crate::widgets::keyboard::{Renamed, Renaming};
+use crate::views::named::{NameField, colour, remove};
 use crate::widgets::obstacle::{needs, unless};
 use crate::work::{Interpreted, InterpretedHorizon};
 use eframe::egui::{Button, CollapsingHeader, DragValue, RichText, TextEdit, Ui};
 use interp::assembly::Operation;
 use interp::holes::FillSettings;
 use interp::refine::SmoothSettings;
-use project::command::{
-    Command, FillHorizon, Move, MovePick, RemoveHorizon, RemovePick, RenameHorizon, ReplayPicks, SetHorizonColour,
-    SmoothHorizon, Unfit,
-};
+use project::command::{Command, FillHorizon, Move, MovePick, RemovePick, ReplayPicks, SmoothHorizon, Unfit};
 use project::document::HorizonEntry;
+use project::error::Noun;
 use survey::SurveyGeometry;
 
 /// Largest number of holes that are listed.
@@ -25,7 +23,7 @@ const MANY: usize = 6;
 /// The list, with the text being typed in it.
 #[derive(Default)]
 pub(super) struct HorizonList {
-    renaming: Option<Renaming>,
+    renaming: NameField,
     max_traces: usize,
     along_reflection: bool,
     smoothing: SmoothSettings,
@@ -108,22 +106,12 @@ impl HorizonList {
         actions: &mut Vec<Action>,
     ) {
         ui.horizontal(|ui| {
-            if let Some(renaming) = self.renaming.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
-                let renamed = renaming.show(ui, 140.0);
-                if let Renamed::To(to) = &renamed {
-                    let command = RenameHorizon { from: entry.name.clone(), to: to.clone() };
-                    actions.push(apply(Command::RenameHorizon(command)));
-                }
-                if renamed != Renamed::Typing {
-                    self.renaming = None;
-                }
-            } else {
+            if self.renaming.show(ui, 140.0, (Noun::Horizon, &entry.name), actions).is_none() {
                 if ui.button("Rename…").clicked() {
-                    self.renaming = Some(Renaming::of(&entry.name));
+                    self.renaming.begin(Noun::Horizon, &entry.name);
                 }
                 if ui.button("Remove").on_hover_text(format!("Remove horizon {}", entry.name)).clicked() {
-                    let command = RemoveHorizon { name: entry.name.clone() };
-                    actions.push(apply(Command::RemoveHorizon(command)));
+                    actions.push(remove(Noun::Horizon, &entry.name));
                 }
             }
         });
@@ -256,9 +244,8 @@ impl HorizonList {
 /// The colour of a horizon, which can be changed.
 pub fn swatch(ui: &mut Ui, entry: &HorizonEntry, index: usize, actions: &mut Vec<Action>) {
     let present = figure::style::horizon_colour(entry.own_colour(), index);
-    if let Some(colour) = palette(ui, present, &format!("Colour of {}", entry.name)) {
-        let command = SetHorizonColour { horizon: entry.name.clone(), colour };
-        actions.push(Action::Apply(Box::new(Command::SetHorizonColour(command))));
+    if let Some(chosen) = palette(ui, present, &format!("Colour of {}", entry.name)) {
+        actions.push(colour(Noun::Horizon, &entry.name, chosen));
     }
 }
 

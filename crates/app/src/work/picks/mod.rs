@@ -480,7 +480,7 @@ fn seeds(log: Option<&Assembly>, candidates: &Candidates) -> Vec<u32> {
 
 /// What the fault blocks depend on.
 fn hashes(document: &Document) -> Vec<String> {
-    document.faults.iter().map(|entry| entry.shape()).collect()
+    document.fault_shapes()
 }
 
 fn shown(fault: &Fault, geometry: &SurveyGeometry) -> ShownFault {

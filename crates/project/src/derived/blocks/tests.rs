@@ -29,7 +29,8 @@ fn blocks_come_back_as_they_were_and_damaged_ones_do_not() {
     let (root, wanted) = (folder.path(), blocks());
     assert_eq!(wanted.block_count(), 3);
     keep_blocks(root, "aa", &wanted, &Progress::silent());
-    assert_eq!(load_blocks(root, "aa").as_ref(), Some(&wanted));
+    let names = ["first", "second"].map(str::to_owned);
+    assert_eq!(load_blocks(root, "aa").map(|loaded| loaded.named(names)).as_ref(), Some(&wanted));
     assert!(load_blocks(root, "bb").is_none());
     let path = BLOCKS.path(root, "aa");
     let mut damaged = std::fs::read(&path).unwrap();

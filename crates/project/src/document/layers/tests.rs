@@ -1,12 +1,13 @@
 //! Layers keep their styles, and horizons their colours, when horizons come and go.
 
 use super::*;
-use crate::document::Origin;
+use crate::document::{Id, Origin};
 use survey::Contact;
 use ttf::LayerStyle;
 
 fn horizon(name: &str) -> HorizonEntry {
     HorizonEntry {
+        id: Id::default(),
         name: name.into(),
         contact: Contact::default(),
         file: format!("horizons/{name}.zarr"),
@@ -38,7 +39,7 @@ fn the_part_with_the_old_base_keeps_the_style_and_joining_undoes_it() {
     document.insert_horizon(1, horizon("N"));
     assert_eq!(document.layers(), ["above A", "A - N", "N - B", "below B"]);
     assert_eq!(reds(&document), [Some(0), None, Some(1), Some(2)]);
-    document.join_layers(1, |document| drop(document.horizons.remove(1)));
+    document.by_ids(|document| drop(document.take_out(1)));
     assert_eq!((document.layers(), &document.style), (before.layers(), &before.style));
 }
 
@@ -66,12 +67,7 @@ fn horizons_keep_their_colours_when_another_comes_between() {
 fn names_and_styles_follow_a_renamed_horizon() {
     let mut document = styled();
     document.name_layer(1, "Chalk").unwrap();
-    document
-        .keep_styles(|document| {
-            document.horizons[0].name = "Top".into();
-            Ok::<(), ProjectError>(())
-        })
-        .unwrap();
+    document.by_ids(|document| document.horizons[0].name = "Top".into());
     assert_eq!(document.layers(), ["above Top", "Chalk", "below B"]);
     assert_eq!(reds(&document), [Some(0), Some(1), Some(2)]);
     assert!(document.name_layer(2, "chalk").is_err());
