@@ -377,7 +377,7 @@ fn what_is_no_project_or_newer_is_an_error() {
     assert!(!at.join("s/lock").exists());
     let state = at.join("p.petro/project.toml");
     let text = fs::read_to_string(&state).unwrap();
-    fs::write(&state, text.replacen("version = 1", "version = 99", 1)).unwrap();
+    fs::write(&state, text.replacen("version = 2", "version = 99", 1)).unwrap();
     let before = bytes(&at.join("p.petro"));
     run_in(at, "check p.petro --repair").failed(&["99"]);
     assert!(bytes(&at.join("p.petro")) == before);
@@ -390,7 +390,7 @@ fn a_step_of_a_newer_version_is_no_damage_and_stays_where_it_is() {
     let root = at.join("p.petro");
     let newer = root.join("history/0004.toml");
     let text = fs::read_to_string(&newer).unwrap();
-    fs::write(&newer, text.replacen("version = 1", "version = 99", 1)).unwrap();
+    fs::write(&newer, text.replacen("version = 2", "version = 99", 1)).unwrap();
     let found = is_well(at);
     let notes = texts(&found["notes"]);
     assert!(notes.iter().any(|note| note.contains("newer Petroglyph") && note.contains("99")), "{notes:?}");
