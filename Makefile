@@ -18,7 +18,7 @@
 #   make time       measures geologic time, for docs/time.md
 #   make picks      counts the picks that horizons take, for docs/picks.md
 #   make house      measures how the code is divided, for docs/house.md
-#   make recipes    follows the recipes of ARCHITECTURE.md, "How to add", in a copy of the checkout
+#   make recipes    follows the recipes of ARCHITECTURE.md, "What do I touch to add", in a copy of the checkout
 #   make wheel      a wheel of the Python package, in target/wheels
 #   make test-python   pytest, mypy and the notebooks, in a virtual environment below target/ (PETROGLYPH_SKIP_PYTHON=1 skips it)
 #   make rebuilds   which crates a change of each crate compiles again

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests the recipes of ARCHITECTURE.md, "How to add": a copy of the checkout gets one attribute, one pattern and one export format more, by
+"""Tests the recipes of ARCHITECTURE.md, "What do I touch to add": a copy of the checkout gets one attribute, one pattern and one export format more, by
 edits of the files that the page lists and of no others; the crates are checked, and the test that the recipe relies on is run.
 
     python3 tests/recipes.py [NAME …] [--list]
@@ -107,12 +107,12 @@ pub fn magnitude_blocks(source: &dyn BoxSource) -> AttributeBlocks<'_> {
             instead=True,
         ),
         Edit(
-            "crates/project/src/command/attribute.rs",
+            "crates/project/src/document/origin.rs",
             "\n    /// Magnitude: how far samples are from zero.\n    Magnitude,",
             "    Envelope,",
         ),
-        Edit("crates/project/src/command/attribute.rs", "[Self; 6] = [Self::Magnitude, ", "[Self; 5] = [", instead=True),
-        Edit("crates/project/src/command/attribute.rs", '\n            Self::Magnitude => "magnitude",', 'Self::Envelope => "envelope",'),
+        Edit("crates/project/src/document/origin.rs", "[Self; 6] = [Self::Magnitude, ", "[Self; 5] = [", instead=True),
+        Edit("crates/project/src/document/origin.rs", '\n            Self::Magnitude => "magnitude",', 'Self::Envelope => "envelope",'),
         Edit(
             "crates/project/src/command/attribute.rs",
             '''
