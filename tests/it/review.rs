@@ -122,6 +122,21 @@ fn a_page_says_what_was_not_picked_and_what_nobody_interpreted() {
     let (document, _) = model(&at.join("u.glb"));
     let root = document["nodes"].as_array().unwrap().last().unwrap();
     assert!(root["name"].as_str().unwrap().contains("uninterpreted") && root["extras"]["warning"] == warning);
+
+    // One horizon that a person clicked makes it an interpretation, and its rocks are named.
+    run_in(at, "layer set u.petro '4: continuous' --rock limestone").done();
+    run_in(at, "pick u.petro --at 110,510,100 --horizon Mine --by-time").done();
+    run_in(at, &format!("review u.petro m.html --sections 0 {SMALL}")).done();
+    let interpreted = self::data(&fs::read_to_string(at.join("m.html")).unwrap());
+    assert!(interpreted["warning"].is_null());
+    assert!(interpreted["layers"].as_array().unwrap().iter().any(|layer| layer["rock"] == "Limestone"));
+    let origins = run_in(at, "info u.petro --json").done().json()["origins"].clone();
+    let kind = |of: &str, name: &str| {
+        let all = origins[of].as_array().unwrap();
+        all.iter().find(|one| one["name"] == name).unwrap()["origin"]["kind"].clone()
+    };
+    assert_eq!((kind("horizons", "Mine"), kind("horizons", "Level 1")), ("by-time".into(), "level".into()));
+    assert_eq!((kind("volumes", "time"), kind("volumes", "seismic")), ("geologic-time".into(), "imported".into()));
 }
 
 #[test]

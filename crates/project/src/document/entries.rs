@@ -120,11 +120,20 @@ pub enum Refinement {
 impl HorizonEntry {
     /// Where it came from and what was done to it since, in words.
     pub fn history(&self) -> String {
+        let counted = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
+        let made = match self.assembly.as_ref().map(|log| (log.picks.len(), log.drawn.len())) {
+            None | Some((0, 0)) => self.origin.to_string(),
+            Some((picks, 0)) => format!("assembled by {}", counted(picks, "pick")),
+            Some((0, parts)) => format!("{} drawn or tracked", counted(parts, "part")),
+            Some((picks, parts)) => {
+                format!("assembled by {}, {} drawn or tracked", counted(picks, "pick"), counted(parts, "part"))
+            }
+        };
         let done = self.refined.iter().map(|done| match done {
             Refinement::Filled => "; holes filled",
             Refinement::Smoothed => "; smoothed",
         });
-        std::iter::once(self.origin.to_string().as_str()).chain(done).collect()
+        std::iter::once(made.as_str()).chain(done).collect()
     }
 
     /// The colour that it was given; `None` in projects of old: it is drawn in the one of its place in the list.

@@ -145,3 +145,6 @@ impl Source {
         Origin::TimeFraction { of: name.unwrap_or("time").to_owned() }
     }
 }
+
+#[cfg(test)]
+mod tests;
