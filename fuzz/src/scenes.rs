@@ -1,7 +1,7 @@
 //! A project in memory: its document, and the model that is made of it.
 
 use model::{ModelSettings, StructuralModel};
-use project::document::{Document, FaultEntry, HorizonEntry, Source};
+use project::document::{Document, FaultEntry, HorizonEntry, Origin};
 use survey::{Contact, Fault, Horizon, Progress};
 
 /// Voxels that a model is built for; more would only take longer.
@@ -10,7 +10,7 @@ const MOST_VOXELS: usize = 20_000;
 /// A project with two horizons and a fault.
 pub fn document() -> Document {
     let mut document = Document::empty(Some(crate::survey()));
-    let source = || Source { path: "a.csv".into(), bytes: 10, reading: "csv".into() };
+    let origin = || Origin::Imported { path: "a.csv".into(), bytes: 10, reading: "csv".into() };
     document.horizons = ["Top", "Base"]
         .map(|name| HorizonEntry {
             id: Default::default(),
@@ -18,10 +18,10 @@ pub fn document() -> Document {
             contact: Contact::Conformable,
             file: format!("horizons/{name}.zarr"),
             hash: "00".into(),
-            source: source(),
+            origin: origin(),
             assembly: None,
             colour: None,
-            seeds: Vec::new(),
+            refined: Vec::new(),
         })
         .into();
     document.faults = vec![FaultEntry {
@@ -31,7 +31,7 @@ pub fn document() -> Document {
         grown_m: 0.0,
         file: "faults/F1.json".into(),
         hash: "00".into(),
-        source: source(),
+        origin: origin(),
         colour: None,
     }];
     document

@@ -80,7 +80,7 @@ impl PickByTime {
         let times = Times::load(draft.root(), &draft.document, progress)?;
         let Times { tau, reflections, cuts } = times.as_ref();
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
-        let earlier = corrected.map_or(&[][..], |index| &draft.document.horizons[index].origin.seeds());
+        let earlier = corrected.map_or(&[][..], |index| draft.document.horizons[index].origin.seeds());
         let value = |time: f32, chosen_by| (level(tau, time, reflections), Origin::Level { time, chosen_by });
         let (event, origin) = match self.level {
             TimeLevel::Through(at) => {
