@@ -1,7 +1,7 @@
 //! Parts of the window that know of no project.
 //!
 //! - [`theme`]: the look of the window;
-//! - [`fields`] and [`form`]: in which field something about a file can be stated, and the rows of forms;
+//! - [`form`]: the rows of forms;
 //! - [`canvas`]: paints groups of a `page::DisplayList` through egui;
 //! - [`event_order`]: a click counts where it was made, and a notch of the wheel is a line;
 //! - [`histogram`] and [`opacity_curve`]: the values of a volume, and an RGBA function drawn over them;

@@ -31,8 +31,7 @@ use std::path::Path;
 use survey::geometry::MAX_COORDINATE;
 use survey::{StratigraphicHorizon, Stratigraphy, SurveyGeometry};
 
-/// The version that this program writes, and the newest that it reads. Older ones are read as
-/// [`migration`] translates them.
+/// The version that this program writes, and the newest that it reads. Older ones are translated when they are read.
 pub const VERSION: u32 = 2;
 
 /// Most steps of a project: far beyond any work, and far from where numbers of 32 bits end.
