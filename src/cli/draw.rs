@@ -8,8 +8,9 @@ use project::Project;
 use project::folder::refuse_inside_project;
 use project::memory_budget;
 use project::pictures::figures::NamedConfusion;
+use project::pictures::load::{self, Extent, Request};
+use project::pictures::scene;
 use project::pictures::{Device, Painter, figures};
-use project::pictures::{load, scene};
 use render::{FaceData, Scene};
 use std::path::{Path, PathBuf};
 use survey::{Progress, VerticalUnit};
@@ -52,13 +53,11 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     }
     let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
     let mut painter = Painter::new(request.device, progress)?;
-    let read = if painter.is_processor() { load::load_faces } else { load::load_within };
-    let mut loaded = read(&project, &scene, volume_bytes, progress)?;
-    let (mut image, mut stage) = painter.draw(&scene, &loaded, progress)?;
-    if loaded.has_missed() {
-        loaded = load::load_within(&project, &scene, volume_bytes, progress)?;
-        (image, stage) = painter.draw(&scene, &loaded, progress)?;
-    }
+    let extent = if painter.is_processor() { Extent::Faces } else { Extent::Whole };
+    let asked = Request::new(&scene).of(extent).within(volume_bytes);
+    let ((image, stage), loaded) = load::drawn(project.facts(), &asked, progress, |loaded| {
+        painter.draw(&scene, loaded, progress).map_err(anyhow::Error::from)
+    })?;
     project::pictures::write_png(&request.out, &image, request.dpi)?;
 
     let distortion = match scene.face_data {

@@ -12,7 +12,7 @@ use figure::{
     Annotation, BlockPart, CorrelationPart, FencePart, Figure, MapPart, PageSize, Part, SectionKind, SectionPart,
 };
 use project::pictures::figures::{self, FigureSettings, InterpreterView};
-use project::pictures::load;
+use project::pictures::load::{self, Request};
 use project::{Project, memory_budget};
 use render::{FaceData, Scene};
 use std::path::PathBuf;
@@ -234,7 +234,7 @@ pub(super) fn draw(
     let figure = page.figure(scene, request.dpi, project)?;
     let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
     let device = request.device;
-    let settings = FigureSettings { device, volume_bytes, fonts: page.fonts.clone(), picture_dpi: None, rock: None };
+    let settings = FigureSettings { device, volume_bytes, fonts: page.fonts.clone(), picture_dpi: None };
     let made = figures::make(project, &figure, &InterpreterView::default(), &settings, progress)?;
     figures::write(&made.page, request.format, &request.out, figure.dpi, &figures::title(project))?;
     let mut report = Report::line(written(&request.out, figure.size_px(), figure.dpi));
@@ -244,7 +244,7 @@ pub(super) fn draw(
         _ => None,
     });
     if let Some(scene) = blocks.clone().find(|scene| scene.face_data == FaceData::Distortion) {
-        let loaded = load::load_with(project, made.rock.clone(), scene, volume_bytes, progress)?;
+        let loaded = load::load(project.facts(), &Request::new(scene).within(volume_bytes), progress)?;
         super::distortion::say(project.document(), &loaded.distortion(scene, progress)?, &mut report);
     }
     let shown = blocks.map(|scene| assumptions(project, scene)).next().unwrap_or_default();

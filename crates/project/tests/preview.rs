@@ -70,8 +70,7 @@ fn the_preview_is_the_page_that_is_written() {
         ..Figure::default()
     };
     let page = |figure: &Figure, picture_dpi: Option<f64>| {
-        let settings =
-            FigureSettings { device: Device::Cpu, volume_bytes: 1 << 28, fonts: Vec::new(), picture_dpi, rock: None };
+        let settings = FigureSettings { device: Device::Cpu, volume_bytes: 1 << 28, fonts: Vec::new(), picture_dpi };
         make(&project, figure, &InterpreterView::default(), &settings, &Progress::silent()).unwrap().page
     };
     let (written, seen) = (page(&figure, None), page(&figure, Some(60.0)));

@@ -2,6 +2,7 @@
 
 use super::horizon::{Age, insert_made};
 use super::{Effect, Noun, ProjectError};
+use crate::derived::FaultBlocks;
 use crate::document::{Document, Source};
 use crate::folder::Draft;
 use crate::interpretation::assembly;
@@ -78,9 +79,9 @@ impl PickByTime {
         let corrected = self.corrected(&draft.document)?;
         let geometry = draft.document.frame()?.clone();
         let entry = time_volume(draft.root(), &draft.document)?;
-        let times = Times::load(draft.root(), &draft.document, progress)?;
+        let times = Times::load(draft.facts(), progress)?;
         let Times { tau, reflections, cuts } = times.as_ref();
-        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let blocks = draft.facts().get(&FaultBlocks, progress)?;
         let earlier = corrected.map_or(&[][..], |index| &draft.document.horizons[index].seeds);
         let (event, seeds, reading) = match self.level {
             TimeLevel::Through(at) => {

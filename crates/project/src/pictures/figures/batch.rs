@@ -70,10 +70,12 @@ fn stage(
 ) -> Result<Vec<WrittenFigure>, ProjectError> {
     let mut staged = Vec::new();
     let fonts = fonts.to_vec();
-    let mut settings = FigureSettings { device, volume_bytes, fonts, picture_dpi: None, rock: None };
+    let settings = FigureSettings { device, volume_bytes, fonts, picture_dpi: None };
+    // Held, so that the next figure finds it.
+    let mut rock = None;
     for (file, format, figure) in meant {
         let made = make(project, figure, &InterpreterView::default(), &settings, progress).map_err(of_figure(file))?;
-        settings.rock = made.rock.or(settings.rock);
+        rock = made.rock.or(rock);
         let path = out.join(file);
         let replacement = Replacement::of(&path)?;
         write(&made.page, *format, replacement.path(), figure.dpi, &title(project))?;

@@ -21,7 +21,7 @@ use crate::Project;
 use crate::content;
 use crate::document::{Document, WellEntry};
 use crate::error::ProjectError;
-use crate::pictures::load::{self, Loaded, Rock, Stage};
+use crate::pictures::load::{self, Extent, Loaded, Request, Rock, Stage};
 use crate::pictures::{Device, Painter};
 use crate::styles;
 use figure::cut::{SectionKind, SectionSource};
@@ -31,7 +31,6 @@ use figure::{Annotation, FencePart, Figure, FigureInputs, Part, SectionPart};
 use glam::{Vec2, Vec3};
 use image::RgbaImage;
 use interpreter::InterpreterPicks;
-use model::StructuralModel;
 use page::list::DisplayList;
 use render::touched::Places;
 use render::vector::{VectorBlock, vectors};
@@ -53,7 +52,7 @@ pub struct MadeFigure {
     pub stages: Vec<Stage>,
     /// The neighbouring layers of its blocks that cannot be told apart.
     pub confusions: Vec<NamedConfusion>,
-    /// The model and its parameterization, if they were needed: the next figure may have them.
+    /// The model and its parameterization, if they were needed: while they are held, the next figure finds them.
     pub rock: Option<Arc<Rock>>,
 }
 
@@ -68,8 +67,6 @@ pub struct FigureSettings {
     /// Coarsest resolution that pictures of blocks may have, dots an inch, where a page is looked at soon; absent: the
     /// figure's. All else is laid out as at the figure's.
     pub picture_dpi: Option<f64>,
-    /// The model and its parameterization, where they are known already.
-    pub rock: Option<Arc<Rock>>,
 }
 
 /// The page itself refuses longer sides.
@@ -103,33 +100,43 @@ fn lettered(
     let document = project.document();
     let figure = &settled(figure, document);
     memory::check("the page", &figure.size_px().map(|side| side.min(LONGEST_SIDE) as usize), PIXEL_BYTES)?;
-    let (page, is_whole) = page_of(project, figure, view, settings, Extent::Sections, progress)?;
-    if is_whole {
-        return Ok(page);
-    }
-    Ok(page_of(project, figure, view, settings, Extent::Whole, progress)?.0)
+    let scene = Scene { preset: figure.printed_in(), ..needs(figure) };
+    let has_block = figure.parts.iter().any(|part| matches!(part, Part::Block(_)));
+    let places = section_places(figure, document.frame()?);
+    let extent = if (has_block || figure.has_rock_sections()) && !figure.interpretation {
+        Extent::Whole
+    } else {
+        Extent::Data(Some(&places).filter(|_| !has_block))
+    };
+    let request = Request::new(&scene).of(extent).within(settings.volume_bytes);
+    let page = |loaded: &Loaded| page_of(project, figure, (&scene, loaded), view, settings, progress);
+    Ok(load::drawn(project.facts(), &request, progress, page)?.0)
 }
 
-/// What of volumes is read for a figure of sections alone.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Extent {
-    /// All of them.
-    Whole,
-    /// Of large ones the samples on the sections.
-    Sections,
-}
-
-/// The page, and whether no sample was asked for that was not read.
+/// The page of what was loaded for a scene that needs the same as the figure.
 fn page_of(
     project: &Project,
     figure: &Figure,
+    (scene, loaded): (&Scene, &Loaded),
     view: &InterpreterView,
     settings: &FigureSettings,
-    extent: Extent,
     progress: &Progress,
-) -> Result<(MadeFigure, bool), ProjectError> {
+) -> Result<MadeFigure, ProjectError> {
     let document = project.document();
-    let FigureData { loaded, model, stages } = FigureData::load(project, figure, settings, extent, progress)?;
+    let stages: Vec<Stage>;
+    // Sections and maps of measured data need the model without the coordinates of its layers.
+    let model = match &loaded.rock {
+        Some(rock) => {
+            stages = rock.stages.clone();
+            None
+        }
+        None => {
+            let built = if figure.interpretation { None } else { load::structural_model(project.facts(), progress)? };
+            let (model, stage) = built.unzip();
+            stages = stage.into_iter().collect();
+            model
+        }
+    };
     let picks = if figure.interpretation { Some(InterpreterPicks::read(project, view, progress)?) } else { None };
     let shown = picks.as_ref().map(|picks| {
         let mut shown = picks.borrowed();
@@ -144,11 +151,7 @@ fn page_of(
     layers.iter_mut().for_each(|style| *style = figure.printed_in().layer(style));
     let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
     let mut data = loaded.inputs(&volumes, &wells);
-    match &model {
-        Some(ModelAlone::Known(rock)) => data.model = Some(&rock.model),
-        Some(ModelAlone::Built(model)) => data.model = Some(model),
-        None => {}
-    }
+    data.model = data.model.or(model.as_deref());
     let inputs = FigureInputs {
         source: SectionSource { data, raw: loaded.raw.as_ref() },
         horizons: &horizons(document),
@@ -163,16 +166,13 @@ fn page_of(
     };
     let (device, preset) = (settings.device, figure.printed_in());
     let share = settings.picture_dpi.map_or(1.0, |dpi| (dpi / figure.dpi).min(1.0));
-    let mut painter =
-        FigurePainter { painter: None, device, loaded: &loaded, library, preset, share, stages, progress };
+    let mut painter = FigurePainter { painter: None, device, loaded, library, preset, share, stages, progress };
     let page = little_room::made(figure, progress, |figure| figure::make(figure, &inputs, &mut painter))?;
     warn_of_boxes(&page, progress);
     let device = painter.painter.map(|painter| painter.device().to_owned());
     let stages = painter.stages;
-    let scene = Scene { preset, ..needs(figure) };
-    let confusions = confusions(project.root(), document, loaded.rock.as_deref(), &scene)?;
-    let made = MadeFigure { page, device, stages, confusions, rock: loaded.rock.clone() };
-    Ok((made, !loaded.has_missed()))
+    let confusions = confusions(project.root(), document, loaded.rock.as_deref(), scene)?;
+    Ok(MadeFigure { page, device, stages, confusions, rock: loaded.rock.clone() })
 }
 
 /// The figure with what its sections show: measured data where there are some, and the rock otherwise.
@@ -265,49 +265,6 @@ impl BlockPainter for FigurePainter<'_> {
         }
         self.stages.push(Stage::new("paths", start.elapsed()));
         Ok(traced)
-    }
-}
-
-/// What a figure is made of.
-struct FigureData {
-    loaded: Loaded,
-    model: Option<ModelAlone>,
-    stages: Vec<Stage>,
-}
-
-/// The model of a figure without blocks or rock on its sections, which need no parameterization.
-enum ModelAlone {
-    Known(Arc<Rock>),
-    Built(Box<StructuralModel>),
-}
-
-impl FigureData {
-    fn load(
-        project: &Project,
-        figure: &Figure,
-        settings: &FigureSettings,
-        extent: Extent,
-        progress: &Progress,
-    ) -> Result<Self, ProjectError> {
-        let scene = Scene { preset: figure.printed_in(), ..needs(figure) };
-        let has_block = figure.parts.iter().any(|part| matches!(part, Part::Block(_)));
-        let known = settings.rock.as_ref().filter(|rock| rock.is_of(project.document()));
-        if (has_block || figure.has_rock_sections()) && !figure.interpretation {
-            let loaded = load::load_with(project, known.cloned(), &scene, settings.volume_bytes, progress)?;
-            let made = loaded.rock.as_ref().filter(|_| known.is_none());
-            let stages = made.map(|rock| rock.stages.clone()).unwrap_or_default();
-            return Ok(Self { loaded, model: None, stages });
-        }
-        let places = section_places(figure, project.document().frame()?);
-        let places = Some(&places).filter(|_| extent == Extent::Sections && !has_block);
-        let loaded = load::load_sections(project, &scene, places, settings.volume_bytes, progress)?;
-        let (model, stages) = match known {
-            _ if figure.interpretation => (None, Vec::new()),
-            Some(rock) => (Some(ModelAlone::Known(rock.clone())), Vec::new()),
-            None => load::structural_model(project, progress)?
-                .map_or((None, Vec::new()), |(model, stage)| (Some(ModelAlone::Built(Box::new(model))), vec![stage])),
-        };
-        Ok(Self { loaded, model, stages })
     }
 }
 
