@@ -36,8 +36,8 @@ pub(super) struct States {
     pub unreadable: Vec<Unreadable>,
     /// What an earlier repair has set aside.
     pub set_aside: Vec<Unreadable>,
-    /// What is wrong with the folder of the history.
-    pub history_trouble: Option<String>,
+    /// What is wrong with the folder of the history, and what helps.
+    pub history_trouble: Option<(String, Cure)>,
 }
 
 impl States {
@@ -76,15 +76,15 @@ impl States {
     }
 
     fn read_history(&mut self, root: &Path) {
-        match fs::symlink_metadata(root.join("history")) {
-            Ok(facts) if facts.is_dir() => {}
-            Ok(facts) if facts.is_symlink() => self.history_trouble = Some("it is a link".to_owned()),
-            Ok(_) => self.history_trouble = Some("it is no folder".to_owned()),
+        self.history_trouble = match fs::symlink_metadata(root.join("history")) {
+            Ok(facts) if facts.is_dir() => None,
+            Ok(facts) if facts.is_symlink() => Some(("it is a link".to_owned(), Cure::ReplaceLink)),
+            Ok(_) => Some(("it is no folder".to_owned(), Cure::ReplaceLink)),
             Err(error) if error.kind() == ErrorKind::NotFound => {
-                self.history_trouble = Some("it is missing: there is nothing to undo".to_owned());
+                Some(("it is missing: there is nothing to undo".to_owned(), Cure::MakeAgain))
             }
-            Err(error) => self.history_trouble = Some(error.to_string()),
-        }
+            Err(error) => Some((error.to_string(), Cure::ReplaceLink)),
+        };
         if self.history_trouble.is_some() {
             return;
         }
@@ -203,12 +203,11 @@ pub(super) const DAMAGED_STATE: &str = "project.toml.damaged";
 
 /// Reports what is wrong with the states.
 pub(super) fn report(states: &States, report: &mut CheckReport) {
-    if let Some(reason) = &states.history_trouble {
-        let cure = if reason.contains("missing") { Cure::MakeAgain } else { Cure::ReplaceLink };
+    if let Some((reason, cure)) = &states.history_trouble {
         report.damage.push(Damage {
             part: Part::Step,
             what: "the history".to_owned(),
-            cures: vec![cure],
+            cures: vec![cure.clone()],
             ..Damage::of("history", reason)
         });
     }
