@@ -108,6 +108,14 @@ impl Figure {
         })
     }
 
+    /// Whether it is one block of so many pixels, and nothing else is on its page.
+    pub fn is_block_alone(&self) -> bool {
+        let is_block = matches!(&self.parts[..], [Part::Block(block)] if block.comparison == Comparison::None);
+        let has_words = self.title.is_some() || self.caption.is_some() || !self.annotate.is_empty();
+        let has_more = self.interpretation || self.legend || self.scale_bar || self.north_arrow || has_words;
+        is_block && !has_more && matches!(self.size, PageSize::Px(_))
+    }
+
     /// What is changed about labels: by the scene of its first block, and by itself.
     pub(crate) fn all_labels(&self) -> Vec<LabelChange> {
         let blocks = self.parts.iter().find_map(|part| match part {

@@ -60,8 +60,8 @@ pub struct MadeFigure {
 
 /// Settings for making a figure.
 pub struct FigureSettings {
-    /// What its page is written to: rock is painted where that holds pixels, as in every other picture, and traced where
-    /// it holds paths.
+    /// What its page is written to. Rock is traced, so that patterns are sharp at any resolution; a block alone in a file of
+    /// pixels is painted, as it is on the screen.
     pub format: &'static FileFormat,
     /// The painter for blocks.
     pub device: Device,
@@ -107,10 +107,7 @@ fn lettered(
     let document = project.document();
     let figure = &settled(figure, document);
     memory::check("the page", &figure.size_px().map(|side| side.min(LONGEST_SIDE) as usize), PIXEL_BYTES)?;
-    let mut painter = match has_rock(figure) && settings.format.has_pixels() {
-        true => Some(Painter::new(settings.device, progress)?),
-        false => None,
-    };
+    let mut painter = if is_painted(figure, settings) { Some(Painter::new(settings.device, progress)?) } else { None };
     let (page, is_whole) = page_of(project, figure, view, settings, (Extent::Seen, &mut painter), progress)?;
     if is_whole {
         return Ok(page);
@@ -132,9 +129,9 @@ fn has_block(figure: &Figure) -> bool {
     figure.parts.iter().any(|part| matches!(part, Part::Block(_)))
 }
 
-/// Whether rock is drawn, in a block or on a section.
-fn has_rock(figure: &Figure) -> bool {
-    has_block(figure) || figure.has_rock_sections() && !figure.interpretation
+/// Whether the rock of a figure is painted, and not traced.
+fn is_painted(figure: &Figure, settings: &FigureSettings) -> bool {
+    figure.is_block_alone() && settings.format.has_pixels()
 }
 
 /// The page, and whether no sample was asked for that was not read.
@@ -183,7 +180,9 @@ fn page_of(
     };
     let preset = figure.printed_in();
     let share = settings.picture_dpi.map_or(1.0, |dpi| (dpi / figure.dpi).min(1.0));
-    let mut painter = FigurePainter { painter, settings, loaded: &loaded, library, preset, share, stages, progress };
+    let is_painted = is_painted(figure, settings);
+    let mut painter =
+        FigurePainter { is_painted, painter, settings, loaded: &loaded, library, preset, share, stages, progress };
     let page = little_room::made(figure, progress, |figure| figure::make(figure, &inputs, &mut painter))?;
     warn_of_boxes(&page, progress);
     let device = painter.painter.as_ref().map(|painter| painter.device().to_owned());
@@ -233,6 +232,7 @@ fn warn_of_boxes(page: &DisplayList, progress: &Progress) {
 
 /// Paints or traces the rock of a figure; a device is looked for when the first picture is asked for.
 struct FigurePainter<'a> {
+    is_painted: bool,
     painter: &'a mut Option<Painter>,
     settings: &'a FigureSettings,
     loaded: &'a Loaded,
@@ -272,7 +272,7 @@ impl BlockPainter for FigurePainter<'_> {
     }
 
     fn trace(&mut self, scene: &Scene, tolerance_px: f64) -> Result<Option<VectorBlock>, RenderError> {
-        if self.settings.format.has_pixels() {
+        if self.is_painted {
             return Ok(None);
         }
         let start = Instant::now();
