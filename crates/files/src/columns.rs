@@ -41,12 +41,12 @@ pub(super) struct ColumnLayout {
 
 impl ColumnLayout {
     /// Columns whose names state nothing about the vertical axis.
-    pub fn plain(columns: Vec<Column>) -> Self {
+    pub(crate) fn plain(columns: Vec<Column>) -> Self {
         Self { columns, unit: None, domain: None, positive: None, notes: Vec::new() }
     }
 
     /// Whether a point can be placed: Z, and lines or X, Y.
-    pub fn is_complete(&self) -> bool {
+    pub(crate) fn is_complete(&self) -> bool {
         let has = |c| self.columns.contains(&c);
         has(Column::Z) && ((has(Column::X) && has(Column::Y)) || (has(Column::Inline) && has(Column::Crossline)))
     }

@@ -45,7 +45,7 @@ pub(super) struct IrapHeader {
 
 impl IrapHeader {
     /// The grid, u along XINC and v along YINC.
-    pub fn grid(&self, source: &SourceFile) -> Result<NodeGrid, FormatError> {
+    pub(crate) fn grid(&self, source: &SourceFile) -> Result<NodeGrid, FormatError> {
         let [nu, nv] = self.count;
         if nu < 1 || nv < 1 || nu.checked_mul(nv).is_none_or(|n| n > 1 << 32) {
             return Err(source.bad_grid(format!("{nu} columns and {nv} rows")));

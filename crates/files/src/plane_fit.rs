@@ -24,7 +24,7 @@ pub(super) struct PrincipalFrame {
 
 impl PrincipalFrame {
     /// The frame of points; the coordinate axes for none.
-    pub fn of(points: &[DVec3]) -> Self {
+    pub(crate) fn of(points: &[DVec3]) -> Self {
         let count = points.len().max(1) as f64;
         let mean = points.iter().sum::<DVec3>() / count;
         let mut covariance = DMat3::ZERO;

@@ -21,7 +21,7 @@ pub(super) struct ReadContext<'a> {
 
 impl ReadContext<'_> {
     /// The domain of the survey: time or depth.
-    pub fn domain(&self) -> Option<Domain> {
+    pub(crate) fn domain(&self) -> Option<Domain> {
         self.geometry.map(|g| Domain::of(g.vertical.unit))
     }
 }
@@ -60,7 +60,7 @@ pub(super) enum RawShape {
 
 impl RawShape {
     /// The vertical values, for reading.
-    pub fn values(&self) -> Box<dyn Iterator<Item = f64> + '_> {
+    pub(crate) fn values(&self) -> Box<dyn Iterator<Item = f64> + '_> {
         match self {
             Self::Grid { z, .. } => Box::new(z.iter().copied()),
             Self::Points(points) => Box::new(points.iter().map(|p| p.z)),
@@ -69,7 +69,7 @@ impl RawShape {
     }
 
     /// The vertical values, for changing.
-    pub fn values_mut(&mut self) -> Box<dyn Iterator<Item = &mut f64> + '_> {
+    pub(crate) fn values_mut(&mut self) -> Box<dyn Iterator<Item = &mut f64> + '_> {
         match self {
             Self::Grid { z, .. } => Box::new(z.iter_mut()),
             Self::Points(points) => Box::new(points.iter_mut().map(|p| &mut p.z)),

@@ -50,7 +50,7 @@ pub(super) struct Outliers {
 
 impl Outliers {
     /// The warning for the user.
-    pub fn sentence(&self, unit: VerticalUnit) -> String {
+    pub(crate) fn sentence(&self, unit: VerticalUnit) -> String {
         let [x, y, z, off] = self.worst;
         let unit = unit.symbol();
         format!(

@@ -23,7 +23,7 @@ impl NodeValues {
     ///
     /// # Errors
     /// [`Crowded`], since what follows compares every depth of a node with every depth of its neighbours.
-    pub fn group(nodes: usize, pairs: &[(usize, f32)], tolerance: f32) -> Result<(Self, Vec<u32>), Crowded> {
+    pub(crate) fn group(nodes: usize, pairs: &[(usize, f32)], tolerance: f32) -> Result<(Self, Vec<u32>), Crowded> {
         let mut order: Vec<u32> = (0..pairs.len() as u32).collect();
         order.sort_by(|&a, &b| {
             let (a, b) = (&pairs[a as usize], &pairs[b as usize]);
@@ -61,7 +61,7 @@ impl NodeValues {
     }
 
     /// Count of nodes with more than one value.
-    pub fn multivalued(&self) -> usize {
+    pub(crate) fn multivalued(&self) -> usize {
         (1..self.offsets.len()).filter(|&n| self.offsets[n] - self.offsets[n - 1] > 1).count()
     }
 }

@@ -24,7 +24,7 @@ impl LineCut {
     /// How a line is cut: by `;`, tab or comma, whichever it has, in this order, else by blanks.
     ///
     /// A comma between digits of a table cut by `;` or tab is a decimal comma.
-    pub fn of(line: &str) -> Self {
+    pub(crate) fn of(line: &str) -> Self {
         // A tab next to blanks belongs to a table with blanks; OpendTect separates by tabs alone.
         let delimiter = [';', '\t', ','].into_iter().find(|&d| line.contains(d));
         let delimiter =
@@ -40,12 +40,12 @@ impl LineCut {
     }
 
     /// The fields of a line.
-    pub fn fields<'a>(&self, line: &'a str) -> Vec<Field<'a>> {
+    pub(crate) fn fields<'a>(&self, line: &'a str) -> Vec<Field<'a>> {
         text::fields(line, self.delimiter)
     }
 
     /// A field as a number.
-    pub fn number(&self, field: &str) -> Option<f64> {
+    pub(crate) fn number(&self, field: &str) -> Option<f64> {
         if self.decimal_comma { text::number(&field.replacen(',', ".", 1)) } else { text::number(field) }
     }
 

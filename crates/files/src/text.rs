@@ -27,7 +27,7 @@ pub(crate) struct Line<'a> {
 
 impl SourceFile {
     /// Reads a whole file, an ordinary one of at most [`file::MAX_INTERPRETATION_BYTES`].
-    pub fn open(path: &Path) -> Result<Self, FormatError> {
+    pub(crate) fn open(path: &Path) -> Result<Self, FormatError> {
         let bytes = file::read(path, file::MAX_INTERPRETATION_BYTES).map_err(|source| FormatError::Io {
             action: "read",
             file: path.to_path_buf(),
@@ -37,27 +37,27 @@ impl SourceFile {
     }
 
     /// The file as text.
-    pub fn text(&self) -> Cow<'_, str> {
+    pub(crate) fn text(&self) -> Cow<'_, str> {
         String::from_utf8_lossy(&self.bytes)
     }
 
     /// The file name without its extension.
-    pub fn stem(&self) -> String {
+    pub(crate) fn stem(&self) -> String {
         self.path.file_stem().map_or_else(|| "unnamed".into(), |s| s.to_string_lossy().into_owned())
     }
 
     /// An error at a line.
-    pub fn syntax(&self, line: usize, expected: impl Into<String>, found: &str) -> FormatError {
+    pub(crate) fn syntax(&self, line: usize, expected: impl Into<String>, found: &str) -> FormatError {
         FormatError::Syntax { file: self.path.clone(), line, expected: expected.into(), found: excerpt(found) }
     }
 
     /// An error of counts.
-    pub fn length(&self, what: &'static str, expected: usize, found: usize) -> FormatError {
+    pub(crate) fn length(&self, what: &'static str, expected: usize, found: usize) -> FormatError {
         FormatError::Length { file: self.path.clone(), what, expected, found }
     }
 
     /// An error in a grid header.
-    pub fn bad_grid(&self, why: impl Into<String>) -> FormatError {
+    pub(crate) fn bad_grid(&self, why: impl Into<String>) -> FormatError {
         FormatError::BadGrid { file: self.path.clone(), why: why.into() }
     }
 }

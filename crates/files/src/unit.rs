@@ -78,7 +78,7 @@ pub(super) enum Domain {
 }
 
 impl Domain {
-    pub fn of(unit: VerticalUnit) -> Self {
+    pub(crate) fn of(unit: VerticalUnit) -> Self {
         match unit {
             VerticalUnit::Milliseconds => Self::Time,
             VerticalUnit::Metres => Self::Depth,

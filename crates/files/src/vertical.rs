@@ -51,7 +51,7 @@ impl VerticalRule {
     ///
     /// # Errors
     /// [`FormatError::UnitMismatch`] when one is a time and the other a depth.
-    pub fn settle(
+    pub(crate) fn settle(
         file: &Path,
         facts: &VerticalFacts,
         options: &ImportOptions,
@@ -98,7 +98,7 @@ impl VerticalRule {
     }
 
     /// Converts in place; nulls become NaN.
-    pub fn apply(&self, shape: &mut RawShape) -> VerticalCounts {
+    pub(crate) fn apply(&self, shape: &mut RawShape) -> VerticalCounts {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         let mut counts = VerticalCounts { values: 0, nulls: 0, range_in_file: none, range: none };
         let widen = |range: &mut [f64; 2], v: f64| *range = [range[0].min(v), range[1].max(v)];
@@ -126,7 +126,7 @@ impl VerticalRule {
     ///
     /// # Errors
     /// [`FormatError::LooksLikeNull`], [`FormatError::OutsideRange`].
-    pub fn check(
+    pub(crate) fn check(
         &self,
         file: &Path,
         name: &str,

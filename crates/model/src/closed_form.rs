@@ -30,27 +30,27 @@ pub(crate) struct ModelForm {
 }
 
 impl ModelForm {
-    pub fn new(size: [usize; 3], faults: Vec<FaultForm>, contacts: Vec<Contact>, sheet: SheetForm) -> Self {
+    pub(crate) fn new(size: [usize; 3], faults: Vec<FaultForm>, contacts: Vec<Contact>, sheet: SheetForm) -> Self {
         Self { geometry: SurveyGeometry::regular(size, 25.0, 10.0, VerticalUnit::Metres), faults, contacts, sheet }
     }
 
     /// Sides of the faults at a voxel position; a fault that does not exist there counts as on its negative
     /// side.
-    pub fn bits(&self, p: DVec3) -> u32 {
+    pub(crate) fn bits(&self, p: DVec3) -> u32 {
         let raw = |f: &FaultForm| p.x >= (f.at)(p.y, p.z);
         let exists = |f: &FaultForm| f.truncated_by.is_none_or(|(by, side)| raw(&self.faults[by]) == side);
         self.faults.iter().enumerate().map(|(i, f)| u32::from(exists(f) && raw(f)) << i).sum()
     }
 
     /// Layer (conformable horizons) and fault sides at a voxel position.
-    pub fn region(&self, p: DVec3) -> (u16, u32) {
+    pub(crate) fn region(&self, p: DVec3) -> (u16, u32) {
         let bits = self.bits(p);
         let passed = (0..self.contacts.len()).filter(|&h| p.z >= (self.sheet)(h, bits, p.x, p.y)).count();
         ((self.contacts.len() - passed) as u16, bits)
     }
 
     /// Whether nothing changes within `radius` voxels of `p` (along the axes and diagonals).
-    pub fn is_clear(&self, p: DVec3, radius: f64) -> bool {
+    pub(crate) fn is_clear(&self, p: DVec3, radius: f64) -> bool {
         let here = self.region(p);
         let steps = [-1.0, 0.0, 1.0];
         steps.iter().all(|&x| {
@@ -58,7 +58,7 @@ impl ModelForm {
         })
     }
 
-    pub fn stratigraphy(&self) -> Stratigraphy {
+    pub(crate) fn stratigraphy(&self) -> Stratigraphy {
         let horizons = self
             .contacts
             .iter()
@@ -68,7 +68,7 @@ impl ModelForm {
         Stratigraphy { horizons, layer_names: Vec::new() }
     }
 
-    pub fn fault_inputs(&self) -> Vec<Fault> {
+    pub(crate) fn fault_inputs(&self) -> Vec<Fault> {
         self.faults
             .iter()
             .enumerate()
@@ -99,7 +99,7 @@ impl ModelForm {
     }
 
     /// The same surfaces in another geometry of the same world.
-    pub fn in_geometry(&self, geometry: &SurveyGeometry) -> StructuralModel {
+    pub(crate) fn in_geometry(&self, geometry: &SurveyGeometry) -> StructuralModel {
         StructuralModel::build(
             geometry,
             &self.stratigraphy(),
@@ -112,7 +112,7 @@ impl ModelForm {
     }
 
     /// What an interpreter would give: per combination of fault sides, the nodes that lie there.
-    pub fn horizons(&self, noise: impl Fn(usize, usize) -> f64) -> Vec<Horizon> {
+    pub(crate) fn horizons(&self, noise: impl Fn(usize, usize) -> f64) -> Vec<Horizon> {
         let grid = NodeGrid::of_survey(&self.geometry);
         let [nx, ny, nz] = self.geometry.size();
         (0..self.contacts.len())
@@ -137,7 +137,7 @@ impl ModelForm {
             .collect()
     }
 
-    pub fn model(&self) -> StructuralModel {
+    pub(crate) fn model(&self) -> StructuralModel {
         self.in_geometry(&self.geometry)
     }
 }
@@ -146,18 +146,18 @@ impl ModelForm {
 pub(crate) struct Random(pub u32);
 
 impl Random {
-    pub fn next(&mut self) -> f64 {
+    pub(crate) fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         f64::from(self.0 >> 8) / f64::from(1u32 << 24)
     }
 
     /// A place in the volume of `size`.
-    pub fn place(&mut self, size: [usize; 3]) -> DVec3 {
+    pub(crate) fn place(&mut self, size: [usize; 3]) -> DVec3 {
         DVec3::from_array(size.map(|n| (n as f64 - 1.0) * self.next()))
     }
 
     /// A direction.
-    pub fn direction(&mut self) -> DVec3 {
+    pub(crate) fn direction(&mut self) -> DVec3 {
         loop {
             let v = DVec3::new(self.next(), self.next(), self.next()) * 2.0 - 1.0;
             if v.length() > 0.1 && v.length() < 1.0 {

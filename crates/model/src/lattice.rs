@@ -11,26 +11,26 @@ pub(super) struct MarginLattice {
 }
 
 impl MarginLattice {
-    pub fn with_margin(size: [usize; 3], margin: usize) -> Self {
+    pub(crate) fn with_margin(size: [usize; 3], margin: usize) -> Self {
         Self { origin: [-(margin as i32); 2], size: [size[0] + 2 * margin, size[1] + 2 * margin] }
     }
 
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.size[0] * self.size[1]
     }
 
     /// Voxel (x, y) of node `n`.
-    pub fn voxel(&self, n: usize) -> [i32; 2] {
+    pub(crate) fn voxel(&self, n: usize) -> [i32; 2] {
         [self.origin[0] + (n / self.size[1]) as i32, self.origin[1] + (n % self.size[1]) as i32]
     }
 
     /// Whether node `n` lies over the volume rather than in the margin.
-    pub fn is_inside(&self, n: usize) -> bool {
+    pub(crate) fn is_inside(&self, n: usize) -> bool {
         self.voxel(n).iter().zip(self.size).zip(self.origin).all(|((&c, n), o)| c >= 0 && c < n as i32 + 2 * o)
     }
 
     /// Position at height `z` over node `n`.
-    pub fn place(&self, n: usize, z: f32) -> Vec3 {
+    pub(crate) fn place(&self, n: usize, z: f32) -> Vec3 {
         let [x, y] = self.voxel(n);
         Vec3::new(x as f32, y as f32, z)
     }

@@ -37,13 +37,13 @@ pub(super) struct ExtendedSheet {
 
 impl ExtendedSheet {
     /// The topmost part of a surface of any shape.
-    pub fn of_level(lattice: MarginLattice, field: HeightField, own: usize) -> Self {
+    pub(crate) fn of_level(lattice: MarginLattice, field: HeightField, own: usize) -> Self {
         let count = lattice.len();
         Self { field, quality: vec![Quality::Picked; count], known: vec![true; count], own }
     }
 
     /// Which nodes are data or within a few nodes of it.
-    pub fn near_data(&self, lattice: MarginLattice) -> Vec<bool> {
+    pub(crate) fn near_data(&self, lattice: MarginLattice) -> Vec<bool> {
         near(lattice.size, self.known.clone())
     }
 }

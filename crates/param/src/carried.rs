@@ -29,7 +29,7 @@ const LEAST_RISE: f32 = 0.3;
 
 /// The place where the line through `start` along ∇k meets k = ½, or ends, by steps of at most `longest` cube roots of a
 /// voxel. `rise` gives k and its derivatives per voxel.
-pub fn middle(
+pub(crate) fn middle(
     metric: &Metric,
     longest: f32,
     start: Vec3,
@@ -73,7 +73,7 @@ fn step(metric: &Metric, longest: f32, slope: Vec3, by: f32) -> Option<Vec3> {
 }
 
 /// The layers that the nodes of a lattice hold, and their blocks.
-pub struct Held {
+pub(crate) struct Held {
     /// The lattice.
     pub nodes: NodeBox,
     block: Vec<u16>,
@@ -83,7 +83,7 @@ pub struct Held {
 
 impl Held {
     /// Asks for the region at each node.
-    pub fn of(nodes: NodeBox, region_at: impl Fn(Vec3) -> Region + Sync) -> Self {
+    pub(crate) fn of(nodes: NodeBox, region_at: impl Fn(Vec3) -> Region + Sync) -> Self {
         let of_node: Vec<Region> =
             (0..nodes.count()).into_par_iter().map(|node| region_at(nodes.place(node))).collect();
         let layers = |node: usize| {
@@ -102,7 +102,7 @@ impl Held {
 
     /// Two functions at the nodes around a region: `near` next to it, `far` in the rest of the box around it. A region
     /// that no node holds has a box of two nodes along each axis.
-    pub fn fields(
+    pub(crate) fn fields(
         &self,
         region: Region,
         near: impl Fn(Vec3) -> [f32; 2] + Sync,

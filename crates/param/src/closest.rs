@@ -35,7 +35,7 @@ const LONGEST_STEP: f32 = 8.0;
 /// The foot of a point on a sheet: the closest point of the sheet. Positions are relative to a
 /// [`ColumnFrame`].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Foot {
+pub(crate) struct Foot {
     /// Voxel (x, y) of the foot, relative to the frame's column.
     pub at: Vec2,
     /// The jet of the surface at the foot.
@@ -47,14 +47,14 @@ pub struct Foot {
 impl Foot {
     /// A foot at `at`, from which [`Foot::follow`] can start.
     #[inline]
-    pub fn start(surface: &BicubicSheet, frame: ColumnFrame, at: Vec2) -> Self {
+    pub(crate) fn start(surface: &BicubicSheet, frame: ColumnFrame, at: Vec2) -> Self {
         Self { at, jet: surface.jet(frame, at), distance: f32::INFINITY }
     }
 
     /// The upward unit normal of the sheet (−z is up) as a voxel vector, i.e. the metric gradient of the
     /// distance for points above the sheet. Unlike (p − c)/d it needs no division by a distance near 0.
     #[inline]
-    pub fn upward_normal(&self, metric: &Metric) -> Vec3 {
+    pub(crate) fn upward_normal(&self, metric: &Metric) -> Vec3 {
         let covector = Vec3::new(self.jet.gradient.x, self.jet.gradient.y, -1.0);
         let raised = metric.raise(covector);
         raised * (1.0 / covector.dot(raised).sqrt())
@@ -62,13 +62,13 @@ impl Foot {
 
     /// The foot as a position relative to the frame.
     #[inline]
-    pub fn position(&self) -> Vec3 {
+    pub(crate) fn position(&self) -> Vec3 {
         self.at.extend(self.jet.h)
     }
 
     /// Moves the foot from where it is to the local closest point of `p` (relative to the frame).
     #[inline]
-    pub fn follow(&mut self, surface: &BicubicSheet, metric: &Metric, frame: ColumnFrame, p: Vec3) {
+    pub(crate) fn follow(&mut self, surface: &BicubicSheet, metric: &Metric, frame: ColumnFrame, p: Vec3) {
         let (mut at, mut jet) = (self.at, self.jet);
         let (mut last_at, mut last_f) = (at, f32::INFINITY);
         for step_index in 0..MOST_STEPS {

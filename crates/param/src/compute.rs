@@ -61,7 +61,7 @@ struct TraceColumn<'a> {
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn fill(
+pub(crate) fn fill(
     grid: &mut RegionGrid,
     layer: &Layer,
     touched: &RegionColumns,
@@ -239,7 +239,7 @@ impl<'a> Filler<'a> {
 
 /// The first and last level of a column with this bottom and thickness that lie in the wanted depths, and three more on
 /// each side.
-pub fn level_range(levels: usize, bottom: f32, thickness: f32, depths: Depths) -> (usize, usize) {
+pub(crate) fn level_range(levels: usize, bottom: f32, thickness: f32, depths: Depths) -> (usize, usize) {
     let last = levels - 1;
     let scale = last as f32 / thickness;
     let lowest = ((bottom - depths[1]) * scale).floor() - 3.0;

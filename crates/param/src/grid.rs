@@ -26,7 +26,7 @@ use std::sync::Arc;
 use survey::{HeightField, LevelField};
 
 /// A layer thinner than this (voxels) counts as pinched out: its offsets are 0 and v is ½.
-pub const PINCHED: f32 = 1e-3;
+pub(crate) const PINCHED: f32 = 1e-3;
 
 /// Columns and samples between the places at which the rise of k is measured.
 const RISES_EVERY: usize = 5;
@@ -349,7 +349,7 @@ pub(crate) struct GridColumn<'a> {
 
 impl GridColumn<'_> {
     /// What is added to (x, y, v) at voxel z, where v is measured between other sheets.
-    pub fn offsets(&self, z: f32, v: f32) -> Vec3 {
+    pub(crate) fn offsets(&self, z: f32, v: f32) -> Vec3 {
         let own_v = if self.thickness < PINCHED { 0.5 } else { (self.bottom - z) / self.thickness };
         let (cell, fraction) = split(own_v * (self.offsets.len() - 1) as f32, self.offsets.len());
         let ([dx, dy, dk], _) = cubic(self.offsets, cell, fraction);

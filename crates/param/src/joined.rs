@@ -25,7 +25,7 @@ use survey::{Cancelled, HeightField, Progress};
 
 /// Columns by which the grid of a block reaches beyond it, so that its neighbours can take the mean with it. Over these
 /// its weight dies out.
-pub const GROWN: usize = 6;
+pub(crate) const GROWN: usize = 6;
 /// L in columns: a block is computed for three columns beyond it in any case.
 const LENGTH: usize = GROWN + 3;
 /// Columns and samples between the places at which blocks are looked for that meet.
@@ -52,7 +52,7 @@ fn falling(x: f32) -> f32 {
 /// The mean of the calm sheets of one horizon, `[block]`, over the blocks whose `drawn` sheets are one surface. Another counts
 /// by (1 − t²)² where they are t < 1 voxels apart, averaged over waves of `wave` voxels along x and y: rough sheets are nearer
 /// and farther apart from column to column, and the mean is to be as calm as they. Where they are the same it counts in full.
-pub fn mean_of_sheets(drawn: &[&HeightField], calm: Vec<HeightField>, wave: [f64; 2]) -> Vec<HeightField> {
+pub(crate) fn mean_of_sheets(drawn: &[&HeightField], calm: Vec<HeightField>, wave: [f64; 2]) -> Vec<HeightField> {
     if calm.len() < 2 {
         return calm;
     }
@@ -86,13 +86,13 @@ fn largest_around(throws: &[f32], [nx, ny]: [usize; 2], n: usize) -> f32 {
 }
 
 /// L, the length of [`LENGTH`] columns, m.
-pub fn length_m<M: LayerModel + ?Sized>(model: &M) -> f64 {
+pub(crate) fn length_m<M: LayerModel + ?Sized>(model: &M) -> f64 {
     let steps = model.metric();
     LENGTH as f64 * steps.x_axis.length().min(steps.y_axis.length())
 }
 
 /// The faults of a model, and how far blocks reach beyond their tips.
-pub struct Tips<'a> {
+pub(crate) struct Tips<'a> {
     faults: Option<&'a FaultNetwork>,
     /// L, m.
     length_m: f64,
@@ -100,7 +100,7 @@ pub struct Tips<'a> {
 
 impl<'a> Tips<'a> {
     /// Of a model.
-    pub fn of<M: LayerModel + ?Sized>(model: &'a M) -> Self {
+    pub(crate) fn of<M: LayerModel + ?Sized>(model: &'a M) -> Self {
         Self { faults: model.faults(), length_m: length_m(model) }
     }
 
@@ -122,7 +122,7 @@ impl<'a> Tips<'a> {
     }
 
     /// For each block of a layer, itself and those that it meets beyond a tip, directly or through others.
-    pub fn companions(&self, touched: &[&RegionColumns]) -> Vec<Vec<u16>> {
+    pub(crate) fn companions(&self, touched: &[&RegionColumns]) -> Vec<Vec<u16>> {
         let blocks = touched.len();
         let meets = |a: usize, b: usize| {
             let faults = self.between([a as u16, b as u16]);
@@ -158,7 +158,7 @@ impl<'a> Tips<'a> {
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn join<M: LayerModel + ?Sized>(
+pub(crate) fn join<M: LayerModel + ?Sized>(
     model: &M,
     metric: &Metric,
     grids: &mut [&mut RegionGrid],

@@ -21,9 +21,9 @@ use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
 /// Columns between lattice nodes.
-pub const COLUMNS: usize = 4;
+pub(crate) const COLUMNS: usize = 4;
 /// Levels between lattice nodes.
-pub const LEVELS: usize = 4;
+pub(crate) const LEVELS: usize = 4;
 /// Whether a lattice node queries the kd-tree: every second one along each axis. The others start from the
 /// level below.
 fn is_queried(x: usize, y: usize, level: usize) -> bool {
@@ -45,7 +45,7 @@ const SLACK: f32 = 3.0;
 
 /// Where the nodes of a region's lattice are.
 #[derive(Debug, Clone)]
-pub struct LatticeShape {
+pub(crate) struct LatticeShape {
     /// Column of lattice node (0, 0).
     pub origin: [i32; 2],
     /// Counts of lattice nodes along x, y and the levels.
@@ -55,7 +55,7 @@ pub struct LatticeShape {
 }
 
 /// The global closest points of one sheet at the nodes of a lattice.
-pub struct FootLattice {
+pub(crate) struct FootLattice {
     shape: LatticeShape,
     /// Voxel position of the foot of each node `[x][y][level]`, absolute; NaN in columns that are not
     /// computed.
@@ -159,7 +159,7 @@ impl FootLattice {
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub fn new(
+    pub(crate) fn new(
         shape: &LatticeShape,
         surface: &BicubicSheet,
         metric: &Metric,
@@ -252,7 +252,7 @@ impl FootLattice {
 
     /// A start for a search at voxel (x, y) and a (fractional) level of the region's grid: the foot of the
     /// nearest lattice node. `None` where that foot is not finite.
-    pub fn start(&self, x: f32, y: f32, level: f32) -> Option<Vec2> {
+    pub(crate) fn start(&self, x: f32, y: f32, level: f32) -> Option<Vec2> {
         let (_, nearest) = self.cell(x, y, level);
         let foot = self.feet[nearest];
         (!foot.is_nan()).then_some(foot.truncate())
@@ -277,7 +277,7 @@ impl FootLattice {
     /// Compares `foot`, which was followed to `p`, with the feet of the lattice around, and replaces it by a
     /// closer one. Returns whether the foot moved to another branch.
     #[inline]
-    pub fn try_lattice(
+    pub(crate) fn try_lattice(
         &self,
         foot: &mut Foot,
         surface: &BicubicSheet,

@@ -27,7 +27,7 @@ use crate::surface::{BicubicSheet, ColumnFrame};
 use glam::Vec3;
 
 /// Two sheets of one layer in one fault block, and the definition of k between them.
-pub struct Layer {
+pub(crate) struct Layer {
     /// Where k = 0. In a layer that is open below, the top sheet lowered by the reference thickness.
     pub bottom: BicubicSheet,
     /// Where k = 1 for the distance ratio; otherwise the sheet at the reference thickness.
@@ -40,7 +40,7 @@ pub struct Layer {
 
 /// How k is measured in a region.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum LayerKind {
+pub(crate) enum LayerKind {
     /// Ratio of the distances to both sheets.
     Ratio,
     /// Distance from the bottom sheet over the thickness (scaled metric).
@@ -53,7 +53,7 @@ pub enum LayerKind {
 
 /// The feet of a point on both sheets of its layer.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Feet {
+pub(crate) struct Feet {
     /// On the bottom sheet.
     pub bottom: Foot,
     /// On the top sheet.
@@ -62,7 +62,7 @@ pub struct Feet {
 
 /// The distance ratio at a point.
 #[derive(Debug, Clone, Copy)]
-pub struct RatioSample {
+pub(crate) struct RatioSample {
     /// k.
     pub k: f32,
     /// dp/dk along the isocurve, voxels per unit of k; zero where ∇k is near 0.
@@ -71,18 +71,18 @@ pub struct RatioSample {
 
 impl Layer {
     /// The frame of a column. Relative height 0 is on the bottom sheet.
-    pub fn frame(&self, column: [i32; 2]) -> ColumnFrame {
+    pub(crate) fn frame(&self, column: [i32; 2]) -> ColumnFrame {
         ColumnFrame { column, z: self.bottom.node(column[0], column[1]) }
     }
 
     /// Voxels between the sheets in a column; negative where they cross.
-    pub fn thickness(&self, column: [i32; 2]) -> f32 {
+    pub(crate) fn thickness(&self, column: [i32; 2]) -> f32 {
         self.bottom.node(column[0], column[1]) - self.top.node(column[0], column[1])
     }
 
     /// Moves both feet to `p` and evaluates the distance ratio there.
     #[inline]
-    pub fn follow(&self, frame: ColumnFrame, p: Vec3, feet: &mut Feet) -> RatioSample {
+    pub(crate) fn follow(&self, frame: ColumnFrame, p: Vec3, feet: &mut Feet) -> RatioSample {
         feet.bottom.follow(&self.bottom, &self.metric, frame, p);
         feet.top.follow(&self.top, &self.metric, frame, p);
         self.ratio(feet)
@@ -90,7 +90,7 @@ impl Layer {
 
     /// The distance ratio at the point that the feet belong to.
     #[inline]
-    pub fn ratio(&self, feet: &Feet) -> RatioSample {
+    pub(crate) fn ratio(&self, feet: &Feet) -> RatioSample {
         let (db, dt) = (feet.bottom.distance, feet.top.distance);
         let sum = db + dt;
         let towards_bottom = feet.bottom.upward_normal(&self.metric);

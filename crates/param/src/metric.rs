@@ -12,7 +12,7 @@ use glam::{DMat3, DVec3, Mat3, Vec3};
 
 /// The scaled metric tensor of voxel space.
 #[derive(Debug, Clone, Copy)]
-pub struct Metric {
+pub(crate) struct Metric {
     g: Mat3,
     inverse: Mat3,
     map: DMat3,
@@ -25,7 +25,7 @@ impl Metric {
     ///
     /// # Errors
     /// [`ParamError::DegenerateMetric`] when the matrix cannot be inverted.
-    pub fn new(metres_from_voxel: DMat3, exaggeration: f64) -> Result<Self, ParamError> {
+    pub(crate) fn new(metres_from_voxel: DMat3, exaggeration: f64) -> Result<Self, ParamError> {
         let m = DMat3::from_diagonal(DVec3::new(1.0, 1.0, exaggeration)) * metres_from_voxel;
         let determinant = m.determinant();
         if !(determinant.abs() > 1e-12 && determinant.is_finite()) {
@@ -37,44 +37,44 @@ impl Metric {
     }
 
     /// The linear map from voxels to Cartesian coordinates in units of the scaled metric.
-    pub fn scaled_from_voxel(&self) -> DMat3 {
+    pub(crate) fn scaled_from_voxel(&self) -> DMat3 {
         self.map
     }
 
     /// G u: the covector of voxel vector u.
     #[inline]
-    pub fn lower(&self, u: Vec3) -> Vec3 {
+    pub(crate) fn lower(&self, u: Vec3) -> Vec3 {
         self.g * u
     }
 
     /// G⁻¹ c: the voxel vector of covector c.
     #[inline]
-    pub fn raise(&self, c: Vec3) -> Vec3 {
+    pub(crate) fn raise(&self, c: Vec3) -> Vec3 {
         self.inverse * c
     }
 
     /// The first fundamental form of a surface with slopes (h_x, h_y): the products (xx, xy, yy) of the
     /// tangents (1, 0, h_x) and (0, 1, h_y).
     #[inline]
-    pub fn tangents(&self, hx: f32, hy: f32) -> (f32, f32, f32) {
+    pub(crate) fn tangents(&self, hx: f32, hy: f32) -> (f32, f32, f32) {
         let (x, y, z) = (self.g.x_axis, self.g.y_axis, self.g.z_axis);
         let (zx, zy) = (z.x + hx * z.z, z.y + hy * z.z);
         (x.x + hx * (z.x + zx), x.y + hx * z.y + hy * zx, y.y + hy * (z.y + zy))
     }
 
     /// The inverse of the metric tensor.
-    pub fn inverse(&self) -> Mat3 {
+    pub(crate) fn inverse(&self) -> Mat3 {
         self.inverse
     }
 
     /// Squared scaled length of a voxel vector.
     #[inline]
-    pub fn length_squared(&self, u: Vec3) -> f32 {
+    pub(crate) fn length_squared(&self, u: Vec3) -> f32 {
         u.dot(self.lower(u))
     }
 
     /// Scaled length of one voxel step along z.
-    pub fn vertical_step(&self) -> f32 {
+    pub(crate) fn vertical_step(&self) -> f32 {
         self.g.z_axis.z.sqrt()
     }
 }

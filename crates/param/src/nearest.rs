@@ -20,7 +20,7 @@ use kiddo::{ImmutableKdTree, SquaredEuclidean};
 const STRIDE: usize = 4;
 
 /// Finds a node of a sheet near a point.
-pub struct NodeFinder {
+pub(crate) struct NodeFinder {
     tree: ImmutableKdTree<f32, 3>,
     columns: Vec<[i32; 2]>,
     map: DMat3,
@@ -29,7 +29,7 @@ pub struct NodeFinder {
 
 impl NodeFinder {
     /// Builds the tree over a sheet.
-    pub fn new(surface: &BicubicSheet, metric: &Metric) -> Self {
+    pub(crate) fn new(surface: &BicubicSheet, metric: &Metric) -> Self {
         let (origin, size) = surface.extent();
         let along = |axis: usize| {
             let last = size[axis] - 1;
@@ -51,7 +51,7 @@ impl NodeFinder {
     }
 
     /// The column of the node in the tree that is nearest to voxel `p`.
-    pub fn near(&self, p: DVec3) -> [i32; 2] {
+    pub(crate) fn near(&self, p: DVec3) -> [i32; 2] {
         let query = (self.map * (p - self.centre)).as_vec3().to_array();
         let found = self.tree.query(&query).nearest_one::<SquaredEuclidean<f32>>().execute();
         self.columns[found.item as usize]

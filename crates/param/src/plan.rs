@@ -25,7 +25,7 @@ const SHARED: f64 = 0.5;
 
 /// How a region is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Method {
+pub(crate) enum Method {
     /// By closest points ([`crate::compute`]).
     Closest(LayerKind),
     /// As a flow ([`crate::flow`]).
@@ -36,7 +36,7 @@ pub enum Method {
 
 /// Horizons at the bottom and the top of a layer. Bodies bound nothing: they cut what is there, and inside them the rock
 /// is not layered.
-pub fn horizons<M: LayerModel + ?Sized>(model: &M, layer: usize) -> (Option<usize>, Option<usize>) {
+pub(crate) fn horizons<M: LayerModel + ?Sized>(model: &M, layer: usize) -> (Option<usize>, Option<usize>) {
     let layers = model.layer_count();
     let top = (layer + 1 < layers).then(|| layers - 2 - layer);
     if top.is_some_and(|top| model.is_body(top)) {
@@ -46,13 +46,13 @@ pub fn horizons<M: LayerModel + ?Sized>(model: &M, layer: usize) -> (Option<usiz
 }
 
 /// Whether a horizon at the bottom or the top of a region is no height field.
-pub fn is_unfolded<M: LayerModel + ?Sized>(model: &M, region: Region) -> bool {
+pub(crate) fn is_unfolded<M: LayerModel + ?Sized>(model: &M, region: Region) -> bool {
     let (bottom, top) = horizons(model, usize::from(region.layer));
     [bottom, top].into_iter().flatten().any(|h| model.level(h, region.block).is_some())
 }
 
 /// Plans the regions of a model.
-pub struct Planner<'a, M: ?Sized> {
+pub(crate) struct Planner<'a, M: ?Sized> {
     model: &'a M,
     settings: &'a ParamSettings,
     metric: &'a Metric,
@@ -64,7 +64,7 @@ pub struct Planner<'a, M: ?Sized> {
 
 impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
     /// Prepares the sheets of a model.
-    pub fn new(model: &'a M, settings: &'a ParamSettings, metric: &'a Metric) -> Self {
+    pub(crate) fn new(model: &'a M, settings: &'a ParamSettings, metric: &'a Metric) -> Self {
         let (layers, blocks) = (model.layer_count(), model.block_count());
         let is_calm = |layer| !matches!(settings.definition(layer, layers), None | Some(KDefinition::DistanceRatio));
         let steps = model.metric();
@@ -104,7 +104,7 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
 
     /// Vertical distance (voxels) from the reference sheet of an open or parallel layer to the farthest point of
     /// the region; the reference thickness has to cover it. The shortest distance to the sheet is never longer.
-    pub fn farthest(&self, region: Region, touched: &RegionColumns) -> f32 {
+    pub(crate) fn farthest(&self, region: Region, touched: &RegionColumns) -> f32 {
         if is_unfolded(self.model, region) {
             return self.farthest_unfolded(region, touched);
         }
@@ -167,7 +167,7 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
     /// The empty grid of a region, the method that fills it, and the columns that it is filled in. `of_layer` has the columns of each block,
     /// `companions` the blocks that this one meets beyond tips, and itself ([`joined::Tips::companions`]). `reach` is the
     /// largest of [`Planner::farthest`] over the layer.
-    pub fn plan(
+    pub(crate) fn plan(
         &self,
         region: Region,
         of_layer: &[&RegionColumns],
@@ -246,7 +246,7 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
     }
 
     /// ln w of the layers between surfaces of any shape in which k is harmonic, `[layer][block]`; none of the others.
-    pub fn log_weights<'g>(
+    pub(crate) fn log_weights<'g>(
         &self,
         unfolded: &[u16],
         grid_of: impl Fn(Region) -> &'g RegionGrid + Sync,
@@ -265,7 +265,7 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
     }
 
     /// Whether a region takes the mean with others beyond the tips of faults: the published definition stays as it is.
-    pub fn is_joined(&self, region: Region, method: Method) -> bool {
+    pub(crate) fn is_joined(&self, region: Region, method: Method) -> bool {
         let is_published = self.definition(region) == Some(KDefinition::DistanceRatio);
         !is_published && !matches!(method, Method::Unfolded | Method::Closest(LayerKind::Vertical))
     }
@@ -330,7 +330,7 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
     }
 
     /// The sheets of a planned region as surfaces on which closest points are found.
-    pub fn layer(&self, grid: &RegionGrid, touched: &RegionColumns, kind: LayerKind) -> Layer {
+    pub(crate) fn layer(&self, grid: &RegionGrid, touched: &RegionColumns, kind: LayerKind) -> Layer {
         let surface = |sheet: &SheetRef| match sheet.sheet(self.model, grid.region.block) {
             Some(field) => BicubicSheet::new(field, sheet.shift),
             None => BicubicSheet::new(&HeightField::from_fn(touched.origin, touched.size, |_, _| 0.0), sheet.shift),

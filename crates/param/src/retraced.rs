@@ -19,7 +19,7 @@ use survey::{Cancelled, Progress};
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn retrace<M: LayerModel + ?Sized>(
+pub(crate) fn retrace<M: LayerModel + ?Sized>(
     model: &M,
     metric: &Metric,
     grid: &mut RegionGrid,

@@ -13,7 +13,7 @@ const BORDER: i32 = 32;
 
 /// Origin of relative coordinates: an integer voxel column and a height.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ColumnFrame {
+pub(crate) struct ColumnFrame {
     /// Voxel x, y.
     pub column: [i32; 2],
     /// Voxel z.
@@ -22,7 +22,7 @@ pub struct ColumnFrame {
 
 /// The 2-jet of a surface at one place: its height, slope and curvature. The height is relative to the frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Jet {
+pub(crate) struct Jet {
     /// h − frame.z, voxels.
     pub h: f32,
     /// (h_x, h_y).
@@ -34,7 +34,7 @@ pub struct Jet {
 impl Jet {
     /// The second-order continuation of this jet by `step` voxels.
     #[inline]
-    pub fn moved(&self, step: Vec2) -> Self {
+    pub(crate) fn moved(&self, step: Vec2) -> Self {
         let [xx, xy, yy] = self.hessian;
         let curve = Vec2::new(xx * step.x + xy * step.y, xy * step.x + yy * step.y);
         Self {
@@ -47,7 +47,7 @@ impl Jet {
 
 /// A sheet as a bicubic surface with a border, shifted vertically. Memory: 4 bytes a node.
 #[derive(Debug, Clone)]
-pub struct BicubicSheet {
+pub(crate) struct BicubicSheet {
     origin: [i32; 2],
     size: [i32; 2],
     /// Counts of 4 × 4 patches along x and y.
@@ -80,7 +80,7 @@ fn split(value: f32) -> (i32, f32) {
 
 impl BicubicSheet {
     /// Copies a sheet, lowered by `shift` voxels of z.
-    pub fn new(field: &HeightField, shift: f32) -> Self {
+    pub(crate) fn new(field: &HeightField, shift: f32) -> Self {
         let origin = [field.origin[0] - BORDER, field.origin[1] - BORDER];
         let size = field.size.map(|n| n as i32 + 2 * BORDER);
         let z = (0..size[0])
@@ -91,7 +91,7 @@ impl BicubicSheet {
     }
 
     /// Voxel z of the node at an integer column.
-    pub fn node(&self, x: i32, y: i32) -> f32 {
+    pub(crate) fn node(&self, x: i32, y: i32) -> f32 {
         let (u, v) = (x - self.origin[0], y - self.origin[1]);
         if u >= 0 && v >= 0 && u < self.size[0] && v < self.size[1] {
             self.z[(u * self.size[1] + v) as usize]
@@ -101,13 +101,13 @@ impl BicubicSheet {
     }
 
     /// Extent of the height field's own nodes: first column and counts.
-    pub fn extent(&self) -> ([i32; 2], [usize; 2]) {
+    pub(crate) fn extent(&self) -> ([i32; 2], [usize; 2]) {
         (self.field.origin, self.field.size)
     }
 
     /// The jet at `at`, voxels from the frame's column.
     #[inline]
-    pub fn jet(&self, frame: ColumnFrame, at: Vec2) -> Jet {
+    pub(crate) fn jet(&self, frame: ColumnFrame, at: Vec2) -> Jet {
         let ((cell_x, fx), (cell_y, fy)) = (split(at.x), split(at.y));
         let (u, v) = (frame.column[0] + cell_x - 1 - self.origin[0], frame.column[1] + cell_y - 1 - self.origin[1]);
         let inside = (u as u32) < self.inner[0] && (v as u32) < self.inner[1];

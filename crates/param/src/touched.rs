@@ -22,12 +22,12 @@ const REACH: usize = 8;
 const THIN: f32 = 2.0 * STRIDE as f32;
 
 /// Range of depths in one column, voxel z; empty when the first is larger.
-pub type Depths = [f32; 2];
+pub(crate) type Depths = [f32; 2];
 /// The empty range.
 const NOWHERE: Depths = [f32::INFINITY, f32::NEG_INFINITY];
 
 /// The blocks and layers found in all columns, on the survey widened by [`MARGIN`] columns on every side.
-pub struct ColumnScan {
+pub(crate) struct ColumnScan {
     size: [usize; 2],
     layers: usize,
     /// Range of depths per block, `[x][y]`.
@@ -38,7 +38,7 @@ pub struct ColumnScan {
 
 /// The columns that one region occupies.
 #[derive(Debug, Clone)]
-pub struct RegionColumns {
+pub(crate) struct RegionColumns {
     /// First column of the bounding box.
     pub origin: [i32; 2],
     /// Size of the bounding box, columns; 0 when the region occupies none.
@@ -51,12 +51,12 @@ pub struct RegionColumns {
 
 impl RegionColumns {
     /// Whether column n of the box is to be computed.
-    pub fn is_wanted(&self, n: usize) -> bool {
+    pub(crate) fn is_wanted(&self, n: usize) -> bool {
         self.depths[n][0] <= self.depths[n][1]
     }
 
     /// The range of depths to compute in a voxel column, if any.
-    pub fn depths_at(&self, column: [i32; 2]) -> Option<Depths> {
+    pub(crate) fn depths_at(&self, column: [i32; 2]) -> Option<Depths> {
         let n = self.index(column)?;
         self.is_wanted(n).then(|| self.depths[n])
     }
@@ -68,7 +68,7 @@ impl RegionColumns {
 
     /// The same with so many columns more around each, within a survey of so many columns and its margin, and so many samples
     /// above and below.
-    pub fn grown(&self, columns: usize, samples: f32, survey: [usize; 2]) -> Self {
+    pub(crate) fn grown(&self, columns: usize, samples: f32, survey: [usize; 2]) -> Self {
         if self.size[0] == 0 {
             return self.clone();
         }
@@ -100,13 +100,13 @@ impl RegionColumns {
     }
 
     /// How many columns beyond the region a voxel column lies that is to be computed; `None` where none is.
-    pub fn steps_beyond(&self, column: [i32; 2]) -> Option<usize> {
+    pub(crate) fn steps_beyond(&self, column: [i32; 2]) -> Option<usize> {
         let n = self.index(column)?;
         self.is_wanted(n).then(|| self.beyond.get(n).map_or(0, |steps| usize::from(*steps)))
     }
 
     /// The columns to be computed: index in the box, voxel column, range of depths.
-    pub fn columns(&self) -> impl Iterator<Item = (usize, [i32; 2], Depths)> {
+    pub(crate) fn columns(&self) -> impl Iterator<Item = (usize, [i32; 2], Depths)> {
         let ny = self.size[1];
         (0..self.depths.len()).filter(|&n| self.is_wanted(n)).map(move |n| {
             let column = [self.origin[0] + (n / ny) as i32, self.origin[1] + (n % ny) as i32];
@@ -120,7 +120,7 @@ impl ColumnScan {
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub fn of<M: LayerModel + ?Sized>(model: &M, progress: &Progress) -> Result<Self, Cancelled> {
+    pub(crate) fn of<M: LayerModel + ?Sized>(model: &M, progress: &Progress) -> Result<Self, Cancelled> {
         let [nx, ny, nz] = model.size();
         let (layers, blocks) = (model.layer_count(), model.block_count());
         let (wide_x, wide_y) = (nx + 2 * MARGIN, ny + 2 * MARGIN);
@@ -173,7 +173,7 @@ impl ColumnScan {
     }
 
     /// The columns of a region whose sheets lie at `sheets(x, y)` = (bottom, top), voxel z.
-    pub fn touched(&self, region: Region, sheets: impl Fn(i32, i32) -> (f32, f32)) -> RegionColumns {
+    pub(crate) fn touched(&self, region: Region, sheets: impl Fn(i32, i32) -> (f32, f32)) -> RegionColumns {
         let [nx, ny] = self.size;
         let (layer, block) = (usize::from(region.layer), usize::from(region.block));
         let met = &self.met[block * self.layers + layer];

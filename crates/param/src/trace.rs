@@ -27,7 +27,7 @@ const CREASE_STEP: f32 = 1.5;
 
 /// Where a trace ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TraceEnd {
+pub(crate) struct TraceEnd {
     /// Where the trace crosses k = 0.5, relative to the frame.
     pub at: Vec3,
     /// Whether a closest point jumped on the way, or the trace did not arrive.
@@ -35,7 +35,7 @@ pub struct TraceEnd {
 }
 
 /// What the traces of one region share.
-pub struct Tracer<'a> {
+pub(crate) struct Tracer<'a> {
     /// The sheets.
     pub layer: &'a Layer,
     /// Global closest points, bottom and top.
@@ -49,7 +49,7 @@ pub struct Tracer<'a> {
 impl Tracer<'_> {
     /// Tries the feet of both lattices for `p`; returns whether a foot moved to another branch.
     #[inline]
-    pub fn try_lattice(&self, frame: ColumnFrame, p: Vec3, level: f32, feet: &mut Feet) -> bool {
+    pub(crate) fn try_lattice(&self, frame: ColumnFrame, p: Vec3, level: f32, feet: &mut Feet) -> bool {
         let Layer { bottom, top, metric, .. } = self.layer;
         let below = self.lattices[0].try_lattice(&mut feet.bottom, bottom, metric, frame, p, level);
         let above = self.lattices[1].try_lattice(&mut feet.top, top, metric, frame, p, level);
@@ -58,7 +58,7 @@ impl Tracer<'_> {
 
     /// Traces from `start`, where the field is `sample` and the feet are `feet`. Positions are relative to
     /// `frame`.
-    pub fn trace(&self, frame: ColumnFrame, start: Vec3, sample: RatioSample, feet: &Feet) -> TraceEnd {
+    pub(crate) fn trace(&self, frame: ColumnFrame, start: Vec3, sample: RatioSample, feet: &Feet) -> TraceEnd {
         let (mut p, mut sample, mut feet) = (start, sample, *feet);
         let mut crease = false;
         let mut longest = LONGEST_STEP;

@@ -45,7 +45,7 @@ impl Weights {
 }
 
 /// The value at a voxel position and its derivatives per voxel.
-pub fn sample(field: &LevelField, p: Vec3) -> (f32, Vec3) {
+pub(crate) fn sample(field: &LevelField, p: Vec3) -> (f32, Vec3) {
     let at = (p - field.origin) / field.step;
     let [x, y, z] = [0, 1, 2].map(|axis: usize| Weights::of(at[axis], field.size[axis]));
     let [_, ny, nz] = field.size;

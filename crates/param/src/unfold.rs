@@ -81,7 +81,7 @@ struct Solved {
 
 /// The unfolding of each of `layers` in each block. `rise` is k and its derivatives per voxel at a voxel place, of a region
 /// and continued beyond it.
-pub fn unfold<M: LayerModel + ?Sized>(
+pub(crate) fn unfold<M: LayerModel + ?Sized>(
     model: &M,
     metric: &Metric,
     layers: &[u16],

@@ -53,7 +53,7 @@ struct Row {
 }
 
 /// ln w of one layer in each block. `ratio` is r at a voxel place, of a region and continued beyond it.
-pub fn log_weights<M: LayerModel + ?Sized>(
+pub(crate) fn log_weights<M: LayerModel + ?Sized>(
     model: &M,
     layer: u16,
     ratio: impl Fn(Vec3, Region) -> f32 + Sync,
@@ -201,7 +201,7 @@ fn cropped(field: &LevelField, nodes: NodeBox, near: &[bool]) -> LevelField {
 }
 
 /// k and its derivatives per voxel, from r and its, and ln w and its.
-pub fn weighed((r, to_r): (f32, Vec3), (log, to_log): (f32, Vec3)) -> (f32, Vec3) {
+pub(crate) fn weighed((r, to_r): (f32, Vec3), (log, to_log): (f32, Vec3)) -> (f32, Vec3) {
     let w = log.exp();
     let within = r.clamp(0.0, 1.0);
     let sum = within * w + 1.0 - within;

@@ -17,14 +17,14 @@ pub(crate) struct FaceMap {
 
 impl FaceMap {
     /// The stretch of each mapping in a layer where flat space changes by this Jacobian, per voxel.
-    pub fn stretches(&self, tables: &TtfTables, layer: u16, jacobian: &[[f32; 3]; 3]) -> [Stretch; 3] {
+    pub(crate) fn stretches(&self, tables: &TtfTables, layer: u16, jacobian: &[[f32; 3]; 3]) -> [Stretch; 3] {
         let thickness_m = tables.layers.get(usize::from(layer)).map_or(1.0, |layer| layer.thickness_m);
         let changes = self.metre_steps.map(|step| jacobian.map(|row| Vec3::from_array(row).dot(step)));
         self.frame.stretches(tables.globals.aspect_j, [tables.globals.extent_i_m, thickness_m], changes)
     }
 
     /// The weights of the mappings there.
-    pub fn weights(&self, tables: &TtfTables, layer: u16, jacobian: &[[f32; 3]; 3]) -> MappingWeights {
+    pub(crate) fn weights(&self, tables: &TtfTables, layer: u16, jacobian: &[[f32; 3]; 3]) -> MappingWeights {
         let grad_k = (Vec3::from_array(jacobian[2]) / self.voxel_m).to_array();
         self.frame.weights(grad_k, &self.stretches(tables, layer, jacobian))
     }
@@ -32,7 +32,7 @@ impl FaceMap {
 
 impl ResolvedScene<'_> {
     /// How patterns lie on a plane of the block.
-    pub fn face_map(&self, plane: &BodyPlane) -> FaceMap {
+    pub(crate) fn face_map(&self, plane: &BodyPlane) -> FaceMap {
         let stretch = DMat3::from_diagonal(DVec3::new(1.0, 1.0, self.scene.exaggeration));
         let displayed = stretch * self.metric;
         let steps = match plane.axis {

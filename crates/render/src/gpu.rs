@@ -23,7 +23,7 @@ const STORAGE_BUFFERS: u32 = 16;
 
 impl Gpu {
     /// Opens the fastest adapter. The environment variables of wgpu (`WGPU_ADAPTER_NAME`, …) choose another.
-    pub fn headless() -> Result<Self, RenderError> {
+    pub(crate) fn headless() -> Result<Self, RenderError> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
@@ -62,7 +62,7 @@ impl Gpu {
     }
 
     /// Runs commands and converts the errors that the graphics library reports about them.
-    pub fn guarded<T>(&self, commands: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
+    pub(crate) fn guarded<T>(&self, commands: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
@@ -90,7 +90,7 @@ impl Gpu {
     }
 
     /// Writes the texels of the plane at depth `plane` of a 3D texture, row by row.
-    pub fn write_plane(&self, texture: &wgpu::Texture, plane: u32, bytes: &[u8]) {
+    pub(crate) fn write_plane(&self, texture: &wgpu::Texture, plane: u32, bytes: &[u8]) {
         let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };
         let texel_bytes =
             texture.format().block_copy_size(None).expect("an uncompressed colour format has one texel size");
@@ -112,12 +112,12 @@ impl Gpu {
     }
 
     /// A storage buffer with these bytes. It is never empty, since an empty buffer cannot be bound.
-    pub fn storage(&self, label: &str, bytes: &[u8]) -> wgpu::Buffer {
+    pub(crate) fn storage(&self, label: &str, bytes: &[u8]) -> wgpu::Buffer {
         self.filled(label, bytes, wgpu::BufferUsages::STORAGE)
     }
 
     /// A uniform buffer with these bytes.
-    pub fn uniform(&self, label: &str, bytes: &[u8]) -> wgpu::Buffer {
+    pub(crate) fn uniform(&self, label: &str, bytes: &[u8]) -> wgpu::Buffer {
         self.filled(label, bytes, wgpu::BufferUsages::UNIFORM)
     }
 
@@ -135,7 +135,7 @@ impl Gpu {
     }
 
     /// Waits until all submitted work is done.
-    pub fn wait(&self) -> Result<(), RenderError> {
+    pub(crate) fn wait(&self) -> Result<(), RenderError> {
         match self.device.poll(wgpu::PollType::wait_indefinitely()) {
             Ok(_) => Ok(()),
             Err(error) => {

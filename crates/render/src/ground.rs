@@ -438,7 +438,7 @@ impl HeightRow {
 }
 
 impl Heights {
-    pub fn of(model: &StructuralModel, low: Vec3, high: Vec3) -> Self {
+    pub(crate) fn of(model: &StructuralModel, low: Vec3, high: Vec3) -> Self {
         let nodes = |axis: usize| -> Vec<f32> {
             let count = ((high[axis] - low[axis]) / STRIDE as f32).ceil() as usize;
             (0..=count).map(|n| (low[axis] + (n * STRIDE) as f32).min(high[axis])).collect()

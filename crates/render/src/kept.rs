@@ -26,14 +26,14 @@ pub(crate) struct Kept {
 
 impl Kept {
     /// Drops what was made of other data. Data without a version are taken for other ones each time.
-    pub fn renew(&mut self, version: u64) {
+    pub(crate) fn renew(&mut self, version: u64) {
         if version == 0 || self.version != version {
             (self.version, self.heights, self.shapes) = (version, None, Shapes::default());
         }
     }
 
     /// The heights of the ground between two corners of a box.
-    pub fn heights(&mut self, model: &StructuralModel, corners: [Vec3; 2]) -> Arc<Heights> {
+    pub(crate) fn heights(&mut self, model: &StructuralModel, corners: [Vec3; 2]) -> Arc<Heights> {
         match &self.heights {
             Some((of, heights)) if *of == corners => heights.clone(),
             _ => {
@@ -45,7 +45,7 @@ impl Kept {
     }
 
     /// Sections and grounds, for a picture.
-    pub fn shapes(&self) -> Shapes {
+    pub(crate) fn shapes(&self) -> Shapes {
         self.shapes.clone()
     }
 }
@@ -66,7 +66,7 @@ pub(crate) type GroundKey = ([u64; 6], u16, usize);
 
 impl Shapes {
     /// The section of the model along a plane.
-    pub fn section(&self, model: &StructuralModel, plane: &SectionPlane) -> Arc<Section> {
+    pub(crate) fn section(&self, model: &StructuralModel, plane: &SectionPlane) -> Arc<Section> {
         let mut known = self.0.sections.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, section)) = known.iter().find(|(of, _)| of == plane) {
             return section.clone();
@@ -80,12 +80,12 @@ impl Shapes {
     }
 
     /// Heights of the ground at nodes.
-    pub fn heights(&self, key: GroundKey, make: impl FnOnce() -> Vec<f32>) -> Arc<Vec<f32>> {
+    pub(crate) fn heights(&self, key: GroundKey, make: impl FnOnce() -> Vec<f32>) -> Arc<Vec<f32>> {
         kept(&self.0.heights, key, make)
     }
 
     /// Traces of a fault or a horizon on the ground.
-    pub fn traces(&self, key: GroundKey, make: impl FnOnce() -> Vec<[DVec3; 2]>) -> Arc<Vec<[DVec3; 2]>> {
+    pub(crate) fn traces(&self, key: GroundKey, make: impl FnOnce() -> Vec<[DVec3; 2]>) -> Arc<Vec<[DVec3; 2]>> {
         kept(&self.0.traces, key, make)
     }
 }

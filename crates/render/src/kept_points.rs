@@ -53,13 +53,13 @@ impl PointsOf {
 
 impl PicturePoints {
     /// The points of a block of pixels, which are looked for unless they are known.
-    pub fn block(&self, [left, top]: [u32; 2], find: impl FnOnce() -> Points) -> &Points {
+    pub(crate) fn block(&self, [left, top]: [u32; 2], find: impl FnOnce() -> Points) -> &Points {
         let index = top / self.side_px * self.blocks_across + left / self.side_px;
         self.blocks[index as usize].get_or_init(|| find().packed())
     }
 
     /// The lines over the picture.
-    pub fn lines(&self, find: impl FnOnce() -> OutlineLines) -> &OutlineLines {
+    pub(crate) fn lines(&self, find: impl FnOnce() -> OutlineLines) -> &OutlineLines {
         self.lines.get_or_init(find)
     }
 }
@@ -73,13 +73,13 @@ pub(crate) struct KeptPoints {
 
 impl KeptPoints {
     /// None yet.
-    pub fn within(max_bytes: usize) -> Self {
+    pub(crate) fn within(max_bytes: usize) -> Self {
         Self { max_bytes, pictures: Vec::new() }
     }
 
     /// The points of a picture, in blocks of `side_px` pixels; `None` where they are not kept: in volume rendering, behind
     /// a translucent ground, for data without a version, and where they need too much memory.
-    pub fn of(&mut self, resolved: &ResolvedScene, inputs: &Inputs, side_px: u32) -> Option<Arc<PicturePoints>> {
+    pub(crate) fn of(&mut self, resolved: &ResolvedScene, inputs: &Inputs, side_px: u32) -> Option<Arc<PicturePoints>> {
         let is_clear = resolved.relief.as_ref().is_none_or(|relief| relief.opacity >= 1.0);
         let [width, height] = resolved.scene.size_px;
         let bytes = |[width, height]: [u32; 2], samples: u32| {

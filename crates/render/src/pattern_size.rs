@@ -24,7 +24,7 @@ pub(crate) struct Frequencies {
 
 impl Frequencies {
     /// Those of a scene that `view` shows.
-    pub fn of(scene: &Scene, geometry: &SurveyGeometry, view: &View) -> Self {
+    pub(crate) fn of(scene: &Scene, geometry: &SurveyGeometry, view: &View) -> Self {
         match scene.pattern_size {
             PatternSize::Rock => Self { factor: scene.global_frequency, finer_share: 0.0 },
             PatternSize::Paper => {
@@ -56,7 +56,7 @@ impl Frequencies {
     }
 
     /// The one frequency nearest to both, for paths, which cannot be dissolved.
-    pub fn nearest(globals: &ttf::TtfGlobals) -> f32 {
+    pub(crate) fn nearest(globals: &ttf::TtfGlobals) -> f32 {
         Self { factor: globals.global_frequency, finer_share: globals.finer_share }.alone().factor
     }
 }

@@ -65,7 +65,7 @@ pub(crate) const POINT_BYTES: usize = size_of::<SurfacePoint>();
 
 impl Points {
     /// The points of hits.
-    pub fn of<'r>(resolved: &ResolvedScene, hits: impl Iterator<Item = (&'r ViewRay, RayHit)>) -> Self {
+    pub(crate) fn of<'r>(resolved: &ResolvedScene, hits: impl Iterator<Item = (&'r ViewRay, RayHit)>) -> Self {
         let mut planes = Vec::new();
         let points = hits
             .map(|(ray, hit)| match hit {
@@ -79,7 +79,7 @@ impl Points {
     }
 
     /// Straight RGBA of the points.
-    pub fn colours(&self, resolved: &ResolvedScene) -> Vec<Vec4> {
+    pub(crate) fn colours(&self, resolved: &ResolvedScene) -> Vec<Vec4> {
         let planes: Vec<(FaceFrame, f32)> =
             self.planes.iter().map(|(plane, _)| (resolved.frame(plane), resolved.tone(plane))).collect();
         let opacity = resolved.relief.as_ref().map_or(1.0, |relief| relief.opacity);
@@ -97,7 +97,7 @@ impl Points {
     }
 
     /// The same without the points, where all of them are background.
-    pub fn packed(mut self) -> Self {
+    pub(crate) fn packed(mut self) -> Self {
         if self.points.iter().all(|point| matches!(point, SurfacePoint::Background)) {
             self.points = Vec::new();
         }

@@ -23,7 +23,7 @@ use ttf::tables::{LayerEntry, NONE, StopEntry, TtfGlobals};
 use ttf::{FaceFrame, RawColour, TtfTables};
 
 /// Largest number of volumes in a picture.
-pub const MAX_VOLUMES: usize = 6;
+pub(crate) const MAX_VOLUMES: usize = 6;
 /// Colour below raw data if there is no interpretation.
 const PLAIN: [f32; 4] = [0.86, 0.86, 0.855, 0.0];
 
@@ -79,7 +79,7 @@ pub(crate) enum Flat<'a> {
 
 impl<'a> ResolvedScene<'a> {
     /// Checks the scene against the inputs and resolves its names.
-    pub fn new(scene: &'a Scene, inputs: &Inputs<'a>, kept: &mut Kept) -> Result<Self, RenderError> {
+    pub(crate) fn new(scene: &'a Scene, inputs: &Inputs<'a>, kept: &mut Kept) -> Result<Self, RenderError> {
         scene.validate(inputs.geometry)?;
         let interpretation = resolve_interpretation(scene, inputs)?;
         let view = scene.view(inputs.geometry);
@@ -125,13 +125,13 @@ impl<'a> ResolvedScene<'a> {
 
 impl ResolvedScene<'_> {
     /// Whether a line is that of an unconformity.
-    pub fn is_unconformity(&self, horizon: Option<usize>) -> bool {
+    pub(crate) fn is_unconformity(&self, horizon: Option<usize>) -> bool {
         let contacts = self.interpretation.map(|interpretation| interpretation.model.rules().contacts());
         contacts.zip(horizon).and_then(|(contacts, horizon)| contacts.get(horizon)) == Some(&Contact::Erosional)
     }
 
     /// How patterns lie on a plane of the block.
-    pub fn frame(&self, plane: &BodyPlane) -> FaceFrame {
+    pub(crate) fn frame(&self, plane: &BodyPlane) -> FaceFrame {
         let normal = (plane.normal / self.voxel_m).to_array();
         let Some(wall) = plane.wall else {
             // Exactly an axis where the plane is one of an axis.
@@ -143,7 +143,7 @@ impl ResolvedScene<'_> {
     }
 
     /// The factor on colours of a plane of the block: of its direction between those of constant x and y.
-    pub fn tone(&self, plane: &BodyPlane) -> f32 {
+    pub(crate) fn tone(&self, plane: &BodyPlane) -> f32 {
         if let Some(axis) = plane.axis {
             return self.tones[axis];
         }

@@ -128,7 +128,7 @@ pub(crate) struct Start {
 
 impl Start {
     /// At the beginning of the ray, about which nothing is known.
-    pub const OF_RAY: Self = Self { at: f32::MIN, clear: f32::MIN };
+    pub(crate) const OF_RAY: Self = Self { at: f32::MIN, clear: f32::MIN };
 }
 
 /// Where rays begin that are neighbours in the picture, pixel by pixel: all of them pass the air together, then those of
@@ -191,7 +191,7 @@ pub(crate) enum RayHit {
 
 impl RayHit {
     /// Distance along the ray, voxels; infinite for the background.
-    pub fn t(&self) -> f32 {
+    pub(crate) fn t(&self) -> f32 {
         match self {
             Self::Background => f32::INFINITY,
             Self::Face(hit) => hit.t,
@@ -237,7 +237,7 @@ pub(crate) fn pixel_shift(ray: &ViewRay, hit: &FaceHit, n: usize) -> Vec3 {
 impl ResolvedInterpretation<'_> {
     /// Flat coordinates and their Jacobian per voxel. The exact lookup uses the given region, or looks it up
     /// in the model.
-    pub fn flat_at(&self, p: Vec3, region: Option<Region>) -> (param::FlatPoint, [[f32; 3]; 3]) {
+    pub(crate) fn flat_at(&self, p: Vec3, region: Option<Region>) -> (param::FlatPoint, [[f32; 3]; 3]) {
         match self.flat {
             Flat::Exact(param) => param.lookup_in(self.model, p, region.unwrap_or_else(|| self.model.region_at(p))),
             Flat::Packed(packed) => packed.lookup_extrapolated_jacobian(p),

@@ -5,7 +5,7 @@ use project::ProjectError;
 use std::error::Error;
 
 /// What to do next about an error, or about what caused it; `None` where no general advice is possible.
-pub fn of(error: &(dyn Error + 'static)) -> Option<String> {
+pub(crate) fn of(error: &(dyn Error + 'static)) -> Option<String> {
     let own = error.downcast_ref::<ProjectError>().and_then(words).map(str::to_owned);
     own.or_else(|| of(error.source()?))
 }

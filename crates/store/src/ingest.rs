@@ -436,7 +436,7 @@ impl<T> Default for LevelRoom<T> {
 impl<T: StoredSample + Sample> LevelRoom<T> {
     /// Makes the box `[start, part]` of a level from the finer one; `[fine, size]` are their sizes, and the masks are
     /// given in the same way.
-    pub fn fill(
+    pub(crate) fn fill(
         &mut self,
         source: &Shards,
         [fine, size]: [[usize; 3]; 2],

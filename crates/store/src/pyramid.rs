@@ -104,7 +104,7 @@ impl Halving {
     /// Makes `coarse` from `fine`, the box that [`needed`] names. `supply` fills in the trace at x, y of the
     /// finer box, NaN where it has no sample, and returns whether there is any; `take` receives slab after
     /// slab of the coarser box.
-    pub fn run(
+    pub(crate) fn run(
         &mut self,
         fine: LevelBox,
         coarse: LevelBox,

@@ -22,7 +22,13 @@ pub(super) struct SampleBox<'a, T> {
 impl<T: StoredSample + Sample> SampleBox<'_, T> {
     /// Least and greatest live sample of each brick of the box from `start` of size `part`, with the brick's
     /// number in a volume of `volume` voxels; `start` is a multiple of the brick. NaN is ignored.
-    pub fn ranges(&self, start: [usize; 3], part: [usize; 3], mask: &[bool], volume: [usize; 3]) -> IndexedRanges {
+    pub(crate) fn ranges(
+        &self,
+        start: [usize; 3],
+        part: [usize; 3],
+        mask: &[bool],
+        volume: [usize; 3],
+    ) -> IndexedRanges {
         let counts = volume.map(|n| n.div_ceil(BRICK));
         let inside = part.map(|n| n.div_ceil(BRICK));
         let mut found = vec![Range::NONE; inside.iter().product()];
@@ -83,19 +89,19 @@ pub(super) struct BrickRanges {
 }
 
 impl BrickRanges {
-    pub fn of(size: [usize; 3]) -> Self {
+    pub(crate) fn of(size: [usize; 3]) -> Self {
         let counts = size.map(|n| n.div_ceil(BRICK));
         Self { counts, ranges: vec![[f32::NAN; 2]; counts.iter().product()] }
     }
 
     /// Takes in the ranges of some bricks; those without a value stay NaN.
-    pub fn take(&mut self, found: IndexedRanges) {
+    pub(crate) fn take(&mut self, found: IndexedRanges) {
         for (brick, [low, high]) in found.into_iter().filter(|(_, [low, high])| low <= high) {
             self.ranges[brick] = [low, high];
         }
     }
 
-    pub fn write(&self, group: &Path, level: usize) -> Result<(), StoreError> {
+    pub(crate) fn write(&self, group: &Path, level: usize) -> Result<(), StoreError> {
         let [x, y, z] = self.counts;
         let layout = ArrayLayout::whole(&[x, y, z, 2], &["brick_inline", "brick_crossline", "brick_sample", "minmax"]);
         let values = self.ranges.as_flattened();

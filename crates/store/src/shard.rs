@@ -61,7 +61,7 @@ pub(super) struct ShardGrid {
 
 impl ShardGrid {
     /// Shards along each axis.
-    pub fn counts(&self) -> [usize; 3] {
+    pub(crate) fn counts(&self) -> [usize; 3] {
         [0, 1, 2].map(|axis| self.shape[axis].div_ceil(self.shard[axis]))
     }
 
@@ -75,7 +75,7 @@ impl ShardGrid {
     }
 
     /// Bytes of a shard file of `T`s at most.
-    pub fn file_bytes<T>(&self) -> usize {
+    pub(crate) fn file_bytes<T>(&self) -> usize {
         let chunk = self.samples_in_chunk() * size_of::<T>() + CHECKSUM + sums_of(self.chunk) * CHECKSUM + ENTRY;
         self.chunks().iter().product::<usize>() * chunk + 2 * CHECKSUM
     }
@@ -86,7 +86,7 @@ impl ShardGrid {
     }
 
     /// First voxel of a shard, and its voxels inside the volume.
-    pub fn extent(&self, index: [usize; 3]) -> ([usize; 3], [usize; 3]) {
+    pub(crate) fn extent(&self, index: [usize; 3]) -> ([usize; 3], [usize; 3]) {
         let start = [0, 1, 2].map(|axis| index[axis] * self.shard[axis]);
         (start, [0, 1, 2].map(|axis| self.shard[axis].min(self.shape[axis] - start[axis])))
     }
@@ -101,7 +101,7 @@ impl ShardGrid {
     /// what of the shard is inside the volume. `bytes` is room, kept between calls. `visit` sees the first
     /// voxel and the size of every chunk just before its samples are copied, which then are in the
     /// processor's cache.
-    pub fn write<T: StoredSample>(
+    pub(crate) fn write<T: StoredSample>(
         &self,
         index: [usize; 3],
         samples: &[T],

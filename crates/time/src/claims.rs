@@ -24,7 +24,7 @@ const DIAGONAL: u32 = 7;
 const DROPPED: f64 = 0.1;
 
 /// What a seed holds, and how its time spreads.
-pub struct Holding {
+pub(crate) struct Holding {
     /// τ of the seed.
     pub time: f32,
     /// Trace of the seed (x·crosslines + y).
@@ -38,7 +38,7 @@ pub struct Holding {
 }
 
 /// The level at each trace (x·crosslines + y) of `count` inlines and crosslines.
-pub fn levels(holdings: &[Holding], cuts: &[Cut], count: [usize; 2]) -> Vec<f32> {
+pub(crate) fn levels(holdings: &[Holding], cuts: &[Cut], count: [usize; 2]) -> Vec<f32> {
     let mut distances: Vec<Vec<u32>> = Vec::with_capacity(holdings.len());
     for holding in holdings.iter().rev() {
         let is_left = |trace: &usize| distances.iter().all(|later| later[*trace] > TAKEN * STEP);

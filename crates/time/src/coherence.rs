@@ -23,7 +23,7 @@ const STEP: usize = 4;
 const HALF_WINDOW: usize = 12;
 
 /// Correlation along beds on a grid of traces.
-pub struct Coherence {
+pub(crate) struct Coherence {
     /// Squares along inlines and crosslines.
     count: [usize; 2],
     nz: usize,
@@ -34,7 +34,7 @@ pub struct Coherence {
 impl Coherence {
     /// Compares traces along levels of `tau`, `[inline][crossline][sample]`, NaN where it is not known. Memory: half a byte
     /// a voxel. Cost: two sweeps over the volume.
-    pub fn new(tau: &[f32], volume: &Volume<f32>) -> Self {
+    pub(crate) fn new(tau: &[f32], volume: &Volume<f32>) -> Self {
         let [nx, ny, nz] = volume.size();
         let count = [nx.div_ceil(STEP), ny.div_ceil(STEP)];
         let level = mean(volume, tau);
@@ -60,7 +60,7 @@ impl Coherence {
     }
 
     /// The correlation at the samples of a trace.
-    pub fn on_trace(&self, x: usize, y: usize) -> &[f32] {
+    pub(crate) fn on_trace(&self, x: usize, y: usize) -> &[f32] {
         let from = (x / STEP * self.count[1] + y / STEP) * self.nz;
         &self.correlation[from..from + self.nz]
     }

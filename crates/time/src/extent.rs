@@ -28,7 +28,7 @@ const NO_THROW: [f32; 3] = [-1.0, 0.0, 1.0];
 const SHIFTS: usize = VARIED.len() + NO_THROW.len();
 
 /// How badly both sides of a fault fit under each shift, in every cell; `[line cell][sample cell]`.
-pub struct Misfits {
+pub(crate) struct Misfits {
     cells: [usize; 2],
     /// Squared differences under each of [`VARIED`] and [`NO_THROW`], each over the energy of both sides, and how many
     /// samples there were.
@@ -37,7 +37,7 @@ pub struct Misfits {
 
 impl Misfits {
     /// The misfits of a fault that is given a place everywhere.
-    pub fn new(volume: &Volume<f32>, links: &Links, whole: &Cut, throw: &Throw, cell: [usize; 2]) -> Self {
+    pub(crate) fn new(volume: &Volume<f32>, links: &Links, whole: &Cut, throw: &Throw, cell: [usize; 2]) -> Self {
         let [lines, nz] = whole.size;
         let [lower, upper] = sides(volume, links, whole);
         let cells = [lines.div_ceil(cell[0]), nz.div_ceil(cell[1])];
@@ -73,7 +73,7 @@ impl Misfits {
     }
 
     /// By how much the best throw within `reach` cells of each cell fits better than none; 0 where a side is missing.
-    pub fn gain(&self, reach: [usize; 2]) -> Vec<f32> {
+    pub(crate) fn gain(&self, reach: [usize; 2]) -> Vec<f32> {
         let cells = self.cells;
         let around = |n: usize| {
             let (mut sums, mut count) = ([0.0f32; SHIFTS], 0.0f32);
@@ -98,7 +98,7 @@ fn around(n: usize, cells: [usize; 2], reach: [usize; 2]) -> impl Iterator<Item 
 
 /// The cells of a fault: those whose gain and whose evidence of ended patches within `reach` cells speak for it, and
 /// what lies between them.
-pub fn extent(gain: &[f32], ends: &[f32], cells: [usize; 2], reach: [usize; 2]) -> Vec<bool> {
+pub(crate) fn extent(gain: &[f32], ends: &[f32], cells: [usize; 2], reach: [usize; 2]) -> Vec<bool> {
     let speaks = |n: usize| {
         let (sum, count) = around(n, cells, reach).fold((0.0, 0.0), |(sum, count), m| (sum + ends[m], count + 1.0));
         gain[n] + ENDS * sum / count > 0.0

@@ -16,7 +16,7 @@ use std::ops::Range;
 const NONE: u32 = u32::MAX;
 
 /// Weight of a vertex of a picked horizon, over that of a patch.
-pub const KNOWN: f32 = 16.0;
+pub(crate) const KNOWN: f32 = 16.0;
 /// Distance from a picked horizon within which a vertex of a patch tells what it follows, samples.
 const ON_HORIZON: f32 = 0.75;
 
@@ -77,7 +77,7 @@ impl Sides {
 
 /// The vertices of all hubs, by trace, and the vertices of each hub.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Hubs {
+pub(crate) struct Hubs {
     /// `[inlines, crosslines, samples]`.
     pub size: [usize; 3],
     /// First vertex of each trace, and the end of the last.
@@ -98,7 +98,7 @@ pub struct Hubs {
 
 impl Hubs {
     /// Cuts surfaces into hubs of at least `fewest` vertices.
-    pub fn new(surfaces: &Surfaces, cuts: &[Cut], fewest: usize, weight: f32) -> Self {
+    pub(crate) fn new(surfaces: &Surfaces, cuts: &[Cut], fewest: usize, weight: f32) -> Self {
         let vertices = &surfaces.vertices;
         let Sides { apart, beside } = Sides::of(surfaces, cuts);
         let mut sets = UnionFind::new(vertices.len());
@@ -142,7 +142,7 @@ impl Hubs {
     }
 
     /// The same with picked horizons as hubs of their own, each following what most of its nodes lie on.
-    pub fn with_horizons(self, horizons: &[KnownHorizon], weight: f32) -> Self {
+    pub(crate) fn with_horizons(self, horizons: &[KnownHorizon], weight: f32) -> Self {
         if horizons.iter().all(|horizon| horizon.nodes.is_empty()) {
             return self;
         }
@@ -210,29 +210,29 @@ impl Hubs {
     }
 
     /// Count of hubs.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.kind.len()
     }
 
     /// The vertices of trace `x·crosslines + y`.
     #[inline]
-    pub fn on_trace(&self, trace: usize) -> Range<usize> {
+    pub(crate) fn on_trace(&self, trace: usize) -> Range<usize> {
         self.starts[trace] as usize..self.starts[trace + 1] as usize
     }
 
     /// The vertices of the inline `x`.
-    pub fn on_inline(&self, x: usize) -> Range<usize> {
+    pub(crate) fn on_inline(&self, x: usize) -> Range<usize> {
         let ny = self.size[1];
         self.starts[x * ny] as usize..self.starts[(x + 1) * ny] as usize
     }
 
     /// The vertices of a hub, in the order of the traces.
-    pub fn of_hub(&self, hub: usize) -> &[u32] {
+    pub(crate) fn of_hub(&self, hub: usize) -> &[u32] {
         &self.order[self.hub_starts[hub] as usize..self.hub_starts[hub + 1] as usize]
     }
 
     /// The weighted mean of a value of the vertices of each hub. Memory: 16 bytes a hub for each of [`BLOCKS`].
-    pub fn means(&self, value: &[f32]) -> Vec<f32> {
+    pub(crate) fn means(&self, value: &[f32]) -> Vec<f32> {
         let block = value.len().div_ceil(BLOCKS).max(1);
         let blocks = value.par_chunks(block).zip(self.weight.par_chunks(block)).zip(self.hub.par_chunks(block));
         let parts: Vec<Vec<[f64; 2]>> = blocks
@@ -255,7 +255,7 @@ impl Hubs {
     }
 
     /// Splits an array with one entry a vertex into those of each inline.
-    pub fn split_inlines<'a, T>(&self, mut all: &'a mut [T]) -> Vec<&'a mut [T]> {
+    pub(crate) fn split_inlines<'a, T>(&self, mut all: &'a mut [T]) -> Vec<&'a mut [T]> {
         let mut parts = Vec::with_capacity(self.size[0]);
         for x in 0..self.size[0] {
             let (part, rest) = all.split_at_mut(self.on_inline(x).len());
@@ -266,7 +266,7 @@ impl Hubs {
     }
 
     /// Gives every hub the number `into[hub]`, counted from 0 without gaps; hubs of one number become one.
-    pub fn relabel(&mut self, into: &[u32]) {
+    pub(crate) fn relabel(&mut self, into: &[u32]) {
         let count = into.iter().map(|&hub| hub as usize + 1).max().unwrap_or(0);
         let mut kind = vec![Extremum::Peak; count];
         for (hub, &to) in into.iter().enumerate() {

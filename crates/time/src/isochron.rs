@@ -49,7 +49,7 @@ pub fn isochron(tau: &Volume<f32>, time: f32) -> Isochron {
 }
 
 /// The depths at which a trace of τ rises through `time`.
-pub fn crossings(trace: &[f32], time: f32) -> impl Iterator<Item = f32> + '_ {
+pub(crate) fn crossings(trace: &[f32], time: f32) -> impl Iterator<Item = f32> + '_ {
     // NaN compares as false.
     let crossed = trace.windows(2).enumerate().filter(move |(_, pair)| pair[0] <= time && pair[1] > time);
     crossed.map(move |(z, pair)| z as f32 + (time - pair[0]) / (pair[1] - pair[0]))

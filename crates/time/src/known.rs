@@ -14,7 +14,7 @@ use survey::Volume;
 const PLAIN_WEIGHT: f32 = 0.1;
 
 /// Turns s into τ, made monotone on every trace between faults; returns how many voxels changed.
-pub fn make_monotone(s: &mut [f32], hubs: &Hubs, links: &Links) -> usize {
+pub(crate) fn make_monotone(s: &mut [f32], hubs: &Hubs, links: &Links) -> usize {
     let [_, ny, nz] = hubs.size;
     s.par_chunks_mut(ny * nz)
         .enumerate()
@@ -46,7 +46,7 @@ const SQUEEZED: f32 = 0.02;
 
 /// Moves what lies below each unconformity until τ decreases hardly anywhere across it: beds may be missing there, but none
 /// come twice. Links through it, which are weak, put the beds below at the mean.
-pub fn open_jumps(s: &mut [f32], size: [usize; 3], horizons: &[KnownHorizon]) {
+pub(crate) fn open_jumps(s: &mut [f32], size: [usize; 3], horizons: &[KnownHorizon]) {
     let [_, ny, nz] = size;
     for horizon in horizons {
         let Some(mut jumps) = jumps(horizon, size) else { continue };
@@ -93,7 +93,7 @@ const LEAST_STEP: f32 = 0.02;
 
 /// Gives all nodes of each picked horizon one time, the mean over them: what is between two is corrected in proportion,
 /// what is beyond the last less and less, and τ stays monotone. Vertices of at least the weight `known` are such nodes.
-pub fn pin(tau: &mut [f32], hubs: &Hubs, links: &Links, known: f32) {
+pub(crate) fn pin(tau: &mut [f32], hubs: &Hubs, links: &Links, known: f32) {
     let [nx, ny, nz] = hubs.size;
     let mut sums = vec![(0.0f64, 0usize); hubs.len()];
     for trace in 0..nx * ny {
@@ -185,7 +185,7 @@ fn bend(tau: &mut [f32], nodes: &[(f32, f32)]) {
 
 /// Makes τ NaN where reflections follow it hardly better than chance would, unless a picked horizon, whose vertices weigh
 /// `known`, is within `reach` samples; returns how many voxels are left.
-pub fn hide_chaos(tau: &mut [f32], hubs: &Hubs, volume: &Volume<f32>, reach: usize, known: f32) -> usize {
+pub(crate) fn hide_chaos(tau: &mut [f32], hubs: &Hubs, volume: &Volume<f32>, reach: usize, known: f32) -> usize {
     let [_, ny, nz] = hubs.size;
     let coherence = Coherence::new(tau, volume);
     let lines = tau.par_chunks_mut(ny * nz).enumerate().map(|(x, line)| {
@@ -219,7 +219,14 @@ fn around(z: f32, reach: usize, nz: usize) -> std::ops::Range<usize> {
 
 /// Makes τ NaN on dead traces, farther than `reach` samples from every vertex of its trace and of the traces beside it,
 /// and in parts that neither patches nor ties join to the largest.
-pub fn hide_unknown(tau: &mut [f32], hubs: &Hubs, links: &Links, ties: &[Tie], volume: &Volume<f32>, reach: usize) {
+pub(crate) fn hide_unknown(
+    tau: &mut [f32],
+    hubs: &Hubs,
+    links: &Links,
+    ties: &[Tie],
+    volume: &Volume<f32>,
+    reach: usize,
+) {
     let [nx, ny, nz] = hubs.size;
     let mut joined = start::neighbours(hubs, links);
     joined.extend(start::tied(hubs, ties, None));

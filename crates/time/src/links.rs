@@ -11,15 +11,15 @@ use rayon::prelude::*;
 use system::huge_pages;
 
 /// Dips are stored in steps of this part of a sample.
-pub const DIP_STEP: f32 = 1.0 / 256.0;
+pub(crate) const DIP_STEP: f32 = 1.0 / 256.0;
 /// Weights are stored in steps of this part.
-pub const WEIGHT_STEP: f32 = 1.0 / 127.0;
+pub(crate) const WEIGHT_STEP: f32 = 1.0 / 127.0;
 /// Bit of the weight along inlines that says that a fault lies between this sample and the next of its trace; in the
 /// weight along crosslines, that a fault or an unconformity does.
-pub const CUT_BELOW: u8 = 1 << 7;
+pub(crate) const CUT_BELOW: u8 = 1 << 7;
 /// What is left of the weight of a link through an unconformity: without any the beds that it leaves as islands would
 /// have no time.
-pub const THROUGH: f32 = 0.05;
+pub(crate) const THROUGH: f32 = 0.05;
 
 /// Widest gap between two hubs across which the dip is interpolated with full weight, samples.
 const FULL_GAP: f32 = 16.0;
@@ -34,7 +34,7 @@ const NEAR_FAULT: f32 = 6.0;
 
 /// Dips and weights of the links of all traces, `[inline][crossline][sample]`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Links {
+pub(crate) struct Links {
     /// Dip to the next inline and to the next crossline, in [`DIP_STEP`].
     pub dip: [Vec<i16>; 2],
     /// Weight of the same links in [`WEIGHT_STEP`]; 0 on the last lines. Both have [`CUT_BELOW`] too.
@@ -79,7 +79,7 @@ fn dip_at(shared: &[(f32, f32)], below: usize, z: f32) -> (f32, f32) {
 
 impl Links {
     /// Links along the dips of the hubs, cut at faults, and weak through unconformities.
-    pub fn new(hubs: &Hubs, cuts: &[Cut], horizons: &[KnownHorizon]) -> Self {
+    pub(crate) fn new(hubs: &Hubs, cuts: &[Cut], horizons: &[KnownHorizon]) -> Self {
         let [nx, ny, nz] = hubs.size;
         let extents: Vec<Vec<[f32; 2]>> = cuts.iter().map(Cut::extents).collect();
         // Whether a fault comes within a distance of a trace, at any depth.
@@ -126,13 +126,13 @@ impl Links {
 
     /// Whether a fault lies between the voxel of this index and the next of its trace.
     #[inline]
-    pub fn is_cut_below(&self, voxel: usize) -> bool {
+    pub(crate) fn is_cut_below(&self, voxel: usize) -> bool {
         self.weight[0][voxel] & CUT_BELOW != 0
     }
 
     /// Whether a fault or an unconformity lies between the voxel of this index and the next of its trace.
     #[inline]
-    pub fn is_broken_below(&self, voxel: usize) -> bool {
+    pub(crate) fn is_broken_below(&self, voxel: usize) -> bool {
         self.weight[1][voxel] & CUT_BELOW != 0
     }
 }

@@ -9,7 +9,7 @@
 //! Acoustics, Speech, and Signal Processing 26, 1978, for speech). Unit: samples of τ.
 
 /// Width of a bin, samples.
-pub const BIN: f32 = 0.5;
+pub(crate) const BIN: f32 = 0.5;
 /// Bins between knots.
 const KNOT: usize = 8;
 /// Bins by which δ may change from knot to knot: a slope of 1/4.
@@ -26,7 +26,7 @@ const SILENCE: f32 = 0.1;
 
 /// A log that is being stacked.
 #[derive(Debug, Clone)]
-pub struct Log {
+pub(crate) struct Log {
     first: f32,
     sum: Vec<f32>,
     count: Vec<f32>,
@@ -34,14 +34,14 @@ pub struct Log {
 
 impl Log {
     /// An empty log from `first` to `last`.
-    pub fn new(first: f32, last: f32) -> Self {
+    pub(crate) fn new(first: f32, last: f32) -> Self {
         let bins = ((last - first) / BIN).ceil().max(1.0) as usize + 2;
         Self { first, sum: vec![0.0; bins], count: vec![0.0; bins] }
     }
 
     /// Adds an amplitude at a time.
     #[inline]
-    pub fn add(&mut self, time: f32, amplitude: f32) {
+    pub(crate) fn add(&mut self, time: f32, amplitude: f32) {
         let at = (time - self.first) / BIN;
         if !(at >= 0.0 && at < (self.sum.len() - 1) as f32 && amplitude.is_finite()) {
             return;
@@ -55,13 +55,13 @@ impl Log {
     }
 
     /// Adds another log of the same times.
-    pub fn add_log(&mut self, other: &Self) {
+    pub(crate) fn add_log(&mut self, other: &Self) {
         self.sum.iter_mut().zip(&other.sum).for_each(|(a, b)| *a += b);
         self.count.iter_mut().zip(&other.count).for_each(|(a, b)| *a += b);
     }
 
     /// Time and mean amplitude of every bin to which at least `least` amplitudes were added.
-    pub fn means(&self, least: f32) -> impl Iterator<Item = (f32, f32)> + '_ {
+    pub(crate) fn means(&self, least: f32) -> impl Iterator<Item = (f32, f32)> + '_ {
         let bins = self.sum.iter().zip(&self.count).enumerate().filter(move |(_, (_, count))| **count >= least);
         bins.map(|(n, (sum, count))| (self.first + n as f32 * BIN, sum / count))
     }
@@ -82,7 +82,7 @@ impl Log {
     }
 
     /// Fits `other` to this log: the shift δ for which `self(t)` is `other(t + δ(t))`, of at most `most` samples.
-    pub fn fit(&self, other: &Self, most: f32, least: f32) -> Warp {
+    pub(crate) fn fit(&self, other: &Self, most: f32, least: f32) -> Warp {
         let (a, b) = (self.levelled(least), other.levelled(least));
         let reach = (most / BIN) as i32;
         let states = (2 * reach + 1) as usize;
@@ -148,7 +148,7 @@ impl Log {
 
 /// A shift that depends on τ.
 #[derive(Debug, Clone)]
-pub struct Warp {
+pub(crate) struct Warp {
     first: f32,
     shift: Vec<f32>,
     quality: Vec<f32>,
@@ -162,12 +162,12 @@ impl Warp {
     }
 
     /// δ at a time.
-    pub fn shift(&self, time: f32) -> f32 {
+    pub(crate) fn shift(&self, time: f32) -> f32 {
         self.read(&self.shift, time)
     }
 
     /// How well the logs fit there: about 1 where they are equal, 0 where they have nothing in common.
-    pub fn quality(&self, time: f32) -> f32 {
+    pub(crate) fn quality(&self, time: f32) -> f32 {
         self.read(&self.quality, time)
     }
 }

@@ -18,7 +18,7 @@ const LEAST: f32 = 3.0;
 const LEAST_QUALITY: f32 = 0.15;
 
 /// τ and amplitudes.
-pub struct Timed<'a> {
+pub(crate) struct Timed<'a> {
     /// Amplitudes.
     pub volume: &'a Volume<f32>,
     /// s = τ − z.
@@ -33,7 +33,7 @@ impl Timed<'_> {
     }
 
     /// Least and greatest τ.
-    pub fn range(&self) -> [f32; 2] {
+    pub(crate) fn range(&self) -> [f32; 2] {
         let nz = self.volume.size()[2];
         let of = |trace: &[f32]| {
             trace
@@ -82,7 +82,7 @@ impl Timed<'_> {
     }
 
     /// Ties across a fault: its lines are compared in `stretches` that overlap by half, with shifts up to `most` samples.
-    pub fn ties(&self, cut: &Cut, stretches: usize, most: f32, step: [usize; 2], weight: f32) -> Vec<Tie> {
+    pub(crate) fn ties(&self, cut: &Cut, stretches: usize, most: f32, step: [usize; 2], weight: f32) -> Vec<Tie> {
         let [lines, nz] = cut.size;
         let ny = self.volume.size()[1];
         let range = self.range();

@@ -36,7 +36,7 @@ const OVERLAP: f64 = 0.02;
 
 /// Joins hubs whose times differ by less than `tolerance` samples; returns how many are left. `times` are those of the
 /// vertices.
-pub fn merge(hubs: &mut Hubs, links: &Links, times: &[f32], tolerance: f64) -> usize {
+pub(crate) fn merge(hubs: &mut Hubs, links: &Links, times: &[f32], tolerance: f64) -> usize {
     let means = hubs.means(times);
     let places = places(hubs, links);
     let mut order: Vec<usize> = (0..hubs.len()).collect();

@@ -18,7 +18,7 @@ use system::huge_pages;
 
 /// Two points that have the same time: one on either side of a fault.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tie {
+pub(crate) struct Tie {
     /// Traces (x·crosslines + y).
     pub trace: [u32; 2],
     /// Fractional samples.
@@ -29,7 +29,7 @@ pub struct Tie {
 
 /// A point whose time is given.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TimedPoint {
+pub(crate) struct TimedPoint {
     /// Trace (x·crosslines + y).
     pub trace: u32,
     /// Fractional sample.
@@ -42,7 +42,7 @@ pub struct TimedPoint {
 
 /// What a minimisation works in, kept for the next one. Fresh memory costs more than a step.
 #[derive(Debug, Default)]
-pub struct Room {
+pub(crate) struct Room {
     /// Of every voxel.
     image: Vec<f32>,
     residual: Vec<f32>,
@@ -65,7 +65,7 @@ impl Room {
 }
 
 /// What is minimised.
-pub struct System<'a> {
+pub(crate) struct System<'a> {
     /// Patches of one time.
     pub hubs: &'a Hubs,
     /// Dips between traces.
@@ -88,7 +88,7 @@ fn node(z: f32, nz: usize) -> (usize, f32) {
 
 /// The value of a trace at a fractional sample.
 #[inline]
-pub fn interpolate(trace: &[f32], z: f32) -> f32 {
+pub(crate) fn interpolate(trace: &[f32], z: f32) -> f32 {
     let (low, share) = node(z, trace.len());
     trace[low] + share * (trace[(low + 1).min(trace.len() - 1)] - trace[low])
 }
@@ -209,7 +209,7 @@ impl System<'_> {
     }
 
     /// τ at every vertex of the hubs.
-    pub fn at_vertices(&self, s: &[f32]) -> Vec<f32> {
+    pub(crate) fn at_vertices(&self, s: &[f32]) -> Vec<f32> {
         let mut value = vec![0.0f32; self.hubs.z.len()];
         self.interpolate_vertices(s, 1.0, &mut value);
         value
@@ -321,7 +321,7 @@ impl System<'_> {
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub fn minimise(
+    pub(crate) fn minimise(
         &self,
         s: &mut [f32],
         room: &mut Room,

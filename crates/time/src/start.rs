@@ -13,7 +13,7 @@ use survey::{Cancelled, Progress};
 
 /// Two hubs that follow one another on some traces, or that are beside two points of one time.
 #[derive(Debug, Clone, Copy)]
-pub struct HubNeighbours {
+pub(crate) struct HubNeighbours {
     /// The upper and the lower hub.
     pub hubs: [u32; 2],
     /// Count of traces, or weight.
@@ -34,7 +34,7 @@ enum Gap {
 }
 
 /// The pairs of hubs that follow one another on a trace without a fault between them, ascending.
-pub fn neighbours(hubs: &Hubs, links: &Links) -> Vec<HubNeighbours> {
+pub(crate) fn neighbours(hubs: &Hubs, links: &Links) -> Vec<HubNeighbours> {
     let [_, ny, nz] = hubs.size;
     let mut below = vec![Gap::Nothing; hubs.z.len()];
     hubs.split_inlines(&mut below).into_par_iter().enumerate().for_each(|(x, below)| {
@@ -71,7 +71,7 @@ pub fn neighbours(hubs: &Hubs, links: &Links) -> Vec<HubNeighbours> {
 /// The same for the hubs beside the two ends of ties.
 ///
 /// The distance is that of two points of one time; with the times of the vertices, it is what their times lack.
-pub fn tied(hubs: &Hubs, ties: &[Tie], times: Option<&[f32]>) -> Vec<HubNeighbours> {
+pub(crate) fn tied(hubs: &Hubs, ties: &[Tie], times: Option<&[f32]>) -> Vec<HubNeighbours> {
     let nearest = |trace: u32, z: f32| {
         let own = hubs.on_trace(trace as usize);
         own.min_by(|&v, &w| (hubs.z[v] - z).abs().total_cmp(&(hubs.z[w] - z).abs()))
@@ -94,7 +94,7 @@ pub fn tied(hubs: &Hubs, ties: &[Tie], times: Option<&[f32]>) -> Vec<HubNeighbou
 const TIED_REACH: f32 = 8.0;
 
 /// The smallest hub of the connected part to which each hub belongs.
-pub fn parts(count: usize, neighbours: &[HubNeighbours]) -> UnionFind {
+pub(crate) fn parts(count: usize, neighbours: &[HubNeighbours]) -> UnionFind {
     let mut sets = UnionFind::new(count);
     for pair in neighbours {
         sets.union(pair.hubs[0], pair.hubs[1]);
@@ -106,7 +106,7 @@ pub fn parts(count: usize, neighbours: &[HubNeighbours]) -> UnionFind {
 const MOST_STEPS: usize = 2000;
 
 /// The times of all hubs that fit the distances of neighbours best. Hubs that no neighbour joins have no common zero.
-pub fn hub_times(count: usize, neighbours: &[HubNeighbours]) -> Vec<f64> {
+pub(crate) fn hub_times(count: usize, neighbours: &[HubNeighbours]) -> Vec<f64> {
     let mut diagonal = vec![1e-9f64; count];
     let mut residual = vec![0.0f64; count];
     for &HubNeighbours { hubs: [a, b], count, distance } in neighbours {
@@ -148,7 +148,7 @@ pub fn hub_times(count: usize, neighbours: &[HubNeighbours]) -> Vec<f64> {
 }
 
 /// The correction of the times of hubs that ties ask for: neighbours keep their distances as well as they can.
-pub fn corrections(count: usize, neighbours: &[HubNeighbours], tied: &[HubNeighbours]) -> Vec<f64> {
+pub(crate) fn corrections(count: usize, neighbours: &[HubNeighbours], tied: &[HubNeighbours]) -> Vec<f64> {
     let mut all: Vec<HubNeighbours> =
         neighbours.iter().map(|pair| HubNeighbours { count: STIFFNESS * pair.count, distance: 0.0, ..*pair }).collect();
     all.extend(tied);
@@ -163,7 +163,7 @@ const STIFFNESS: f32 = 0.05;
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn add_between(
+pub(crate) fn add_between(
     hubs: &Hubs,
     links: &Links,
     value: impl Fn(usize) -> f32 + Sync,

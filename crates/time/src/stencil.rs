@@ -12,7 +12,7 @@ const STEEPEST: i16 = 512;
 
 /// Room for what the links of a pair of traces add to each sample: of either end its share of the link's own sample, and of
 /// the samples that lie a dip downwards and upwards.
-pub struct Stencils {
+pub(crate) struct Stencils {
     level: Vec<f32>,
     down: Vec<f32>,
     up: Vec<f32>,
@@ -20,20 +20,20 @@ pub struct Stencils {
 
 /// Whether a link is visited by itself.
 #[inline(always)]
-pub fn is_steep(dip: i16) -> bool {
+pub(crate) fn is_steep(dip: i16) -> bool {
     !(-STEEPEST..=STEEPEST).contains(&dip)
 }
 
 impl Stencils {
     /// For traces of `nz` samples.
-    pub fn new(nz: usize) -> Self {
+    pub(crate) fn new(nz: usize) -> Self {
         let room = || vec![0.0; nz];
         Self { level: room(), down: room(), up: room() }
     }
 
     /// Adds half the gradient of Σ weight (b(z + p/2) − a(z − p/2) + offset p)², with p the dip, over all links that are
     /// not steep; returns whether others have a weight. Every slice is a trace; links with a weight have both ends inside.
-    pub fn add(
+    pub(crate) fn add(
         &mut self,
         offset: f32,
         (dips, weights): (&[i16], &[u8]),
@@ -45,7 +45,7 @@ impl Stencils {
 
     /// Half the gradient of e₁ Σ (first difference)² + e₂ Σ (second difference)² along a trace, but for the differences
     /// over a fault or an unconformity.
-    pub fn along(&mut self, smoothness: [f32; 2], s: &[f32], weights: &[u8], out: &mut [f32]) {
+    pub(crate) fn along(&mut self, smoothness: [f32; 2], s: &[f32], weights: &[u8], out: &mut [f32]) {
         widest(Along { room: self, smoothness, s, weights, out });
     }
 }

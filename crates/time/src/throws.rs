@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use survey::Volume;
 
 /// Distance of the first trace of a panel from the fault, traces.
-pub const FIRST: f32 = 1.5;
+pub(crate) const FIRST: f32 = 1.5;
 /// Count of traces that are stacked.
 const STACKED: usize = 5;
 /// Samples within which amplitudes are brought to one level.
@@ -31,7 +31,7 @@ const LEAST_OVERLAP: f32 = 0.4;
 
 /// The side of a fault: towards lower or towards higher indices across.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
+pub(crate) enum Side {
     /// Lower indices.
     Lower,
     /// Higher indices.
@@ -40,7 +40,14 @@ pub enum Side {
 
 /// The trace `distance` traces beside a fault at a line and a sample; `None` outside the volume and where there is no
 /// fault.
-pub fn beside(cut: &Cut, size: [usize; 3], line: usize, z: usize, side: Side, distance: f32) -> Option<[usize; 2]> {
+pub(crate) fn beside(
+    cut: &Cut,
+    size: [usize; 3],
+    line: usize,
+    z: usize,
+    side: Side,
+    distance: f32,
+) -> Option<[usize; 2]> {
     let place = cut.place[line * cut.size[1] + z];
     let across = match side {
         Side::Lower => (place - distance).floor(),
@@ -84,7 +91,7 @@ fn panel(volume: &Volume<f32>, links: &Links, cut: &Cut, side: Side) -> Vec<f32>
 }
 
 /// Stacked amplitudes on the lower and on the upper side.
-pub fn sides(volume: &Volume<f32>, links: &Links, cut: &Cut) -> [Vec<f32>; 2] {
+pub(crate) fn sides(volume: &Volume<f32>, links: &Links, cut: &Cut) -> [Vec<f32>; 2] {
     [Side::Lower, Side::Upper].map(|side| panel(volume, links, cut, side))
 }
 
@@ -289,7 +296,7 @@ const CONSIDERED: usize = 40;
 const REFINED: usize = 6;
 
 /// Finds the throw of a fault; `None` where one of its sides is nowhere inside the volume.
-pub fn throw_of(volume: &Volume<f32>, links: &Links, cut: &Cut) -> Option<Throw> {
+pub(crate) fn throw_of(volume: &Volume<f32>, links: &Links, cut: &Cut) -> Option<Throw> {
     let sides = sides(volume, links, cut);
     if sides.iter().any(|side| side.iter().all(|a| a.is_nan())) {
         return None;
@@ -332,7 +339,7 @@ pub fn throw_of(volume: &Volume<f32>, links: &Links, cut: &Cut) -> Option<Throw>
 }
 
 /// Ties across a fault under a throw, every `step` lines and samples.
-pub fn ties(cut: &Cut, size: [usize; 3], throw: &Throw, step: [usize; 2], weight: f32) -> Vec<Tie> {
+pub(crate) fn ties(cut: &Cut, size: [usize; 3], throw: &Throw, step: [usize; 2], weight: f32) -> Vec<Tie> {
     let [lines, nz] = cut.size;
     let mut ties = Vec::new();
     for line in (0..lines).step_by(step[0]) {

@@ -7,7 +7,7 @@ use system::wide::{Wide, widest};
 const LANES: usize = 8;
 
 /// Σ a b, or Σ a b w; `line` numbers are summed by one thread.
-pub fn dot(a: &[f32], b: &[f32], weights: Option<&[f32]>, line: usize) -> f64 {
+pub(crate) fn dot(a: &[f32], b: &[f32], weights: Option<&[f32]>, line: usize) -> f64 {
     let own = |n: usize, len: usize| weights.map(|weights| &weights[n * line..n * line + len]);
     let lines = a.par_chunks(line).zip(b.par_chunks(line)).enumerate();
     let parts: Vec<f64> = lines.map(|(n, (a, b))| widest(Products { a, b, weights: own(n, a.len()) })).collect();
@@ -15,7 +15,7 @@ pub fn dot(a: &[f32], b: &[f32], weights: Option<&[f32]>, line: usize) -> f64 {
 }
 
 /// Moves s by a step along the direction, and the residual by the same step along its image; returns Σ residual² inverse.
-pub fn advance(
+pub(crate) fn advance(
     step: f32,
     [s, residual]: [&mut [f32]; 2],
     [direction, image, inverse]: [&[f32]; 3],
@@ -33,7 +33,7 @@ pub fn advance(
 }
 
 /// The next direction: residual · inverse + keep · direction.
-pub fn turn(keep: f32, direction: &mut [f32], [residual, inverse]: [&[f32]; 2], line: usize) {
+pub(crate) fn turn(keep: f32, direction: &mut [f32], [residual, inverse]: [&[f32]; 2], line: usize) {
     let lines = direction.par_chunks_mut(line).zip(residual.par_chunks(line)).zip(inverse.par_chunks(line));
     lines.for_each(|((direction, residual), inverse)| widest(Turn { keep, direction, residual, inverse }));
 }

@@ -10,7 +10,7 @@ use std::ops::Range;
 use survey::Progress;
 
 /// Edge of a column, traces: that of the files in which candidates are stored.
-pub const COLUMN: usize = 128;
+pub(super) const COLUMN: usize = 128;
 
 /// Least inlines of a column that are searched together.
 const LEAST_LINES: usize = 8;

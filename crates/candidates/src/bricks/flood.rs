@@ -21,7 +21,7 @@ use std::collections::{BTreeMap, HashMap};
 
 /// Which of the two floods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Flood {
+pub(crate) enum Flood {
     /// From the cores of surfaces.
     Cores,
     /// From everything that has a surface by then.

@@ -16,7 +16,7 @@ use synth::closed_form::ClosedForm;
 use ttf::{BlockExtent, Colour, LayerExtent, LayerStyle, TextureLibrary, TransferFunctions, TtfTables};
 
 /// A fold with a fault, each layer in a pattern.
-pub struct Fold {
+pub(crate) struct Fold {
     pub geometry: SurveyGeometry,
     pub model: StructuralModel,
     param: Parameterization,
@@ -26,14 +26,14 @@ pub struct Fold {
 }
 
 impl Fold {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let geometry = SurveyGeometry::regular([61, 41, 51], 12.5, 12.5, VerticalUnit::Metres);
         let closed = ClosedForm::dome(&geometry, &[10.0, 22.0, 34.0], 30.0).with_fault(65.0, 6.0);
         Self::of(geometry, &closed, &["limestone", "shale", "dolostone", "limestone"])
     }
 
     /// A closed form with a pattern, or a colour such as #c81e1e, for each layer, deepest first.
-    pub fn of(geometry: SurveyGeometry, closed: &ClosedForm, patterns: &[&str]) -> Self {
+    pub(crate) fn of(geometry: SurveyGeometry, closed: &ClosedForm, patterns: &[&str]) -> Self {
         let quiet = Progress::silent();
         let (stratigraphy, horizons) = (&closed.stratigraphy, &closed.horizons);
         let settings = ModelSettings::default();
@@ -66,7 +66,7 @@ impl Fold {
         Self { geometry, model, param, tables, library, layers }
     }
 
-    pub fn inputs(&self) -> Inputs<'_> {
+    pub(crate) fn inputs(&self) -> Inputs<'_> {
         Inputs {
             geometry: &self.geometry,
             model: Some(&self.model),
@@ -81,13 +81,13 @@ impl Fold {
         }
     }
 
-    pub fn page(&self, scene: &Scene, has_vectors: bool) -> DisplayList {
+    pub(crate) fn page(&self, scene: &Scene, has_vectors: bool) -> DisplayList {
         let part = BlockPart { scene: scene.clone(), ..BlockPart::default() };
         let figure = Figure { size: PageSize::Px(scene.size_px), dpi: 200.0, ..Figure::of(part.into()) };
         self.made(&figure, has_vectors)
     }
 
-    pub fn made(&self, figure: &Figure, has_vectors: bool) -> DisplayList {
+    pub(crate) fn made(&self, figure: &Figure, has_vectors: bool) -> DisplayList {
         let horizons = ["H1", "H2", "H3"].map(|name| NamedColour { name: name.into(), colour: Colour::BLACK });
         let inputs = FigureInputs {
             source: SectionSource { data: self.inputs(), raw: None },

@@ -27,7 +27,7 @@ const DEGREES: Angles = Angles { code: 3, unit: "decimal degrees", largest: 360.
 
 impl Angles {
     /// What the codes at byte 89 mean; none if they are no unit of angles.
-    pub fn of(codes: &HeaderColumn) -> Option<Self> {
+    pub(super) fn of(codes: &HeaderColumn) -> Option<Self> {
         let of = |code: i32| match code {
             2 => Some(Self { code, unit: "seconds of arc", largest: 1_296_000.0, metres: DEGREE_M / 3600.0 }),
             3 => Some(DEGREES),
@@ -53,7 +53,12 @@ impl Angles {
     }
 
     /// Refuses X and Y unless they cannot be angles, or not those of a survey.
-    pub fn must_be_lengths(&self, reach: f64, fit: &FittedPlace, findings: &mut Findings) -> Result<(), SegyProblem> {
+    pub(super) fn must_be_lengths(
+        &self,
+        reach: f64,
+        fit: &FittedPlace,
+        findings: &mut Findings,
+    ) -> Result<(), SegyProblem> {
         let Self { code, unit, .. } = *self;
         if self.fit(reach, fit) {
             return Err(SegyProblem::AngularCoordinates { code: code as i16, unit });

@@ -91,7 +91,7 @@ pub(super) enum Bytes {
 
 impl Bytes {
     /// Opens a file and stamps it.
-    pub fn open(path: &Path) -> Result<Self, SegyProblem> {
+    pub(super) fn open(path: &Path) -> Result<Self, SegyProblem> {
         let io = |doing, hint| move |source| SegyProblem::Io { doing, hint, source };
         let file = PlacedFile::open(path).map_err(|source| match source.kind() {
             io::ErrorKind::InvalidInput => io("read it", "give a file, not a folder or a device")(source),
@@ -106,7 +106,7 @@ impl Bytes {
     }
 
     /// Count of bytes, when the file was opened.
-    pub fn len(&self) -> u64 {
+    pub(super) fn len(&self) -> u64 {
         match self {
             Self::File { stamp, .. } => stamp.length,
             Self::Held(bytes) => bytes.len() as u64,
@@ -114,7 +114,7 @@ impl Bytes {
     }
 
     /// The stamp of a file on disk when it was opened.
-    pub fn stamp(&self) -> Option<Stamp> {
+    pub(super) fn stamp(&self) -> Option<Stamp> {
         match self {
             Self::File { stamp, .. } => Some(*stamp),
             Self::Held(_) => None,
@@ -122,7 +122,7 @@ impl Bytes {
     }
 
     /// Fails where the file, or the one that has its name now, is no longer what was opened.
-    pub fn check_unchanged(&self) -> Result<(), SegyProblem> {
+    pub(super) fn check_unchanged(&self) -> Result<(), SegyProblem> {
         let Self::File { file, path, stamp } = self else { return Ok(()) };
         let changed = |what| SegyProblem::Changed { what };
         let now = Stamp::of(file).map_err(|error| changed(format!("it can no longer be read: {error}")))?;
@@ -138,7 +138,7 @@ impl Bytes {
 
     /// The bytes of `range`, those in memory as they are, those on disk by way of `room`. `trace` is the number
     /// in the file, from 0, of the first trace that they belong to, for errors.
-    pub fn read<'a>(
+    pub(super) fn read<'a>(
         &'a self,
         range: Range<u64>,
         room: &'a mut Vec<u8>,
@@ -158,7 +158,7 @@ impl Bytes {
     }
 
     /// `count` bytes from `offset` on; none where the file, as it was opened, ends before.
-    pub fn get(&self, offset: u64, count: usize, trace: Option<usize>) -> Result<Option<Vec<u8>>, SegyProblem> {
+    pub(super) fn get(&self, offset: u64, count: usize, trace: Option<usize>) -> Result<Option<Vec<u8>>, SegyProblem> {
         if offset.checked_add(count as u64).is_none_or(|end| end > self.len()) {
             return Ok(None);
         }
@@ -168,7 +168,7 @@ impl Bytes {
     }
 
     /// Fills `out` with the bytes from `offset` on; they must have been in the file when it was opened.
-    pub fn copy(&self, offset: u64, out: &mut [u8], trace: Option<usize>) -> Result<(), SegyProblem> {
+    pub(super) fn copy(&self, offset: u64, out: &mut [u8], trace: Option<usize>) -> Result<(), SegyProblem> {
         match self {
             Self::Held(bytes) => {
                 out.copy_from_slice(&bytes[offset as usize..][..out.len()]);

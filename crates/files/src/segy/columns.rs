@@ -39,7 +39,7 @@ pub(super) struct HeaderColumn {
 
 impl HeaderColumn {
     /// The value in a trace.
-    pub fn at(&self, trace: usize) -> i32 {
+    pub(super) fn at(&self, trace: usize) -> i32 {
         match &self.blocks[trace >> BLOCK_BITS] {
             Block::Constant(value) => *value,
             Block::Varying(values) => values[trace & (BLOCK - 1)],
@@ -47,7 +47,7 @@ impl HeaderColumn {
     }
 
     /// The value of every trace in file order.
-    pub fn iter(&self) -> impl Iterator<Item = i32> + '_ {
+    pub(super) fn iter(&self) -> impl Iterator<Item = i32> + '_ {
         self.blocks.iter().enumerate().flat_map(|(index, block)| {
             let (values, constant, count) = match block {
                 Block::Constant(value) => (&[][..], *value, BLOCK.min(self.count - (index << BLOCK_BITS))),
@@ -58,7 +58,7 @@ impl HeaderColumn {
     }
 
     /// The value of every trace in file order, side by side.
-    pub fn to_vec(&self) -> Vec<i32> {
+    pub(super) fn to_vec(&self) -> Vec<i32> {
         let mut all = Vec::with_capacity(self.count);
         for block in &self.blocks {
             match block {
@@ -70,19 +70,19 @@ impl HeaderColumn {
     }
 
     /// The value that all traces share, if they do.
-    pub fn constant(&self) -> Option<i32> {
+    pub(super) fn constant(&self) -> Option<i32> {
         (self.range[0] == self.range[1]).then_some(self.range[0])
     }
 
     /// Of numbers that were worked out, not read.
-    pub fn of(values: &[i32]) -> Self {
+    pub(super) fn of(values: &[i32]) -> Self {
         let blocks: Vec<Block> = values.chunks(BLOCK).map(|values| Block::new(values.to_vec())).collect();
         let range = values.iter().fold([i32::MAX, i32::MIN], |[low, high], &v| [low.min(v), high.max(v)]);
         Self { blocks, count: values.len(), range }
     }
 
     /// Whether every trace holds the same value in both.
-    pub fn same_as(&self, other: &Self) -> bool {
+    pub(super) fn same_as(&self, other: &Self) -> bool {
         self.range == other.range && self.iter().eq(other.iter())
     }
 }
@@ -110,7 +110,7 @@ pub(super) struct Columns {
 
 impl Columns {
     /// Reads `fields` of all traces, and those of a sweep.
-    pub fn read(
+    pub(super) fn read(
         traces: &Traces<'_>,
         fields: &[Field],
         sweep: Option<Sweep>,
@@ -149,13 +149,13 @@ impl Columns {
     }
 
     /// Traces in the file.
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.absent.count
     }
 
     /// Line numbers of any type, from the field that was read for it, or from the 4-byte field that starts
     /// there.
-    pub fn numbers(&self, byte: u16, number_type: NumberType) -> Cow<'_, HeaderColumn> {
+    pub(super) fn numbers(&self, byte: u16, number_type: NumberType) -> Cow<'_, HeaderColumn> {
         match number_type {
             NumberType::F64 => Cow::Borrowed(self.get(Field::F64(byte))),
             NumberType::I32 => Cow::Borrowed(self.get(Field::I32(byte))),
@@ -169,7 +169,7 @@ impl Columns {
     }
 
     /// An IEEE float of 8 bytes, from the two 4-byte fields it is made of.
-    pub fn double(&self, byte: u16, trace: usize) -> f64 {
+    pub(super) fn double(&self, byte: u16, trace: usize) -> f64 {
         let [first, second] = [byte, byte + 4].map(|byte| self.get(Field::I32(byte)).at(trace).cast_unsigned());
         let (high, low) = match self.order {
             ByteOrder::Big => (first, second),
@@ -179,22 +179,22 @@ impl Columns {
     }
 
     /// The number of another type that starts where a 4-byte field starts.
-    pub fn reinterpret(&self, field: i32, number_type: NumberType) -> i32 {
+    pub(super) fn reinterpret(&self, field: i32, number_type: NumberType) -> i32 {
         reinterpret(field, number_type, self.order)
     }
 
     /// Whether every field of a sweep was read.
-    pub fn has_all_of(&self, sweep: Sweep) -> bool {
+    pub(super) fn has_all_of(&self, sweep: Sweep) -> bool {
         self.sweep == Some(sweep)
     }
 
     /// What was known of the headers before they were read.
-    pub fn layout(&self) -> HeaderLayout {
+    pub(super) fn layout(&self) -> HeaderLayout {
         self.layout
     }
 
     /// The column of a field that was read; zeros for one that was not.
-    pub fn get(&self, field: Field) -> &HeaderColumn {
+    pub(super) fn get(&self, field: Field) -> &HeaderColumn {
         self.fields.iter().position(|f| *f == field).map_or(&self.absent, |index| &self.columns[index])
     }
 }

@@ -93,7 +93,7 @@ impl<'a> Coordinates<'a> {
 
     /// X and Y of a trace; none if both are 0.
     #[inline]
-    pub fn of(&self, trace: usize) -> Option<DVec2> {
+    pub(super) fn of(&self, trace: usize) -> Option<DVec2> {
         let (x, y) = (self.x.at(trace), self.y.at(trace));
         let world = match self.number_type {
             NumberType::F64 => {
@@ -369,7 +369,7 @@ pub(super) struct CoordinatePlace {
 
 impl CoordinatePlace {
     /// From X and Y; assumed where there are none, or as stated.
-    pub fn find(
+    pub(super) fn find(
         lattice: &LineLattice,
         lines: [u16; 2],
         columns: &Columns,

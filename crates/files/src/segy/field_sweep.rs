@@ -28,7 +28,7 @@ pub(super) enum Sweep {
 
 impl Sweep {
     /// The sweep after another, or the first.
-    pub fn after(done: Option<Self>) -> Option<Self> {
+    pub(super) fn after(done: Option<Self>) -> Option<Self> {
         match done {
             None => Some(Self::FourBytes),
             Some(Self::FourBytes) => Some(Self::TwoBytes),
@@ -37,7 +37,7 @@ impl Sweep {
     }
 
     /// Types of number that its fields may hold, the usual ones first.
-    pub fn types(self) -> &'static [NumberType] {
+    pub(super) fn types(self) -> &'static [NumberType] {
         match self {
             Self::FourBytes => &[NumberType::I32, NumberType::F32, NumberType::Ibm32],
             Self::TwoBytes => &[NumberType::I32, NumberType::I16],
@@ -54,7 +54,7 @@ impl Sweep {
     }
 
     /// These fields and those of the sweep.
-    pub fn with_fields(self, mut fields: Vec<Field>) -> Vec<Field> {
+    pub(super) fn with_fields(self, mut fields: Vec<Field>) -> Vec<Field> {
         for number_type in self.types() {
             let field = |byte: u16| if *number_type == NumberType::I16 { Field::I16(byte) } else { Field::I32(byte) };
             let more: Vec<Field> =
@@ -66,7 +66,7 @@ impl Sweep {
 
     /// Fields that vary, hold numbers that lines may have, and are not known to hold coordinates: those with the smallest
     /// spans, since lines have few numbers.
-    pub fn line_fields(self, columns: &Columns, number_type: NumberType) -> Vec<u16> {
+    pub(super) fn line_fields(self, columns: &Columns, number_type: NumberType) -> Vec<u16> {
         let mut spans: Vec<(i64, u16)> = self
             .bytes(number_type)
             .filter(|byte| !(is_coordinate(*byte) || *byte > 2 && is_coordinate(*byte - 2)))

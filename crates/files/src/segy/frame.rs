@@ -39,7 +39,7 @@ pub(super) struct FileLayout {
 }
 
 impl FileLayout {
-    pub fn read(file: &Bytes, options: &SegyOptions, findings: &mut Findings) -> Result<Self, SegyProblem> {
+    pub(super) fn read(file: &Bytes, options: &SegyOptions, findings: &mut Findings) -> Result<Self, SegyProblem> {
         let mut head = vec![0; file.len().min(FILE_HEADER_BYTES as u64) as usize];
         file.copy(0, &mut head, None)?;
         refuse_seismic_unix(file)?;
@@ -74,7 +74,7 @@ impl FileLayout {
     }
 
     /// The traces of `file`, which must be the one this frame was read from.
-    pub fn traces<'a>(&self, file: &'a Bytes) -> Traces<'a> {
+    pub(super) fn traces<'a>(&self, file: &'a Bytes) -> Traces<'a> {
         Traces {
             bytes: file,
             start: self.start,

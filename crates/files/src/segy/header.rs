@@ -17,49 +17,49 @@ pub(super) const ORDER_CONSTANT: u32 = 0x0102_0304;
 /// Trace header positions.
 pub(super) mod at {
     /// Trace number in the line.
-    pub const TRACE_IN_LINE: u16 = 1;
+    pub(crate) const TRACE_IN_LINE: u16 = 1;
     /// Trace number in the file.
-    pub const TRACE_IN_FILE: u16 = 5;
+    pub(crate) const TRACE_IN_FILE: u16 = 5;
     /// Original field record number.
-    pub const FIELD_RECORD: u16 = 9;
+    pub(crate) const FIELD_RECORD: u16 = 9;
     /// Trace number in the field record.
-    pub const TRACE_IN_RECORD: u16 = 13;
+    pub(crate) const TRACE_IN_RECORD: u16 = 13;
     /// CDP ensemble number.
-    pub const CDP: u16 = 21;
+    pub(crate) const CDP: u16 = 21;
     /// Trace number in the ensemble.
-    pub const TRACE_IN_CDP: u16 = 25;
+    pub(crate) const TRACE_IN_CDP: u16 = 25;
     /// Trace identification code, i16; 1 live, 2 dead.
-    pub const TRACE_ID: u16 = 29;
+    pub(crate) const TRACE_ID: u16 = 29;
     /// Data use, i16; 1 production.
-    pub const DATA_USE: u16 = 35;
+    pub(crate) const DATA_USE: u16 = 35;
     /// Source to receiver distance.
-    pub const OFFSET: u16 = 37;
+    pub(crate) const OFFSET: u16 = 37;
     /// Coordinate scalar, i16.
-    pub const COORDINATE_SCALAR: u16 = 71;
+    pub(crate) const COORDINATE_SCALAR: u16 = 71;
     /// Coordinate unit, i16.
-    pub const COORDINATE_UNIT: u16 = 89;
+    pub(crate) const COORDINATE_UNIT: u16 = 89;
     /// Lag time A, i16.
-    pub const LAG_A: u16 = 105;
+    pub(crate) const LAG_A: u16 = 105;
     /// Delay recording time, i16.
-    pub const DELAY: u16 = 109;
+    pub(crate) const DELAY: u16 = 109;
     /// Samples in this trace, u16.
-    pub const SAMPLES: u16 = 115;
+    pub(crate) const SAMPLES: u16 = 115;
     /// Sample interval of this trace, u16.
-    pub const INTERVAL: u16 = 117;
+    pub(crate) const INTERVAL: u16 = 117;
     /// Trace weighting factor, i16.
-    pub const WEIGHT: u16 = 169;
+    pub(crate) const WEIGHT: u16 = 169;
     /// Extended CDP X and Y in the first trace header extension of revision 2: IEEE floats of 8 bytes.
-    pub const EXTENDED_CDP: [u16; 2] = [401, 409];
+    pub(crate) const EXTENDED_CDP: [u16; 2] = [401, 409];
     /// CDP X.
-    pub const CDP_X: u16 = 181;
+    pub(crate) const CDP_X: u16 = 181;
     /// CDP Y.
-    pub const CDP_Y: u16 = 185;
+    pub(crate) const CDP_Y: u16 = 185;
     /// Inline number.
-    pub const INLINE: u16 = 189;
+    pub(crate) const INLINE: u16 = 189;
     /// Crossline number.
-    pub const CROSSLINE: u16 = 193;
+    pub(crate) const CROSSLINE: u16 = 193;
     /// Time scalar, i16, for the times at 95 to 114.
-    pub const TIME_SCALAR: u16 = 215;
+    pub(crate) const TIME_SCALAR: u16 = 215;
 }
 
 /// The fields of the binary file header that reading needs.
@@ -84,7 +84,7 @@ pub(super) struct BinaryHeader {
 
 impl BinaryHeader {
     /// Reads from the first 3600 bytes of a file.
-    pub fn parse(file: &[u8], order: ByteOrder) -> Self {
+    pub(super) fn parse(file: &[u8], order: ByteOrder) -> Self {
         let u16_at = |byte: usize| u16::from_be_bytes(order.get(file, byte - 1));
         let u64_at = |byte: usize| u64::from_be_bytes(order.get(file, byte - 1));
         Self {
@@ -106,7 +106,7 @@ impl BinaryHeader {
     }
 
     /// Whether the fields that revision 2 added mean something.
-    pub fn has_revision_2(&self) -> bool {
+    pub(super) fn has_revision_2(&self) -> bool {
         self.revision.0 >= 2
     }
 }
@@ -140,12 +140,12 @@ const READ_WHOLE: usize = 4096;
 
 impl<'a> Traces<'a> {
     /// Traces that are read at once, at least one.
-    pub fn together(&self) -> usize {
+    pub(super) fn together(&self) -> usize {
         (BYTES_TOGETHER / self.stride).max(1)
     }
 
     /// The bytes of consecutive traces.
-    pub fn run<'b>(&self, traces: Range<usize>, room: &'b mut Vec<u8>) -> Result<&'b [u8], SegyProblem>
+    pub(super) fn run<'b>(&self, traces: Range<usize>, room: &'b mut Vec<u8>) -> Result<&'b [u8], SegyProblem>
     where
         'a: 'b,
     {
@@ -154,7 +154,12 @@ impl<'a> Traces<'a> {
     }
 
     /// The headers of consecutive traces side by side in `out`, extensions included.
-    pub fn headers(&self, traces: Range<usize>, out: &mut Vec<u8>, room: &mut Vec<u8>) -> Result<(), SegyProblem> {
+    pub(super) fn headers(
+        &self,
+        traces: Range<usize>,
+        out: &mut Vec<u8>,
+        room: &mut Vec<u8>,
+    ) -> Result<(), SegyProblem> {
         out.clear();
         if self.stride > READ_WHOLE {
             out.resize(traces.len() * self.header_bytes, 0);
@@ -196,7 +201,7 @@ pub(super) enum Field {
 
 impl Field {
     /// Its value in a trace header, which must reach that far.
-    pub fn get(self, header: &[u8], order: ByteOrder) -> i32 {
+    pub(super) fn get(self, header: &[u8], order: ByteOrder) -> i32 {
         match self {
             Self::I32(byte) => i32::from_be_bytes(order.get(header, usize::from(byte) - 1)),
             Self::I16(byte) => i32::from(i16::from_be_bytes(order.get(header, usize::from(byte) - 1))),
@@ -206,7 +211,7 @@ impl Field {
     }
 
     /// [`Field::get`] of trace headers that lie side by side, each of `header_bytes`.
-    pub fn get_all(self, headers: &[u8], header_bytes: usize, order: ByteOrder) -> Vec<i32> {
+    pub(super) fn get_all(self, headers: &[u8], header_bytes: usize, order: ByteOrder) -> Vec<i32> {
         /// The loop over headers for one type of number.
         fn each<const N: usize>(
             headers: std::slice::ChunksExact<'_, u8>,

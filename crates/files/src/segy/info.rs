@@ -215,15 +215,15 @@ pub(super) struct Findings {
 }
 
 impl Findings {
-    pub fn evidence(&mut self, note: impl Into<Note>) {
+    pub(super) fn evidence(&mut self, note: impl Into<Note>) {
         self.evidence.push(note.into());
     }
 
-    pub fn assumption(&mut self, note: impl Into<Note>) {
+    pub(super) fn assumption(&mut self, note: impl Into<Note>) {
         self.assumptions.push(note.into());
     }
 
-    pub fn warning(&mut self, note: impl Into<Note>) {
+    pub(super) fn warning(&mut self, note: impl Into<Note>) {
         self.warnings.push(note.into());
     }
 }

@@ -50,7 +50,7 @@ pub(super) enum Flaw {
 
 impl LineLattice {
     /// Places every trace by its two numbers.
-    pub fn build(inline: &HeaderColumn, crossline: &HeaderColumn, kept: KeptDuplicate) -> Result<Self, Flaw> {
+    pub(super) fn build(inline: &HeaderColumn, crossline: &HeaderColumn, kept: KeptDuplicate) -> Result<Self, Flaw> {
         match (inline.constant(), crossline.constant()) {
             (Some(0), Some(0)) => return Err(Flaw::AllZero),
             (Some(number), None) => return Err(Flaw::OneInline(number)),
@@ -66,7 +66,7 @@ impl LineLattice {
     }
 
     /// Places every trace whose numbers are not `skip`, also on a single line.
-    pub fn place(
+    pub(super) fn place(
         inline: &HeaderColumn,
         crossline: &HeaderColumn,
         skip: Option<(i32, i32)>,
@@ -124,17 +124,17 @@ impl LineLattice {
     }
 
     /// Places of the lattice.
-    pub fn places(&self) -> usize {
+    pub(super) fn places(&self) -> usize {
         self.trace_of.len()
     }
 
     /// Places that a trace holds.
-    pub fn filled(&self) -> usize {
+    pub(super) fn filled(&self) -> usize {
         self.trace_of.iter().filter(|&&trace| trace != NO_TRACE).count()
     }
 
     /// Inlines and crosslines that hold a trace at all.
-    pub fn occupied_lines(&self) -> [usize; 2] {
+    pub(super) fn occupied_lines(&self) -> [usize; 2] {
         let mut inlines = vec![false; self.inlines.count];
         let mut crosslines = vec![false; self.crosslines.count];
         for (inline, crossline, _) in self.traces() {
@@ -145,12 +145,12 @@ impl LineLattice {
     }
 
     /// Inline and crossline index of a place, counted along the crosslines.
-    pub fn index_at(&self, place: usize) -> DVec2 {
+    pub(super) fn index_at(&self, place: usize) -> DVec2 {
         DVec2::new((place / self.crosslines.count) as f64, (place % self.crosslines.count) as f64)
     }
 
     /// Inline and crossline index and trace of every filled place.
-    pub fn traces(&self) -> impl Iterator<Item = (usize, usize, usize)> + Clone + '_ {
+    pub(super) fn traces(&self) -> impl Iterator<Item = (usize, usize, usize)> + Clone + '_ {
         self.trace_of
             .iter()
             .enumerate()

@@ -42,7 +42,7 @@ pub(super) struct FittedPlace {
 impl FittedPlace {
     /// Fits X and Y, as `world_of` gives them for a trace; none if those traces, or their coordinates, lie on
     /// a line.
-    pub fn fit(lattice: &LineLattice, world_of: impl Fn(usize) -> Option<DVec2> + Sync) -> Option<Self> {
+    pub(super) fn fit(lattice: &LineLattice, world_of: impl Fn(usize) -> Option<DVec2> + Sync) -> Option<Self> {
         // In runs of places whose results are put together in order: the same on any number of threads.
         let runs = || {
             lattice.trace_of.par_chunks(RUN).enumerate().map(|(run, traces)| {
@@ -87,12 +87,12 @@ impl FittedPlace {
     }
 
     /// Whether few traces lie off by more than half a bin.
-    pub fn agrees(&self) -> bool {
+    pub(super) fn agrees(&self) -> bool {
         self.outliers * 10 <= self.traces
     }
 
     /// |cos| of the angle between inlines and crosslines: 0 if orthogonal.
-    pub fn skew(&self) -> f64 {
+    pub(super) fn skew(&self) -> f64 {
         self.inline_vector.dot(self.crossline_vector).abs()
             / (self.inline_vector.length() * self.crossline_vector.length())
     }
@@ -163,17 +163,17 @@ pub(super) struct Affine {
 
 impl Affine {
     /// From the place of index 0, 0 and the two steps, which must span an area.
-    pub fn new(origin: DVec2, linear: DMat2) -> Self {
+    pub(super) fn new(origin: DVec2, linear: DMat2) -> Self {
         Self { origin, linear, inverse: linear.inverse() }
     }
 
     /// The fractional index of a place.
-    pub fn index_of(&self, world: DVec2) -> DVec2 {
+    pub(super) fn index_of(&self, world: DVec2) -> DVec2 {
         self.inverse * (world - self.origin)
     }
 
     /// Least squares over (index, world).
-    pub fn fit(points: &[(DVec2, DVec2)]) -> Option<Self> {
+    pub(super) fn fit(points: &[(DVec2, DVec2)]) -> Option<Self> {
         let mut count = 0.0;
         let (mut mean_at, mut mean_world) = (DVec2::ZERO, DVec2::ZERO);
         for &(at, world) in points {

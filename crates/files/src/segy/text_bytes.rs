@@ -39,7 +39,7 @@ pub(super) struct NamedBytes {
 
 impl NamedBytes {
     /// Reads the lines of a textual header.
-    pub fn find<'a>(lines: impl Iterator<Item = &'a String>) -> Self {
+    pub(super) fn find<'a>(lines: impl Iterator<Item = &'a String>) -> Self {
         let [mut x, mut y]: [Vec<u16>; 2] = Default::default();
         let [mut inline, mut crossline] = [None, None];
         for line in lines {

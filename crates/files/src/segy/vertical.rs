@@ -29,7 +29,7 @@ pub(super) struct Vertical {
 }
 
 impl Vertical {
-    pub fn find(
+    pub(super) fn find(
         frame: &FileLayout,
         columns: &Columns,
         dead: &[bool],
@@ -73,7 +73,7 @@ impl Vertical {
     }
 
     /// The same axis in ms or m.
-    pub fn axis(&self) -> VerticalAxis {
+    pub(super) fn axis(&self) -> VerticalAxis {
         let (factor, unit) = match self.unit {
             FileUnit::Milliseconds => (1.0, VerticalUnit::Milliseconds),
             FileUnit::Metres => (1.0, VerticalUnit::Metres),

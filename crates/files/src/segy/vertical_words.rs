@@ -74,7 +74,7 @@ const SPREAD: [&str; 10] = ["BIN", "BINS", "SPACING", "GROUP", "OFFSET", "GRID",
 
 impl Words {
     /// Reads the lines of a header; `interval` is the sample interval as the file holds it, in thousandths.
-    pub fn find<'a>(lines: impl Iterator<Item = &'a String>, interval: f64) -> Self {
+    pub(super) fn find<'a>(lines: impl Iterator<Item = &'a String>, interval: f64) -> Self {
         let mut found = Self::default();
         let mut contradicted = false;
         for line in lines {

@@ -68,7 +68,7 @@ fn known(names: &[String]) -> usize {
 
 impl<'a> Table<'a> {
     /// Reads a table.
-    pub fn parse(file: &Path, text: &'a str) -> Self {
+    pub(super) fn parse(file: &Path, text: &'a str) -> Self {
         let lines: Vec<Line<'a>> = text::lines(text).collect();
         let mut table = Self {
             file: file.to_owned(),
@@ -132,24 +132,24 @@ impl<'a> Table<'a> {
     }
 
     /// Names the columns of a table without names.
-    pub fn assume(&mut self, columns: &[WellColumn]) {
+    pub(super) fn assume(&mut self, columns: &[WellColumn]) {
         self.columns = columns.to_vec();
         self.units = vec![None; columns.len()];
     }
 
     /// The position of a column.
-    pub fn position(&self, column: WellColumn) -> Option<usize> {
+    pub(super) fn position(&self, column: WellColumn) -> Option<usize> {
         self.columns.iter().position(|c| *c == column)
     }
 
     /// A fact by words its key must contain.
-    pub fn fact(&self, words: &[&str]) -> Option<&str> {
+    pub(super) fn fact(&self, words: &[&str]) -> Option<&str> {
         let found = self.facts.iter().find(|(key, _)| words.iter().all(|w| key.contains(w)));
         found.map(|(_, value)| value.as_str())
     }
 
     /// A length among the facts, in m; `(ft)` or `ft` after the number converts.
-    pub fn length_fact(&self, words: &[&str]) -> Option<f64> {
+    pub(super) fn length_fact(&self, words: &[&str]) -> Option<f64> {
         let value = self.fact(words)?;
         let number = text::number(value.split([' ', '\t', '(', ',', ';']).find(|w| !w.is_empty())?)?;
         let feet = value.to_ascii_lowercase().split(|c: char| !c.is_alphabetic()).any(|w| w == "ft" || w == "feet");
@@ -157,27 +157,27 @@ impl<'a> Table<'a> {
     }
 
     /// The text of a field.
-    pub fn text(&self, row: &Row<'a>, at: usize) -> Result<&'a str, WellFileError> {
+    pub(super) fn text(&self, row: &Row<'a>, at: usize) -> Result<&'a str, WellFileError> {
         let field = row.fields.get(at).map(|f| f.text).filter(|t| !t.is_empty());
         field.ok_or_else(|| self.syntax(row, &format!("{} fields", self.columns.len())))
     }
 
     /// The number in a field.
-    pub fn number(&self, row: &Row<'a>, at: usize) -> Result<f64, WellFileError> {
+    pub(super) fn number(&self, row: &Row<'a>, at: usize) -> Result<f64, WellFileError> {
         let text = self.text(row, at)?;
         let number = self.cut.number(text).filter(|v| v.is_finite() && v.abs() < 1e12);
         number.ok_or_else(|| self.syntax(row, &format!("a number for column {}", at + 1)))
     }
 
     /// The number in a field; None where it is empty or a null of Petrel's or LAS' kind.
-    pub fn optional(&self, row: &Row<'a>, at: usize) -> Option<f64> {
+    pub(super) fn optional(&self, row: &Row<'a>, at: usize) -> Option<f64> {
         let number = self.cut.number(row.fields.get(at)?.text)?;
         (number.is_finite() && number.abs() < 1e12 && ![-999.0, -999.25, -9999.0, -99999.0].contains(&number))
             .then_some(number)
     }
 
     /// An error at a row.
-    pub fn syntax(&self, row: &Row<'a>, expected: &str) -> WellFileError {
+    pub(super) fn syntax(&self, row: &Row<'a>, expected: &str) -> WellFileError {
         WellFileError::Syntax {
             file: self.file.clone(),
             line: row.line.number,
@@ -188,7 +188,12 @@ impl<'a> Table<'a> {
 
     /// Metres in one unit of a length column: as its name states, otherwise as the user states, otherwise metres,
     /// reported in `notes`.
-    pub fn length_to_m(&self, at: usize, told: Option<ZUnit>, notes: &mut Vec<Note>) -> Result<f64, WellFileError> {
+    pub(super) fn length_to_m(
+        &self,
+        at: usize,
+        told: Option<ZUnit>,
+        notes: &mut Vec<Note>,
+    ) -> Result<f64, WellFileError> {
         let unit = self.units[at].or(told);
         if unit.is_none() {
             let fact = format!("{}: lengths are taken as metres", self.stem());
@@ -218,7 +223,7 @@ impl<'a> Table<'a> {
     ///
     /// # Errors
     /// [`WellFileError::NoSuchWell`] when it is not there or several are.
-    pub fn keep_well(&mut self, told: &Option<String>, names: &[&str]) -> Result<(), WellFileError> {
+    pub(super) fn keep_well(&mut self, told: &Option<String>, names: &[&str]) -> Result<(), WellFileError> {
         let Some(at) = self.position(WellColumn::Well) else { return Ok(()) };
         let plain = |name: &str| name.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
         let of = |row: &Row<'a>| row.fields.get(at).map_or("", |f| f.text);

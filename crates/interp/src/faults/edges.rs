@@ -32,12 +32,12 @@ pub(super) struct Rim {
 
 impl Rim {
     /// Position of the node, traces.
-    pub fn place(&self) -> Vec2 {
+    pub(super) fn place(&self) -> Vec2 {
         Vec2::new(self.at[0] as f32, self.at[1] as f32)
     }
 
     /// Sample index of the plane at a position.
-    pub fn z_at(&self, place: Vec2) -> f32 {
+    pub(super) fn z_at(&self, place: Vec2) -> f32 {
         self.z + self.slope.dot(place - self.place())
     }
 }
@@ -50,7 +50,7 @@ pub(super) struct HorizonRims {
 
 impl HorizonRims {
     /// Finds the rims on each sheet.
-    pub fn of(sheets: &[VoxelSheet], size: [usize; 2]) -> Self {
+    pub(super) fn of(sheets: &[VoxelSheet], size: [usize; 2]) -> Self {
         let rims = sheets.iter().flat_map(|sheet| rims_of(&sheet.z, size)).collect();
         Self { size, rims }
     }

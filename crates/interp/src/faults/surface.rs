@@ -47,7 +47,7 @@ pub(super) struct FittedFault {
 impl FittedFault {
     /// Fits the pairs of a fault; `None` when the surface is flatter than [`ProposeSettings::min_dip_deg`] or
     /// the fit has no solution.
-    pub fn through(
+    pub(super) fn through(
         pairs: &[Pair],
         geometry: &SurveyGeometry,
         semblance: Option<&Volume<f32>>,
@@ -170,7 +170,7 @@ impl FittedFault {
     }
 
     /// Whether it dips towards `across`, and cot(dip) at its middle.
-    pub fn run(&self) -> (bool, f64) {
+    pub(super) fn run(&self) -> (bool, f64) {
         let [low, high] = self.z;
         let depth = (high - low).max(1.0);
         let run = (self.c_at(0.0, low + depth) - self.c_at(0.0, low)) / depth;
@@ -180,18 +180,18 @@ impl FittedFault {
     }
 
     /// Horizontal direction of the strike.
-    pub fn strike(&self) -> DVec2 {
+    pub(super) fn strike(&self) -> DVec2 {
         (self.along + self.across * self.c[1]).normalize()
     }
 
     /// The throw of a pair, positive if the side towards which `across` points is deeper.
-    pub fn throw_across(&self, pair: &Pair) -> f64 {
+    pub(super) fn throw_across(&self, pair: &Pair) -> f64 {
         f64::from(pair.throw)
     }
 
     /// The area of the offset, m²: the mean throw in each bin along strike in which a horizon has pairs,
     /// times the bin's width, summed over bins and horizons.
-    pub fn offset_m2(&self, pairs: &[Pair], geometry: &SurveyGeometry) -> f64 {
+    pub(super) fn offset_m2(&self, pairs: &[Pair], geometry: &SurveyGeometry) -> f64 {
         let metric = geometry.metric_from_voxel();
         let bin_m = 0.5 * (metric.x_axis.length() + metric.y_axis.length());
         let mut bins: BTreeMap<(usize, i64), (f64, f64)> = BTreeMap::new();
@@ -205,20 +205,20 @@ impl FittedFault {
     }
 
     /// The two ends at middle depth, metric.
-    pub fn ends(&self) -> [DVec3; 2] {
+    pub(super) fn ends(&self) -> [DVec3; 2] {
         let z = 0.5 * (self.z[0] + self.z[1]);
         self.s.map(|s| self.at(s, z))
     }
 
     /// Shallowest and deepest point, m.
-    pub fn depths_m(&self) -> [f64; 2] {
+    pub(super) fn depths_m(&self) -> [f64; 2] {
         self.z.map(|z| z + self.middle.z)
     }
 
     /// Extends the surface to where it ends. Along strike: to the outer boundary if its points nearly reach
     /// it, or to where the throw has decreased to 0. In depth: to the next unbroken horizon, or through the
     /// volume.
-    pub fn extended(mut self, pairs: &[Pair], horizons: &[Evidence], geometry: &SurveyGeometry) -> Self {
+    pub(super) fn extended(mut self, pairs: &[Pair], horizons: &[Evidence], geometry: &SurveyGeometry) -> Self {
         let metric = geometry.metric_from_voxel();
         let bin_m = 0.5 * (metric.x_axis.length() + metric.y_axis.length());
         let inverse = metric.inverse();
@@ -305,7 +305,7 @@ impl FittedFault {
     }
 
     /// The surface as a mesh in world coordinates, in strips of equal steps along strike and in depth.
-    pub fn mesh(&self, geometry: &SurveyGeometry) -> TriangleMesh {
+    pub(super) fn mesh(&self, geometry: &SurveyGeometry) -> TriangleMesh {
         let metric = geometry.metric_from_voxel();
         let bin_m = 0.5 * (metric.x_axis.length() + metric.y_axis.length());
         let count = |range: [f64; 2], step: f64| ((range[1] - range[0]) / step).ceil().max(1.0) as usize;

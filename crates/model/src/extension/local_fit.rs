@@ -10,7 +10,7 @@ use std::collections::HashMap;
 
 /// What a surface is near one node.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LocalFit {
+pub(crate) struct LocalFit {
     /// Value at the node.
     pub z: f32,
     /// Slope per node along x and y.
@@ -21,13 +21,13 @@ pub struct LocalFit {
 
 impl LocalFit {
     /// The quadratic (dx, dy) nodes away.
-    pub fn curved(&self, dx: f32, dy: f32) -> f32 {
+    pub(crate) fn curved(&self, dx: f32, dy: f32) -> f32 {
         let [xx, xy, yy] = self.hessian;
         self.straight(dx, dy) + 0.5 * (xx * dx * dx + yy * dy * dy) + xy * dx * dy
     }
 
     /// The tangent plane (dx, dy) nodes away.
-    pub fn straight(&self, dx: f32, dy: f32) -> f32 {
+    pub(crate) fn straight(&self, dx: f32, dy: f32) -> f32 {
         self.z + self.gradient[0] * dx + self.gradient[1] * dy
     }
 
@@ -49,10 +49,10 @@ const FEWEST_NODES: usize = 12;
 
 /// How far beyond the data its curvature is kept, nodes. A fault between two lattice nodes is met on the
 /// curve, not on its tangent; farther off, curvature would run away.
-pub const COLLAR: f32 = 2.3;
+pub(super) const COLLAR: f32 = 2.3;
 
 /// Fits at the nodes of a grid, made when asked for.
-pub struct LocalFits<'a> {
+pub(crate) struct LocalFits<'a> {
     size: [usize; 2],
     values: &'a [f32],
     known: &'a [bool],
@@ -63,12 +63,12 @@ pub struct LocalFits<'a> {
 
 impl<'a> LocalFits<'a> {
     /// Fits to `values` where they are `known`.
-    pub fn new(size: [usize; 2], values: &'a [f32], known: &'a [bool], radius: f32, noise: f32) -> Self {
+    pub(crate) fn new(size: [usize; 2], values: &'a [f32], known: &'a [bool], radius: f32, noise: f32) -> Self {
         Self { size, values, known, radius: radius.max(2.0), noise, cache: RefCell::default() }
     }
 
     /// The fit at node `n`.
-    pub fn at(&self, n: usize) -> LocalFit {
+    pub(crate) fn at(&self, n: usize) -> LocalFit {
         if let Some(fit) = self.cache.borrow().get(&n) {
             return *fit;
         }
@@ -87,7 +87,7 @@ impl<'a> LocalFits<'a> {
     /// fitted from now on; returns which nodes they are.
     ///
     /// Each takes the quadratics of the known nodes around it with weights 1/d⁴.
-    pub fn collar(&self) -> Vec<usize> {
+    pub(crate) fn collar(&self) -> Vec<usize> {
         let [nx, ny] = self.size;
         let reach = COLLAR.ceil() as i32 + 1;
         let mut made: Vec<(usize, LocalFit)> = Vec::new();

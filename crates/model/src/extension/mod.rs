@@ -50,7 +50,7 @@ pub(super) struct NodePlane {
 impl NodePlane {
     /// The least-squares plane through the finite nodes of a grid; `None` without any. Directions in which
     /// the data has no width take their slope from `prior`.
-    pub fn through(size: [usize; 2], values: &[f32], prior: [f64; 2]) -> Option<Self> {
+    pub(crate) fn through(size: [usize; 2], values: &[f32], prior: [f64; 2]) -> Option<Self> {
         let nodes = || {
             values.iter().enumerate().filter(|(_, z)| z.is_finite()).map(|(n, &z)| {
                 let (x, y) = ((n / size[1]) as f64, (n % size[1]) as f64);
@@ -90,7 +90,7 @@ impl NodePlane {
     }
 
     /// Slope per node along x and y.
-    pub fn slope(&self) -> [f64; 2] {
+    pub(crate) fn slope(&self) -> [f64; 2] {
         [self.a, self.b]
     }
 
@@ -128,7 +128,7 @@ impl Extension {
 
     /// Replaces the NaN nodes of `values`, `[x][y]` of `size`, and leaves the others as they are; `None` when
     /// all are NaN.
-    pub fn extend(&self, size: [usize; 2], values: &mut [f32]) -> Option<()> {
+    pub(crate) fn extend(&self, size: [usize; 2], values: &mut [f32]) -> Option<()> {
         let plane = NodePlane::through(size, values, self.slope)?;
         let known: Vec<bool> = values.iter().map(|z| z.is_finite()).collect();
         if known.iter().all(|&k| k) {

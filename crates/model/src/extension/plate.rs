@@ -17,14 +17,14 @@ const SWEEPS: usize = 40;
 const OVER_RELAXATION: f32 = 1.5;
 
 /// One grid of the pyramid.
-pub struct PlateGrid {
+pub(super) struct PlateGrid {
     size: [usize; 2],
     fixed: Vec<bool>,
     h: Vec<f32>,
 }
 
 /// The clamped plate at every node (at known nodes inside the data: unspecified).
-pub fn solve(size: [usize; 2], known: &[bool], fits: &LocalFits) -> Vec<f32> {
+pub(super) fn solve(size: [usize; 2], known: &[bool], fits: &LocalFits) -> Vec<f32> {
     let mut coarsest = 0;
     while (size[0].max(size[1]) - 1).div_ceil(1 << coarsest) + 1 > DIRECT_NODES {
         coarsest += 1;
@@ -110,7 +110,7 @@ impl PlateGrid {
     }
 
     /// Calls `visit` for the nodes within `reach` (Chebyshev) of node `n`, itself left out.
-    pub fn neighbours(size: [usize; 2], n: usize, reach: usize, mut visit: impl FnMut(usize)) {
+    pub(super) fn neighbours(size: [usize; 2], n: usize, reach: usize, mut visit: impl FnMut(usize)) {
         let (x, y) = (n / size[1], n % size[1]);
         for i in x.saturating_sub(reach)..=(x + reach).min(size[0] - 1) {
             for j in y.saturating_sub(reach)..=(y + reach).min(size[1] - 1) {
@@ -123,7 +123,7 @@ impl PlateGrid {
     }
 
     /// Whether an unknown node lies within `reach` (Chebyshev) of node `n`.
-    pub fn near_unknown(size: [usize; 2], known: &[bool], n: usize, reach: usize) -> bool {
+    pub(super) fn near_unknown(size: [usize; 2], known: &[bool], n: usize, reach: usize) -> bool {
         let mut found = false;
         Self::neighbours(size, n, reach, |m| found |= !known[m]);
         found

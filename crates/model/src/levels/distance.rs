@@ -55,7 +55,7 @@ struct Closest {
 
 impl DistanceSurface {
     /// The triangles of a mesh in metric space.
-    pub fn of(oriented: &OrientedMesh) -> Self {
+    pub(super) fn of(oriented: &OrientedMesh) -> Self {
         let mesh = &oriented.mesh;
         let corners: Vec<[DVec3; 3]> = (0..mesh.triangles.len()).map(|n| mesh.corners(n)).collect();
         let normals: Vec<DVec3> = corners.iter().map(|[a, b, c]| (*b - *a).cross(*c - *a).normalize()).collect();

@@ -151,7 +151,7 @@ pub(super) struct LevelSources<'a> {
 
 impl LevelSources<'_> {
     /// Makes the surfaces of all horizons that are no height fields, or belong to a series of scattered points.
-    pub fn levels(&self, progress: &Progress) -> Result<Levels, ModelError> {
+    pub(crate) fn levels(&self, progress: &Progress) -> Result<Levels, ModelError> {
         let blocks = self.faults.block_count();
         let count = self.horizons.len();
         let mut levels = Levels { surfaces: vec![vec![None; blocks]; count], notes: Vec::new() };

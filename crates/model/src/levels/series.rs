@@ -72,7 +72,7 @@ impl Series<'_> {
     ///
     /// # Errors
     /// The user cancelled.
-    pub fn surfaces(&self, progress: &Progress) -> Result<Vec<Vec<LevelSurface>>, Cancelled> {
+    pub(super) fn surfaces(&self, progress: &Progress) -> Result<Vec<Vec<LevelSurface>>, Cancelled> {
         let mut solution: Option<SeriesSolution> = None;
         for level in (0..=COARSER).rev() {
             solution = Some(self.solve(f64::from(1u32 << level), solution.as_ref(), progress)?);

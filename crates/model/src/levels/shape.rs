@@ -35,7 +35,7 @@ impl<'a> ShapeMesh<'a> {
     ///
     /// # Errors
     /// [`ModelError::Surface`] with the place.
-    pub fn of(name: &'a str, mesh: &TriangleMesh, geometry: &'a SurveyGeometry) -> Result<Self, ModelError> {
+    pub(super) fn of(name: &'a str, mesh: &TriangleMesh, geometry: &'a SurveyGeometry) -> Result<Self, ModelError> {
         let metric = geometry.metric_from_voxel();
         let weld = WELD * (0..3).map(|axis| metric.col(axis).length()).fold(f64::INFINITY, f64::min);
         let vertices = mesh.vertices.iter().map(|&v| metric * geometry.voxel_from_world(v)).collect();
@@ -54,13 +54,13 @@ impl<'a> ShapeMesh<'a> {
     }
 
     /// Whether it encloses a body.
-    pub fn is_closed(&self) -> bool {
+    pub(super) fn is_closed(&self) -> bool {
         self.mesh.is_closed()
     }
 
     /// Length of its border, m, where it may be a body with a hole: the border is less than half as long as that of a disc
     /// of the same area. Of a sheet, however it is folded, the border is longer.
-    pub fn hole_m(&self) -> Option<f64> {
+    pub(super) fn hole_m(&self) -> Option<f64> {
         let at = |v: u32| self.mesh.mesh.vertices[v as usize];
         let border: f64 = self.mesh.border.iter().map(|&[a, b]| at(a).distance(at(b))).sum();
         let area: f64 =
@@ -69,7 +69,7 @@ impl<'a> ShapeMesh<'a> {
     }
 
     /// The corners, voxels.
-    pub fn corners(&self) -> impl Iterator<Item = Vec3> + '_ {
+    pub(super) fn corners(&self) -> impl Iterator<Item = Vec3> + '_ {
         let voxel = self.metric.inverse();
         self.mesh.mesh.vertices.iter().map(move |&v| (voxel * v).as_vec3())
     }
@@ -78,7 +78,7 @@ impl<'a> ShapeMesh<'a> {
     ///
     /// # Errors
     /// Its border lies there.
-    pub fn check_body(&self) -> Result<(), ModelError> {
+    pub(super) fn check_body(&self) -> Result<(), ModelError> {
         let voxel = self.metric.inverse();
         let last = DVec3::from_array(self.geometry.size().map(|n| n as f64 - 1.0));
         let depth = |v: u32| {
@@ -98,7 +98,7 @@ impl<'a> ShapeMesh<'a> {
     ///
     /// # Errors
     /// Its border lies inside the volume, or the user cancelled.
-    pub fn body(&self, progress: &Progress) -> Result<LevelSurface, ModelError> {
+    pub(super) fn body(&self, progress: &Progress) -> Result<LevelSurface, ModelError> {
         self.check_body()?;
         self.level(&self.mesh, self.is_closed(), progress)
     }
@@ -107,7 +107,7 @@ impl<'a> ShapeMesh<'a> {
     ///
     /// # Errors
     /// Its sides contradict each other, or the user cancelled.
-    pub fn horizon(
+    pub(super) fn horizon(
         &self,
         counts: impl Fn(Vec3) -> bool,
         progress: &Progress,

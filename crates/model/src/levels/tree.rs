@@ -31,7 +31,7 @@ pub(super) struct Tree {
 
 impl Tree {
     /// The tree of triangles, at least one.
-    pub fn of(corners: &[[DVec3; 3]]) -> Self {
+    pub(super) fn of(corners: &[[DVec3; 3]]) -> Self {
         let mut tree = Self { nodes: Vec::new(), order: (0..corners.len() as u32).collect() };
         let middles: Vec<DVec3> = corners.iter().map(|[a, b, c]| (*a + *b + *c) / 3.0).collect();
         tree.add(corners, &middles, 0, corners.len());
@@ -64,7 +64,7 @@ impl Tree {
 
     /// The triangle with the least `distance_squared` from `p`, of those that are as close the lowest; `guess` is any
     /// triangle, best a close one.
-    pub fn closest(&self, p: DVec3, guess: usize, distance_squared: impl Fn(usize) -> f64) -> usize {
+    pub(super) fn closest(&self, p: DVec3, guess: usize, distance_squared: impl Fn(usize) -> f64) -> usize {
         let (mut best, mut least) = (guess, distance_squared(guess));
         let mut open = [0u32; 64];
         let mut count = 1;
@@ -96,7 +96,7 @@ impl Tree {
     }
 
     /// Calls `found` with every triangle whose box meets the box from `low` to `high`.
-    pub fn within(&self, low: DVec3, high: DVec3, mut found: impl FnMut(usize)) {
+    pub(super) fn within(&self, low: DVec3, high: DVec3, mut found: impl FnMut(usize)) {
         let mut open = vec![0u32];
         while let Some(at) = open.pop() {
             let node = self.nodes[at as usize];

@@ -29,11 +29,11 @@ pub(super) type Reach<'a> = &'a dyn Fn(DVec3, f64) -> Course;
 pub(super) type Course = Option<(DVec2, f64)>;
 
 impl FaultPatch {
-    pub fn new(points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
+    pub(super) fn new(points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
         Self { points, triangles }
     }
 
-    pub fn triangles(&self) -> &[[u32; 3]] {
+    pub(super) fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
@@ -42,7 +42,13 @@ impl FaultPatch {
     }
 
     /// Calls `visit(node, w)` for the grid nodes that triangle `index` covers, its edges included.
-    pub fn each_node(&self, index: usize, origin: [i32; 2], size: [usize; 2], mut visit: impl FnMut(usize, f64)) {
+    pub(super) fn each_node(
+        &self,
+        index: usize,
+        origin: [i32; 2],
+        size: [usize; 2],
+        mut visit: impl FnMut(usize, f64),
+    ) {
         let [a, b, c] = self.corners(&self.triangles[index]);
         let (p, q) = ((b - a).truncate(), (c - a).truncate());
         let area = p.perp_dot(q);
@@ -82,7 +88,7 @@ impl FaultPatch {
     }
 
     /// Adds strips from the rim to what it reaches; `beyond` cells further than that.
-    pub fn reach(&mut self, reaches: &[(Reach, f64)]) {
+    pub(super) fn reach(&mut self, reaches: &[(Reach, f64)]) {
         let pushed = |p: DVec3, spacing: f64, reach: &(Reach, f64)| {
             reach.0(p, spacing).map(|(direction, cells)| p + (direction * (cells + reach.1)).extend(0.0))
         };
@@ -122,7 +128,7 @@ impl FaultPatch {
     }
 
     /// Signed distance to the rim at the grid nodes, cells; positive inside.
-    pub fn signed_distance(&self, origin: [i32; 2], size: [usize; 2]) -> Vec<f32> {
+    pub(super) fn signed_distance(&self, origin: [i32; 2], size: [usize; 2]) -> Vec<f32> {
         let mut covered = vec![false; size[0] * size[1]];
         for index in 0..self.triangles.len() {
             self.each_node(index, origin, size, |n, _| covered[n] = true);

@@ -70,11 +70,11 @@ mod pixels {
     use super::*;
     use serde::de::Error;
 
-    pub fn serialize<S: Serializer>(pixels: &Arc<RgbaImage>, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(super) fn serialize<S: Serializer>(pixels: &Arc<RgbaImage>, serializer: S) -> Result<S::Ok, S::Error> {
         (pixels.width(), pixels.height(), pixels.as_raw()).serialize(serializer)
     }
 
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Arc<RgbaImage>, D::Error> {
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Arc<RgbaImage>, D::Error> {
         let (width, height, bytes) = <(u32, u32, Vec<u8>)>::deserialize(deserializer)?;
         let count = bytes.len();
         let image = RgbaImage::from_raw(width, height, bytes);

@@ -25,7 +25,7 @@ const ORDER: usize = 4;
 
 /// The sheet without waves shorter than `wave` voxels along x and y; those lengths are halved. A length below two voxels
 /// changes nothing along its axis.
-pub fn calm(field: &HeightField, wave: [f64; 2]) -> HeightField {
+pub(crate) fn calm(field: &HeightField, wave: [f64; 2]) -> HeightField {
     let kernels = wave.map(|wave| gaussian(wave / HALVED));
     if kernels.iter().all(|kernel| kernel.len() == 1) {
         return field.clone();
@@ -41,7 +41,7 @@ pub fn calm(field: &HeightField, wave: [f64; 2]) -> HeightField {
 }
 
 /// The mean around each node: a Gaussian by which waves of `wave` voxels keep a sixth of their height.
-pub fn mean_around(field: &HeightField, wave: [f64; 2]) -> HeightField {
+pub(crate) fn mean_around(field: &HeightField, wave: [f64; 2]) -> HeightField {
     let kernels = wave.map(|wave| gaussian(wave / HALVED));
     HeightField { z: blur(&field.z, field.size, &kernels), ..field.clone() }
 }

@@ -39,7 +39,7 @@ const TOLERANCE: f32 = 2e-5;
 
 /// Where k is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Ends {
+pub(crate) enum Ends {
     /// On both sheets.
     Both,
     /// On the bottom sheet; beyond the top, beds are parallel.
@@ -50,7 +50,7 @@ pub enum Ends {
 
 /// Parallel beds far from the horizon of an open layer.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FarBeds {
+pub(crate) struct FarBeds {
     /// Growth of k for a voxel along z.
     pub rate: f32,
     /// |∇k| in the scaled metric: one over the reference thickness.
@@ -79,7 +79,7 @@ impl Ends {
 
 /// How the lengths of ∇k are chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Spacing {
+pub(crate) enum Spacing {
     /// As ∇²k = 0 gives them.
     Harmonic,
     /// As even as the directions allow, in an open layer.
@@ -90,7 +90,7 @@ pub enum Spacing {
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn solve(
+pub(crate) fn solve(
     finest: FlowLattice,
     ends: Ends,
     spacing: Spacing,
@@ -144,7 +144,7 @@ fn divergence(layer: &SigmaLayer, u: &[f32], density: f32) -> Vec<f32> {
 }
 
 /// Parallel beds.
-pub fn first_guess(layer: &SigmaLayer, ends: Ends) -> Vec<f32> {
+pub(crate) fn first_guess(layer: &SigmaLayer, ends: Ends) -> Vec<f32> {
     let at = |n: usize| ends.guess(layer.v(n % layer.levels), layer.thickness(n / layer.levels));
     (0..layer.lattice.size[0] * layer.lattice.size[1] * layer.levels).map(at).collect()
 }

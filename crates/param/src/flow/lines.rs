@@ -20,7 +20,7 @@ use survey::{Cancelled, Progress};
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn trace(
+pub(crate) fn trace(
     layer: &SigmaLayer,
     k: &[f32],
     first: usize,
@@ -91,7 +91,7 @@ fn cubic(layer: &SigmaLayer, values: &[[f32; 2]], node: usize, by: [f32; 2]) -> 
 
 /// Catmull–Rom weights at fraction t of a cell.
 #[inline]
-pub fn catmull_rom(t: f32) -> [f32; 4] {
+pub(crate) fn catmull_rom(t: f32) -> [f32; 4] {
     let (t2, t3) = (t * t, t * t * t);
     [0.5 * (2.0 * t2 - t - t3), 0.5 * (3.0 * t3 - 5.0 * t2 + 2.0), 0.5 * (4.0 * t2 + t - 3.0 * t3), 0.5 * (t3 - t2)]
 }

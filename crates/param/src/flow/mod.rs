@@ -7,10 +7,10 @@
 //! The sheets are calm: [`calm`] takes off what is smaller than a pattern's tile. The boundary of the layer, where it is
 //! drawn, stays the horizon as it was picked.
 
-pub mod calm;
-pub mod harmonic;
-pub mod lines;
-pub mod sigma;
+pub(crate) mod calm;
+pub(crate) mod harmonic;
+pub(crate) mod lines;
+pub(crate) mod sigma;
 
 use crate::compute::ComputeCost;
 use crate::grid::RegionGrid;
@@ -24,7 +24,7 @@ use survey::{Cancelled, Progress};
 /// Voxels between the nodes of the lattice, by the length (voxels) of the shortest waves of its sheets: eight nodes a wave,
 /// but at most 4 voxels. Where the sheets are not calm it is 2, with which angles on folds 80 voxels long are as exact as
 /// with 1.
-pub fn stride(wave: f64) -> usize {
+pub(crate) fn stride(wave: f64) -> usize {
     ((wave / 8.0) as usize).clamp(2, 4)
 }
 
@@ -34,7 +34,7 @@ const OPEN_FIRST: f32 = 0.2;
 
 /// How k runs between the sheets of a region.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Flow {
+pub(crate) enum Flow {
     /// Along the directions of ∇²k = 0.
     Smooth(Ends, Spacing),
     /// k = v, the vertical fraction.
@@ -43,7 +43,7 @@ pub enum Flow {
 
 impl Flow {
     /// The level, of so many, on which (i, j) are the place itself: the middle one of a closed layer.
-    pub fn first_level(self, levels: usize) -> usize {
+    pub(crate) fn first_level(self, levels: usize) -> usize {
         let last = levels - 1;
         let from_horizon = (OPEN_FIRST * last as f32).round() as usize;
         match self {
@@ -58,7 +58,7 @@ impl Flow {
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn fill(
+pub(crate) fn fill(
     grid: &mut RegionGrid,
     flow: Flow,
     stride: usize,

@@ -23,7 +23,7 @@ const THINNEST: f32 = 0.05;
 
 /// Columns of nodes over a region.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FlowLattice {
+pub(crate) struct FlowLattice {
     /// Voxel column of node (0, 0).
     pub origin: [i32; 2],
     /// Voxels between nodes along x and y.
@@ -34,7 +34,7 @@ pub struct FlowLattice {
 
 impl FlowLattice {
     /// Nodes every `stride` voxels, from one column of nodes before a region's first voxel column to one after its last.
-    pub fn new(first: [i32; 2], columns: [usize; 2], stride: usize) -> Self {
+    pub(crate) fn new(first: [i32; 2], columns: [usize; 2], stride: usize) -> Self {
         Self {
             origin: first.map(|first| first - stride as i32),
             spacing: [stride as f32; 2],
@@ -43,21 +43,21 @@ impl FlowLattice {
     }
 
     /// A lattice over the same area with about `factor` times the spacing.
-    pub fn coarser(self, factor: usize) -> Self {
+    pub(crate) fn coarser(self, factor: usize) -> Self {
         let size = self.size.map(|count| (count - 1).div_ceil(factor).max(2) + 1);
         let spacing = [0, 1].map(|n: usize| self.spacing[n] * (self.size[n] - 1) as f32 / (size[n] - 1) as f32);
         Self { size, spacing, ..self }
     }
 
     /// Voxel (x, y) of a node.
-    pub fn place(&self, node: usize) -> [f32; 2] {
+    pub(crate) fn place(&self, node: usize) -> [f32; 2] {
         let at = [node / self.size[1], node % self.size[1]];
         [0, 1].map(|n: usize| self.origin[n] as f32 + at[n] as f32 * self.spacing[n])
     }
 }
 
 /// A layer on the nodes of a lattice.
-pub struct SigmaLayer {
+pub(crate) struct SigmaLayer {
     /// The columns of nodes.
     pub lattice: FlowLattice,
     /// Count of levels, odd.
@@ -81,7 +81,7 @@ struct SheetPair {
 
 /// ∇v, and the coefficients of the Laplacian, at a node and level.
 #[derive(Debug, Clone, Copy)]
-pub struct SigmaTerms {
+pub(crate) struct SigmaTerms {
     /// ∇v, a covector of voxel space.
     pub slope: Vec3,
     /// C = H∇v.
@@ -94,7 +94,7 @@ pub struct SigmaTerms {
 
 impl SigmaLayer {
     /// The layer between two sheets, given by voxel z at voxel (x, y).
-    pub fn new(
+    pub(crate) fn new(
         lattice: FlowLattice,
         levels: usize,
         [bottom, top]: [&(dyn Fn(f32, f32) -> f32 + Sync); 2],
@@ -124,23 +124,23 @@ impl SigmaLayer {
     }
 
     /// v of a level.
-    pub fn v(&self, level: usize) -> f32 {
+    pub(crate) fn v(&self, level: usize) -> f32 {
         level as f32 / (self.levels - 1) as f32
     }
 
     /// Thickness at a node, voxels.
-    pub fn thickness(&self, node: usize) -> f32 {
+    pub(crate) fn thickness(&self, node: usize) -> f32 {
         self.columns[node].thickness
     }
 
     /// Slopes of the thickness at a node.
-    pub fn thickness_slope(&self, node: usize) -> [f32; 2] {
+    pub(crate) fn thickness_slope(&self, node: usize) -> [f32; 2] {
         self.columns[node].thickness_slope
     }
 
     /// The coefficients at a node and level.
     #[inline]
-    pub fn terms(&self, node: usize, level: usize) -> SigmaTerms {
+    pub(crate) fn terms(&self, node: usize, level: usize) -> SigmaTerms {
         let pair = &self.columns[node];
         let v = self.v(level);
         let inverse = 1.0 / pair.thickness;
@@ -158,7 +158,7 @@ impl SigmaLayer {
     }
 
     /// ∇f, a covector of voxel space, of values at nodes `[x][y][level]`: central differences, one-sided at the borders.
-    pub fn gradient(&self, f: &[f32], node: usize, level: usize) -> Vec3 {
+    pub(crate) fn gradient(&self, f: &[f32], node: usize, level: usize) -> Vec3 {
         let at = |node: usize, level: usize| f[node * self.levels + level];
         let along = |axis: usize| self.difference(node, axis, |node| at(node, level));
         let rise = self.rise(level, |level| at(node, level));
@@ -167,7 +167,7 @@ impl SigmaLayer {
 
     /// The difference of nodal values along x or y at constant v, per voxel.
     #[inline]
-    pub fn difference(&self, node: usize, axis: usize, at: impl Fn(usize) -> f32) -> f32 {
+    pub(crate) fn difference(&self, node: usize, axis: usize, at: impl Fn(usize) -> f32) -> f32 {
         let (low, high, nodes) = match self.beside(node, axis) {
             [Some(low), Some(high)] => (low, high, 2.0),
             [None, Some(high)] => (node, high, 1.0),
@@ -179,7 +179,7 @@ impl SigmaLayer {
 
     /// The derivative along v of a column's values at a level.
     #[inline]
-    pub fn rise(&self, level: usize, at: impl Fn(usize) -> f32) -> f32 {
+    pub(crate) fn rise(&self, level: usize, at: impl Fn(usize) -> f32) -> f32 {
         let per_level = (self.levels - 1) as f32;
         match level {
             0 => per_level * (-1.5 * at(0) + 2.0 * at(1) - 0.5 * at(2)),
@@ -190,7 +190,7 @@ impl SigmaLayer {
 
     /// The nodes next to `node` along an axis, before and after it; `None` outside.
     #[inline]
-    pub fn beside(&self, node: usize, axis: usize) -> [Option<usize>; 2] {
+    pub(crate) fn beside(&self, node: usize, axis: usize) -> [Option<usize>; 2] {
         let [nx, ny] = self.lattice.size;
         let (at, count, step) = if axis == 0 { (node / ny, nx, ny) } else { (node % ny, ny, 1) };
         [(at > 0).then(|| node - step), (at + 1 < count).then(|| node + step)]

@@ -13,7 +13,7 @@ const MARGIN: i32 = 24;
 type BlockRule = Box<dyn Fn(Vec3) -> u16 + Sync>;
 
 /// A model of one sheet per horizon and block; horizons youngest first.
-pub struct ClosedForm {
+pub(crate) struct ClosedForm {
     size: [usize; 3],
     metric: DMat3,
     sheets: Vec<Vec<HeightField>>,
@@ -22,12 +22,12 @@ pub struct ClosedForm {
 
 impl ClosedForm {
     /// A model of one block; `depth(h, x, y)` is the voxel z of horizon h.
-    pub fn new(size: [usize; 3], horizons: usize, depth: impl Fn(usize, f64, f64) -> f64) -> Self {
+    pub(crate) fn new(size: [usize; 3], horizons: usize, depth: impl Fn(usize, f64, f64) -> f64) -> Self {
         Self::faulted(size, horizons, 1, |h, _, x, y| depth(h, x, y), |_| 0)
     }
 
     /// A model of several blocks; `depth(h, block, x, y)` is the voxel z of horizon h in a block.
-    pub fn faulted(
+    pub(crate) fn faulted(
         size: [usize; 3],
         horizons: usize,
         blocks: u16,
@@ -43,7 +43,7 @@ impl ClosedForm {
     }
 
     /// Three horizons with folds 80 voxels long; the distance of the middle one to the others varies by 30 %.
-    pub fn folded() -> Self {
+    pub(crate) fn folded() -> Self {
         Self::new([80, 72, 80], 3, |h, x, y| {
             let fold = 8.0 * (TAU * (x + 0.35 * y) / 76.0).sin();
             let swell = 5.0 * (TAU * (y - 0.4 * x) / 88.0).cos();
@@ -52,7 +52,7 @@ impl ClosedForm {
     }
 
     /// The same model with another voxel-to-metre matrix.
-    pub fn with_metric(self, metric: DMat3) -> Self {
+    pub(crate) fn with_metric(self, metric: DMat3) -> Self {
         Self { metric, ..self }
     }
 }

@@ -33,7 +33,7 @@ const STEEP: f32 = 0.3;
 
 /// The parts of the grids that are visible: faces towards the camera, and the ground of a box.
 #[derive(Debug, Clone, PartialEq)]
-pub struct VisibleParts {
+pub(super) struct VisibleParts {
     faces: Vec<Face>,
     ground: Option<[DVec3; 2]>,
     /// Whether all of the inside of the block is needed.
@@ -42,7 +42,7 @@ pub struct VisibleParts {
 
 impl VisibleParts {
     /// The visible parts of a scene.
-    pub fn of(resolved: &ResolvedScene) -> Self {
+    pub(super) fn of(resolved: &ResolvedScene) -> Self {
         let mut faces = faces(&resolved.solid, &resolved.view);
         faces.retain(|face| face.faces_camera);
         let ground = resolved.relief.as_ref().map(|_| resolved.solid.roaming_box.map(|corner| corner.as_dvec3()));
@@ -51,7 +51,7 @@ impl VisibleParts {
 }
 
 /// The visible parts of the grids on the GPU.
-pub struct GridBuffers {
+pub(super) struct GridBuffers {
     pub infos: wgpu::Buffer,
     pub columns: wgpu::Buffer,
     pub offsets: wgpu::Buffer,
@@ -60,7 +60,7 @@ pub struct GridBuffers {
 
 impl GridBuffers {
     /// Uploads what is visible. `unfolded` says where the pool of the model holds the unfolded layers.
-    pub fn new(
+    pub(super) fn new(
         gpu: &Gpu,
         model: &StructuralModel,
         param: &Parameterization,

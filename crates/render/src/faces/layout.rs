@@ -10,12 +10,12 @@ use survey::block::{MAX_BODIES, MAX_PLANES};
 use ttf::tables::NONE;
 
 /// Side of a workgroup, pixels or cells.
-pub const WORKGROUP: u32 = 8;
+pub(super) const WORKGROUP: u32 = 8;
 
 /// Parameters of a picture and a tile.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct FaceParams {
+pub(super) struct FaceParams {
     pub origin: [f32; 4],
     pub origin_dx: [f32; 4],
     pub origin_dy: [f32; 4],
@@ -45,14 +45,14 @@ pub struct FaceParams {
 }
 
 /// Largest number of bodies: the roaming box, and what is cut out.
-pub const BODIES: usize = 1 + MAX_BODIES;
+pub(super) const BODIES: usize = 1 + MAX_BODIES;
 /// Largest number of planes.
-pub const PLANES: usize = 6 + MAX_PLANES;
+pub(super) const PLANES: usize = 6 + MAX_PLANES;
 
 /// A plane of the block or of what is cut out.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, Default)]
-pub struct PlaneInfo {
+pub(super) struct PlaneInfo {
     pub normal: [f32; 4],
     pub metric_normal: [f32; 4],
     pub along: [f32; 2],
@@ -65,7 +65,7 @@ pub struct PlaneInfo {
 /// A height field in the pool. A horizon that is none has a level field there as well, and this is its topmost part.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct SheetInfo {
+pub(super) struct SheetInfo {
     pub origin: [i32; 2],
     pub size: [u32; 2],
     pub offset: u32,
@@ -77,7 +77,7 @@ pub struct SheetInfo {
 /// A fault surface: the rows of its frame relative to the centre of the model, and its height field.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct FaultInfo {
+pub(super) struct FaultInfo {
     pub u: [f32; 4],
     pub v: [f32; 4],
     pub w: [f32; 4],
@@ -87,7 +87,7 @@ pub struct FaultInfo {
 /// Counts and scales of the model.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct ModelInfo {
+pub(super) struct ModelInfo {
     pub centre: [f32; 4],
     pub horizons: u32,
     pub blocks: u32,
@@ -100,7 +100,7 @@ pub struct ModelInfo {
 /// A region's stratigraphic grid.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct GridInfo {
+pub(super) struct GridInfo {
     pub origin: [i32; 2],
     pub size: [u32; 2],
     pub levels: u32,
@@ -120,7 +120,7 @@ pub struct GridInfo {
 /// Size, scale and value ranges of the packed volume.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, Default)]
-pub struct PackedInfo {
+pub(super) struct PackedInfo {
     pub scale: [f32; 4],
     pub size: [u32; 4],
     pub i_range: [f32; 2],
@@ -156,7 +156,7 @@ fn bodies(resolved: &ResolvedScene) -> ([[u32; 4]; BODIES], [PlaneInfo; PLANES])
 }
 
 /// The horizons and the coarse map of the ground, as 32-bit words for the shader.
-pub fn relief_map(resolved: &ResolvedScene) -> Vec<u32> {
+pub(super) fn relief_map(resolved: &ResolvedScene) -> Vec<u32> {
     let Some(relief) = &resolved.relief else { return Vec::new() };
     let horizons = relief.horizons.iter().map(|&h| h as u32);
     horizons.chain(relief.map_tops.iter().map(|top| top.to_bits())).collect()
@@ -164,7 +164,7 @@ pub fn relief_map(resolved: &ResolvedScene) -> Vec<u32> {
 
 impl FaceParams {
     /// The parameters of a picture, without its tile.
-    pub fn of(resolved: &ResolvedScene) -> Self {
+    pub(super) fn of(resolved: &ResolvedScene) -> Self {
         let [width, height] = resolved.scene.size_px;
         let reference = DVec2::new(f64::from(width), f64::from(height)) * 0.5;
         let ray = resolved.view.ray(reference);

@@ -12,7 +12,7 @@ use survey::Progress;
 /// A slice, in the layout of the shader.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Slice {
+pub(super) struct Slice {
     pub index: u32,
     pub side: f32,
     pub padding: [u32; 2],
@@ -22,10 +22,10 @@ pub struct Slice {
 const SLICES_AT_ONCE: usize = 64;
 
 /// Format of the light volume: half floats with a relative error of 1/2000, which every device can write.
-pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// Buffers of the pass. They are kept while the size of the grid stays the same.
-pub struct LightBuffers {
+pub(super) struct LightBuffers {
     size: [usize; 3],
     /// The light volume.
     pub volume: wgpu::Texture,
@@ -36,7 +36,7 @@ pub struct LightBuffers {
 
 impl LightBuffers {
     /// Allocates buffers for a grid.
-    pub fn new(gpu: &Gpu, size: [usize; 3]) -> Result<Self, RenderError> {
+    pub(super) fn new(gpu: &Gpu, size: [usize; 3]) -> Result<Self, RenderError> {
         let [nu, nv, slices] = size;
         let limits = gpu.device.limits();
         if [nu, nv, slices + 1].into_iter().any(|n| n > limits.max_texture_dimension_3d as usize) {
@@ -68,12 +68,12 @@ impl LightBuffers {
     }
 
     /// Whether the buffers have this size.
-    pub fn fits(&self, size: [usize; 3]) -> bool {
+    pub(super) fn fits(&self, size: [usize; 3]) -> bool {
         self.size == size
     }
 
     /// Propagates the light front to back. `groups` are the bind groups of the picture from the second on.
-    pub fn carry(
+    pub(super) fn carry(
         &self,
         gpu: &Gpu,
         pipeline: &wgpu::ComputePipeline,
@@ -133,7 +133,7 @@ impl LightBuffers {
 }
 
 /// Layout of the first bind group of the pass.
-pub fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+pub(super) fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let entry =
         |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None };
     let buffer = |ty, has_dynamic_offset| wgpu::BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None };

@@ -22,7 +22,7 @@ use ttf::tables::NONE;
 /// A medium, in the layout of the shader.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, Default)]
-pub struct MediumInfo {
+pub(super) struct MediumInfo {
     pub low: f32,
     pub scale: f32,
     pub slot: u32,
@@ -36,7 +36,7 @@ pub struct MediumInfo {
 /// The media of a scene, in the layout of the shader.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct MediaParams {
+pub(super) struct MediaParams {
     pub display_x: [f32; 4],
     pub display_y: [f32; 4],
     pub display_z: [f32; 4],
@@ -70,11 +70,11 @@ pub struct MediaParams {
 /// Number of words in the record of a part of a layer.
 const SHADE_WORDS: u32 = 5;
 /// Number of words in the record of a horizon.
-pub const HORIZON_WORDS: usize = 12;
+pub(super) const HORIZON_WORDS: usize = 12;
 
 /// The constants of a pipeline that depend on media.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
-pub struct MediaVariant {
+pub(super) struct MediaVariant {
     with_media: u32,
     shading: u32,
     faces_shown: u32,
@@ -88,7 +88,7 @@ pub struct MediaVariant {
 
 impl MediaVariant {
     /// The constants for a scene.
-    pub fn of(resolved: &ResolvedScene) -> Self {
+    pub(super) fn of(resolved: &ResolvedScene) -> Self {
         let faces_shown = match resolved.scene.media.faces {
             Faces::All => 0,
             Faces::CutOuts => 1,
@@ -122,7 +122,7 @@ impl MediaVariant {
     }
 
     /// Names and values of the override constants.
-    pub fn constants(&self) -> [(&'static str, f64); 9] {
+    pub(super) fn constants(&self) -> [(&'static str, f64); 9] {
         [
             ("face_data", f64::from(self.face_data)),
             ("with_wells", f64::from(self.with_wells)),
@@ -138,20 +138,20 @@ impl MediaVariant {
 }
 
 /// The horizon candidates that a picture shows.
-pub fn candidates_of<'f, 'a>(resolved: &'f ResolvedScene<'a>) -> Option<&'f CandidateVolume<'a>> {
+pub(super) fn candidates_of<'f, 'a>(resolved: &'f ResolvedScene<'a>) -> Option<&'f CandidateVolume<'a>> {
     let of_field = resolved.field.as_ref().and_then(|field| field.horizons.as_ref()).map(|h| &h.candidates);
     resolved.candidates.as_ref().or(of_field)
 }
 
 /// The grid in which light is propagated, if the scene has occlusion.
-pub fn light_grid(resolved: &ResolvedScene) -> Option<LightGrid> {
+pub(super) fn light_grid(resolved: &ResolvedScene) -> Option<LightGrid> {
     let field = resolved.field.as_ref()?;
     let Shading::Occlusion(occlusion) = field.shading else { return None };
     Some(LightGrid::new(&occlusion, &resolved.view, &resolved.roaming_box, f64::from(field.unit_m)))
 }
 
 /// Appends the media to the words, and returns parameters with their positions.
-pub fn media_params(resolved: &ResolvedScene, grid: Option<&LightGrid>, words: &mut Vec<u32>) -> MediaParams {
+pub(super) fn media_params(resolved: &ResolvedScene, grid: Option<&LightGrid>, words: &mut Vec<u32>) -> MediaParams {
     let mut params = MediaParams::zeroed();
     let plain = |v: Vec3| v.extend(0.0).to_array();
     let columns = |m: Mat3| [plain(m.x_axis), plain(m.y_axis), plain(m.z_axis)];
@@ -313,14 +313,14 @@ fn add_horizons(resolved: &ResolvedScene, field: &MediaField, words: &mut Vec<u3
 }
 
 /// Distances and leaves of candidates on the GPU.
-pub struct CandidateTextures {
+pub(super) struct CandidateTextures {
     pub distances: wgpu::Texture,
     pub leaves: wgpu::Texture,
 }
 
 impl CandidateTextures {
     /// Uploads candidates. `None` creates textures of one texel, which are bound if nothing is read.
-    pub fn new(gpu: &Gpu, candidates: Option<&CandidateVolume>) -> Result<Self, RenderError> {
+    pub(super) fn new(gpu: &Gpu, candidates: Option<&CandidateVolume>) -> Result<Self, RenderError> {
         let [nx, ny, nz] = candidates.map_or([1; 3], |c| c.size);
         let limit = gpu.device.limits().max_texture_dimension_3d as usize;
         if [nx, ny, nz].into_iter().any(|n| n > limit) {
@@ -347,7 +347,7 @@ impl CandidateTextures {
 }
 
 /// A 3D texture that shaders can read.
-pub fn texture(
+pub(super) fn texture(
     gpu: &Gpu,
     label: &str,
     size: wgpu::Extent3d,
@@ -367,7 +367,7 @@ pub fn texture(
 }
 
 /// The sampler of all volumes that the hardware interpolates.
-pub fn filtering(gpu: &Gpu) -> wgpu::Sampler {
+pub(super) fn filtering(gpu: &Gpu) -> wgpu::Sampler {
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("filtering"),
         mag_filter: wgpu::FilterMode::Linear,

@@ -19,10 +19,10 @@ use ttf::tables::NONE;
 const MOST_HORIZONS: usize = 64;
 
 /// Number of buffers over which the pool may be split.
-pub const POOL_BUFFERS: usize = 2;
+pub(super) const POOL_BUFFERS: usize = 2;
 
 /// A model on the GPU.
-pub struct ModelBuffers {
+pub(super) struct ModelBuffers {
     pub info: wgpu::Buffer,
     pub sheets: wgpu::Buffer,
     pub faults: wgpu::Buffer,
@@ -90,7 +90,7 @@ impl Pool {
 }
 
 /// Floats that the level fields of a model and the unfolded layers of its parameterization take in the pool.
-pub fn floats_of_any_shape(model: &StructuralModel, param: Option<&Parameterization>) -> usize {
+pub(super) fn floats_of_any_shape(model: &StructuralModel, param: Option<&Parameterization>) -> usize {
     let mut fields: Vec<*const LevelField> = Vec::new();
     let mut floats = 0;
     for horizon in 0..model.stratigraphy().horizons.len() {
@@ -109,7 +109,11 @@ pub fn floats_of_any_shape(model: &StructuralModel, param: Option<&Parameterizat
 
 impl ModelBuffers {
     /// Uploads a model, and what its parameterization adds to it: calm sheets and unfolded layers.
-    pub fn new(gpu: &Gpu, model: &StructuralModel, param: Option<&Parameterization>) -> Result<Self, RenderError> {
+    pub(super) fn new(
+        gpu: &Gpu,
+        model: &StructuralModel,
+        param: Option<&Parameterization>,
+    ) -> Result<Self, RenderError> {
         let mut pool = Pool::default();
         let horizons = model.stratigraphy().horizons.len();
         if horizons > MOST_HORIZONS {
@@ -167,7 +171,7 @@ impl ModelBuffers {
     }
 
     /// Number of buffers of the pool that hold data.
-    pub fn pool_chunks(&self) -> usize {
+    pub(super) fn pool_chunks(&self) -> usize {
         self.pool.len()
     }
 }
@@ -224,7 +228,7 @@ fn split_pool(gpu: &Gpu, floats: &[f32]) -> Result<(Vec<wgpu::Buffer>, u32), Ren
 }
 
 /// The packed volume on the GPU.
-pub struct PackedTexture {
+pub(super) struct PackedTexture {
     pub info: wgpu::Buffer,
     pub texture: wgpu::Texture,
 }
@@ -232,7 +236,7 @@ pub struct PackedTexture {
 impl PackedTexture {
     /// Uploads a packed volume: texel (x, y, z) is sample (z, y, x). `None` creates one texel, which is bound
     /// if nothing is read.
-    pub fn new(gpu: &Gpu, packed: Option<&PackedVolume>) -> Result<Self, RenderError> {
+    pub(super) fn new(gpu: &Gpu, packed: Option<&PackedVolume>) -> Result<Self, RenderError> {
         let [nx, ny, nz] = packed.map_or([1; 3], |p| p.size);
         let limit = gpu.device.limits().max_texture_dimension_3d as usize;
         if [nx, ny, nz].into_iter().any(|n| n > limit) {

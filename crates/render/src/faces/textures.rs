@@ -11,7 +11,7 @@ use ttf::Texture;
 /// The position of a tile in the texel buffer, in the layout of the shader.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct TextureInfo {
+pub(super) struct TextureInfo {
     /// Mean of all texels, premultiplied.
     pub mean: [f32; 4],
     /// First texel of level 0.
@@ -25,7 +25,7 @@ pub struct TextureInfo {
 }
 
 /// Tiles on the GPU.
-pub struct TextureBuffers {
+pub(super) struct TextureBuffers {
     pub infos: wgpu::Buffer,
     pub texels: wgpu::Buffer,
     uploaded: Vec<Arc<Texture>>,
@@ -33,7 +33,7 @@ pub struct TextureBuffers {
 
 impl TextureBuffers {
     /// Uploads the tiles.
-    pub fn new(gpu: &Gpu, textures: &[Arc<Texture>]) -> Self {
+    pub(super) fn new(gpu: &Gpu, textures: &[Arc<Texture>]) -> Self {
         let mut infos = Vec::new();
         let mut texels: Vec<u8> = Vec::new();
         for texture in textures {
@@ -56,7 +56,7 @@ impl TextureBuffers {
     }
 
     /// Whether exactly these tiles have been uploaded.
-    pub fn hold(&self, textures: &[Arc<Texture>]) -> bool {
+    pub(super) fn hold(&self, textures: &[Arc<Texture>]) -> bool {
         self.uploaded.len() == textures.len() && self.uploaded.iter().zip(textures).all(|(a, b)| Arc::ptr_eq(a, b))
     }
 }

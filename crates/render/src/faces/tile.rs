@@ -9,20 +9,20 @@ use image::RgbaImage;
 const SAMPLES_PER_TILE: u32 = 1 << 17;
 
 /// Side of a tile for a number of samples per pixel along each axis: a multiple of the side of a workgroup.
-pub fn tile_side(samples: u32) -> u32 {
+pub(super) fn tile_side(samples: u32) -> u32 {
     let pixels = SAMPLES_PER_TILE / (samples * samples);
     (pixels.isqrt() / WORKGROUP * WORKGROUP).clamp(4 * WORKGROUP, 1024)
 }
 
 /// The pixels of a tile on the device, and the buffer in which they are read back.
-pub struct TileTarget {
+pub(super) struct TileTarget {
     pub pixels: wgpu::Buffer,
     readback: wgpu::Buffer,
 }
 
 impl TileTarget {
     /// Room for a square tile.
-    pub fn new(gpu: &Gpu, side: u32) -> Self {
+    pub(super) fn new(gpu: &Gpu, side: u32) -> Self {
         let buffer = |label, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -38,7 +38,7 @@ impl TileTarget {
     }
 
     /// Draws one tile and copies it into the image.
-    pub fn draw(
+    pub(super) fn draw(
         &self,
         gpu: &Gpu,
         pipeline: &wgpu::ComputePipeline,

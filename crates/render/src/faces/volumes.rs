@@ -14,7 +14,7 @@ const NO_DATA: f32 = -3.0e38;
 /// The position and size of a volume, in the layout of the shader.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, Default)]
-pub struct VolumePlacement {
+pub(super) struct VolumePlacement {
     /// Sample index = voxel position · scale + offset; w unused.
     pub scale: [f32; 4],
     /// See `scale`.
@@ -25,7 +25,7 @@ pub struct VolumePlacement {
 
 impl VolumePlacement {
     /// The position of this volume.
-    pub fn of(volume: &NamedVolume) -> Self {
+    pub(super) fn of(volume: &NamedVolume) -> Self {
         let (scale, offset) = volume.index_from_voxel();
         let [x, y, z] = volume.volume.size().map(|n| n as u32);
         Self { scale: scale.extend(0.0).to_array(), offset: offset.extend(0.0).to_array(), size: [x, y, z, 0] }
@@ -33,7 +33,7 @@ impl VolumePlacement {
 }
 
 /// Uploads a volume: texel (x, y, z) is sample (z, y, x). Needs memory for one plane beside the texture.
-pub fn upload_volume(gpu: &Gpu, volume: &NamedVolume) -> Result<wgpu::Texture, RenderError> {
+pub(super) fn upload_volume(gpu: &Gpu, volume: &NamedVolume) -> Result<wgpu::Texture, RenderError> {
     let Some(samples) = volume.volume.whole() else {
         let reason = format!("only the part of the volume `{}` that faces need was read", volume.name);
         return Err(RenderError::Unsuitable { adapter: gpu.adapter_name.clone(), reason });
@@ -69,7 +69,7 @@ pub fn upload_volume(gpu: &Gpu, volume: &NamedVolume) -> Result<wgpu::Texture, R
 }
 
 /// A texture of one voxel, for slots without a volume.
-pub fn no_volume(gpu: &Gpu) -> wgpu::Texture {
+pub(super) fn no_volume(gpu: &Gpu) -> wgpu::Texture {
     float_texture(gpu, "no volume", wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 })
 }
 

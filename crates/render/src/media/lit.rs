@@ -7,14 +7,14 @@ use glam::Vec3;
 
 /// The reflection model for the points of one ray.
 #[derive(Clone, Copy)]
-pub struct Lit {
+pub(super) struct Lit {
     phong: Phong,
     light: Vec3,
     half: Vec3,
 }
 
 /// Many surface points under the same light, component by component.
-pub struct LitSurfaces {
+pub(super) struct LitSurfaces {
     /// Their normals, of any length, in display space.
     pub normals: [[f32; BATCH]; 3],
     /// The [`half_way`] directions of their rays.
@@ -26,18 +26,18 @@ pub struct LitSurfaces {
 }
 
 /// The direction half-way between those to the light and to the viewer.
-pub fn half_way(light: Vec3, towards: Vec3) -> Vec3 {
+pub(super) fn half_way(light: Vec3, towards: Vec3) -> Vec3 {
     (light + towards).normalize_or_zero()
 }
 
 impl Lit {
     /// The model for these unit directions to the light and to the viewer, in display space.
-    pub fn new(phong: Phong, light: Vec3, towards: Vec3) -> Self {
+    pub(super) fn new(phong: Phong, light: Vec3, towards: Vec3) -> Self {
         Self { phong, light, half: half_way(light, towards) }
     }
 
     /// Shades a colour on a surface with this normal, of any length, in display space.
-    pub fn on(&self, normal: Vec3, colour: Vec3) -> Vec3 {
+    pub(super) fn on(&self, normal: Vec3, colour: Vec3) -> Vec3 {
         let [diffuse, specular] = cosines(normal.to_array(), self.light.to_array(), self.half.to_array());
         let mut specular = [specular];
         raise(&mut specular, self.phong.shininess);
@@ -47,13 +47,13 @@ impl Lit {
 
 impl LitSurfaces {
     /// An empty batch.
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { normals: [[0.0; BATCH]; 3], halves: [[0.0; BATCH]; 3], factor: [0.0; BATCH], white: [0.0; BATCH] }
     }
 
     /// Shades all of them.
     #[inline(always)]
-    pub fn light(&mut self, phong: &Phong, light: Vec3) {
+    pub(super) fn light(&mut self, phong: &Phong, light: Vec3) {
         let light = light.to_array();
         let [x, y, z] = &self.normals;
         let [hx, hy, hz] = &self.halves;

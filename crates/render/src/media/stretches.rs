@@ -6,7 +6,7 @@ use crate::visible::{Ray, Solid, TOUCH};
 
 /// A part of a ray that lies in one zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stretch {
+pub(super) struct Stretch {
     /// The distances at which it begins and ends.
     pub t: [f32; 2],
     /// The zone.
@@ -14,7 +14,7 @@ pub struct Stretch {
 }
 
 /// Calls `found` for each stretch of a ray in the roaming box between `start` and `stop`, front to back.
-pub fn stretches(solid: &Solid, ray: &Ray, [start, stop]: [f32; 2], mut found: impl FnMut(Stretch)) {
+pub(super) fn stretches(solid: &Solid, ray: &Ray, [start, stop]: [f32; 2], mut found: impl FnMut(Stretch)) {
     let Some([enter, exit]) = solid.box_interval(ray) else { return };
     let last = exit.min(stop);
     let mut t = enter.max(start);

@@ -21,7 +21,7 @@ pub(super) struct CellWindow {
 impl CellWindow {
     const NONE: Self = Self { low: [usize::MAX; 2], high: [0; 2] };
 
-    pub fn size(&self) -> [usize; 2] {
+    pub(super) fn size(&self) -> [usize; 2] {
         [0, 1].map(|axis| self.high[axis].saturating_sub(self.low[axis]))
     }
 

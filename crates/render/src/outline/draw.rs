@@ -33,7 +33,7 @@ pub(crate) struct OutlineLine {
 
 impl OutlineLines {
     /// All lines of a picture.
-    pub fn of(resolved: &ResolvedScene) -> Self {
+    pub(crate) fn of(resolved: &ResolvedScene) -> Self {
         let wanted = resolved.scene.outlines;
         let mut lines = Self::default();
         if wanted.edges.width_px > 0.0 {

@@ -79,20 +79,20 @@ fn normal_of(outline: &[DVec3]) -> DVec3 {
 
 impl Face {
     /// The axis nearest to its normal: 2 for a face on which a map is seen.
-    pub fn nearest_axis(&self) -> usize {
+    pub(crate) fn nearest_axis(&self) -> usize {
         let size = self.plane.normal.abs();
         (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b])).unwrap_or(2)
     }
 
     /// Smallest and largest x, y, z of its corners.
-    pub fn bounds(&self) -> [DVec3; 2] {
+    pub(crate) fn bounds(&self) -> [DVec3; 2] {
         let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let (low, high) = self.outline.iter().fold(start, |(low, high), p| (low.min(*p), high.max(*p)));
         [low, high]
     }
 
     /// The rectangle around it: t runs down, s level; on a horizontal face along y and x.
-    pub fn section_plane(&self) -> SectionPlane {
+    pub(crate) fn section_plane(&self) -> SectionPlane {
         let [low, high] = self.bounds();
         match self.plane.axis {
             Some(0) => return SectionPlane::inline(low.x, low, high),
@@ -116,14 +116,14 @@ impl Face {
     }
 
     /// Whether it fills the rectangle around it.
-    pub fn is_rectangle(&self) -> bool {
+    pub(crate) fn is_rectangle(&self) -> bool {
         let plane = self.section_plane();
         let whole = plane.extent[0] * plane.extent[1] * plane.s_axis.cross(plane.t_axis).length();
         (0.5 * normal_of(&self.outline).length() - whole).abs() < 1e-6 * whole.max(1.0)
     }
 
     /// The part of it in which a body lies, moved by `aside` along the rock's direction; empty if there is none.
-    pub fn part_in(&self, body: &Body, aside: f64) -> Vec<DVec3> {
+    pub(crate) fn part_in(&self, body: &Body, aside: f64) -> Vec<DVec3> {
         let mut part = self.outline.clone();
         for plane in &body.planes {
             let normal = plane.normal.as_dvec3();

@@ -9,7 +9,7 @@ use synth::closed_form::ClosedForm;
 use ttf::{BlockExtent, LayerExtent, TextureLibrary, TransferFunctions, TtfTables};
 
 /// A model with all data derived from it.
-pub struct Block {
+pub(crate) struct Block {
     pub geometry: SurveyGeometry,
     pub model: StructuralModel,
     pub param: Parameterization,
@@ -18,7 +18,7 @@ pub struct Block {
 }
 
 impl Block {
-    pub fn new(
+    pub(crate) fn new(
         geometry: &SurveyGeometry,
         stratigraphy: &Stratigraphy,
         horizons: &[Horizon],
@@ -44,16 +44,16 @@ impl Block {
     }
 
     /// The same with another definition of k in all layers.
-    pub fn with_k(self, definition: KDefinition) -> Self {
+    pub(crate) fn with_k(self, definition: KDefinition) -> Self {
         let (param, packed) = parameterized(&self.geometry, &self.model, definition);
         Self { param, packed, ..self }
     }
 
-    pub fn of(closed: &ClosedForm, functions: &TransferFunctions, library: &TextureLibrary) -> Self {
+    pub(crate) fn of(closed: &ClosedForm, functions: &TransferFunctions, library: &TextureLibrary) -> Self {
         Self::new(&closed.geometry, &closed.stratigraphy, &closed.horizons, &closed.faults, functions, library)
     }
 
-    pub fn inputs<'a>(&'a self, volumes: &'a [NamedVolume<'a>]) -> Inputs<'a> {
+    pub(crate) fn inputs<'a>(&'a self, volumes: &'a [NamedVolume<'a>]) -> Inputs<'a> {
         Inputs {
             geometry: &self.geometry,
             model: Some(&self.model),

@@ -10,15 +10,15 @@
 use image::RgbaImage;
 
 /// Channel difference of neighbours above which a pixel is an edge.
-pub const EDGE_STEP: u8 = 24;
+pub(crate) const EDGE_STEP: u8 = 24;
 /// Largest channel difference that counts as equal.
-pub const EQUAL: u8 = 2;
+pub(crate) const EQUAL: u8 = 2;
 /// Largest fraction of all pixels that may differ, all of them on edges.
-pub const EDGE_SHARE: f64 = 0.005;
+pub(crate) const EDGE_SHARE: f64 = 0.005;
 
 /// The result of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PictureComparison {
+pub(crate) struct PictureComparison {
     /// Largest channel difference at pixels that are not edges.
     pub worst_off_edges: u8,
     /// The pixel with that difference.
@@ -32,13 +32,13 @@ pub struct PictureComparison {
 impl PictureComparison {
     /// Whether the pictures agree: within [`EQUAL`] off the edges, and at most [`EDGE_SHARE`] of all pixels
     /// differ on them.
-    pub fn agrees(&self) -> bool {
+    pub(crate) fn agrees(&self) -> bool {
         self.worst_off_edges <= EQUAL && self.differing_edge_share <= EDGE_SHARE
     }
 }
 
 /// Compares a picture with the reference. Returns `None` if their sizes differ or they are empty.
-pub fn compare(reference: &RgbaImage, picture: &RgbaImage) -> Option<PictureComparison> {
+pub(crate) fn compare(reference: &RgbaImage, picture: &RgbaImage) -> Option<PictureComparison> {
     if reference.dimensions() != picture.dimensions() || reference.is_empty() {
         return None;
     }

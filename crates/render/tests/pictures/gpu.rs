@@ -17,7 +17,7 @@ use ttf::{
     symmetric_clip,
 };
 
-pub fn skipped() -> bool {
+pub(crate) fn skipped() -> bool {
     let skip = std::env::var("PETROGLYPH_GPU_TESTS").is_ok_and(|value| value == "skip");
     if skip {
         eprintln!("skipped: PETROGLYPH_GPU_TESTS=skip");

@@ -17,26 +17,26 @@ use ttf::{
 };
 
 /// A function with one colour and opacity for every value.
-pub fn constant(colour: Colour, opacity: f32) -> RgbaFunction {
+pub(crate) fn constant(colour: Colour, opacity: f32) -> RgbaFunction {
     let stop = |at: f32| RgbaStop { at, colour, opacity };
     RgbaFunction { domain: [0.0, 1.0], stops: vec![stop(0.0), stop(1.0)] }
 }
 
 /// A part of a layer by depth.
-pub fn part(k: [f32; 2], colour: Colour, opacity: f32) -> DepthInterval {
+pub(crate) fn part(k: [f32; 2], colour: Colour, opacity: f32) -> DepthInterval {
     DepthInterval { k, texture: "limestone".into(), opacity, frequency: None, colour: Some(colour) }
 }
 
-pub fn medium(volume: &str, function: RgbaFunction) -> Medium {
+pub(crate) fn medium(volume: &str, function: RgbaFunction) -> Medium {
     Medium { volume: volume.to_owned(), function, layers: LayerOpacity::Ignored, colour: MediumColour::Function }
 }
 
-pub fn cubic(side: usize) -> SurveyGeometry {
+pub(crate) fn cubic(side: usize) -> SurveyGeometry {
     SurveyGeometry::regular([side; 3], 10.0, 10.0, VerticalUnit::Metres)
 }
 
 /// A view along y from its small end: a pixel shows one x and one z, and the path is as long as the block.
-pub fn head_on(size_px: [u32; 2], media: Media) -> Scene {
+pub(crate) fn head_on(size_px: [u32; 2], media: Media) -> Scene {
     let camera = Camera { azimuth_deg: Some(0.0), elevation_deg: 0.0, margin: 0.0, ..Camera::default() };
     Scene {
         size_px,
@@ -49,11 +49,11 @@ pub fn head_on(size_px: [u32; 2], media: Media) -> Scene {
     }
 }
 
-pub fn draw(scene: &Scene, inputs: &Inputs) -> RgbaImage {
+pub(crate) fn draw(scene: &Scene, inputs: &Inputs) -> RgbaImage {
     render(scene, inputs, &Progress::silent()).unwrap()
 }
 
-pub fn byte(linear: f64) -> f64 {
+pub(crate) fn byte(linear: f64) -> f64 {
     f64::from(srgb_from_linear(linear as f32)) * 255.0
 }
 

@@ -17,7 +17,7 @@ use survey::progress::Progress;
 const HEADER: &str = "zarr.json";
 
 /// Writes the files of the folder `path` under `url`, from which nothing may be read as a volume before; returns their bytes.
-pub fn upload(path: &Path, url: &str, progress: &Progress) -> Result<u64, StoreError> {
+pub(crate) fn upload(path: &Path, url: &str, progress: &Progress) -> Result<u64, StoreError> {
     let remote = Remote::open(url)?;
     if remote.is_there(HEADER)? {
         let reason = "there is something under this address; choose another one, or remove it first".to_owned();

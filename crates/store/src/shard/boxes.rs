@@ -26,13 +26,13 @@ pub(in super::super) struct Shards {
 }
 
 impl Shards {
-    pub fn new(grid: ShardGrid, group: &Path, name: &str) -> Self {
+    pub(crate) fn new(grid: ShardGrid, group: &Path, name: &str) -> Self {
         let files = Arc::new(FolderFiles(grid.folder.clone()));
         Self::of_files(grid, files, group, name)
     }
 
     /// The shards whose files lie elsewhere.
-    pub fn of_files(grid: ShardGrid, files: Arc<dyn ArrayFiles>, group: &Path, name: &str) -> Self {
+    pub(crate) fn of_files(grid: ShardGrid, files: Arc<dyn ArrayFiles>, group: &Path, name: &str) -> Self {
         let known = (0..grid.counts().iter().product()).map(|_| OnceLock::new()).collect();
         Self { grid, files, group: group.to_owned(), name: name.to_owned(), known }
     }
@@ -75,13 +75,13 @@ impl Shards {
     }
 
     /// Whether the shard is there and all its checksums fit.
-    pub fn is_whole<T: StoredSample>(&self, index: [usize; 3]) -> bool {
+    pub(crate) fn is_whole<T: StoredSample>(&self, index: [usize; 3]) -> bool {
         self.damage::<T>(index).is_empty()
     }
 
     /// Reads all of the shard and verifies every checksum in it; returns an error for each brick that does not fit, or
     /// one for the shard.
-    pub fn damage<T: StoredSample>(&self, index: [usize; 3]) -> Vec<StoreError> {
+    pub(crate) fn damage<T: StoredSample>(&self, index: [usize; 3]) -> Vec<StoreError> {
         let all = ChunkLines { x: 0..self.grid.chunk[0], y: 0..self.grid.chunk[1] };
         let mut room = Vec::new();
         let shard = match self.shard::<T>(index) {
@@ -99,7 +99,7 @@ impl Shards {
 
     /// The stored checksum of every chunk, shard by shard; 0 for those that hold only the fill value. They
     /// identify the data.
-    pub fn checksums<T: StoredSample>(&self) -> Result<Vec<u32>, StoreError> {
+    pub(crate) fn checksums<T: StoredSample>(&self) -> Result<Vec<u32>, StoreError> {
         let [nx, ny, nz] = self.grid.counts();
         let mut sums = Vec::new();
         for n in 0..nx * ny * nz {
@@ -115,7 +115,7 @@ impl Shards {
     }
 
     /// The samples of a box that is inside the array. Large boxes are read by all threads.
-    pub fn read_box<T: StoredSample>(&self, start: [usize; 3], size: [usize; 3]) -> Result<Vec<T>, StoreError> {
+    pub(crate) fn read_box<T: StoredSample>(&self, start: [usize; 3], size: [usize; 3]) -> Result<Vec<T>, StoreError> {
         let mut out = vec![T::zeroed(); size.iter().product()];
         if out.is_empty() {
             return Ok(out);
@@ -145,7 +145,7 @@ impl Shards {
     }
 
     /// Fills `out` with the samples of a box that is inside the array, on this thread.
-    pub fn read_into<T: StoredSample>(
+    pub(crate) fn read_into<T: StoredSample>(
         &self,
         start: [usize; 3],
         size: [usize; 3],

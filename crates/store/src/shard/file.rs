@@ -54,7 +54,7 @@ pub(super) struct Shard {
 
 impl Shard {
     /// Reads the index of a file of `count` chunks of `edges` samples, each of `sample_bytes`.
-    pub fn open(
+    pub(super) fn open(
         files: &Arc<dyn ArrayFiles>,
         key: String,
         count: usize,
@@ -101,16 +101,16 @@ impl Shard {
     }
 
     /// Opens the file once more, to read chunks.
-    pub fn reader(&self) -> Result<ShardReader<'_>, Trouble> {
+    pub(super) fn reader(&self) -> Result<ShardReader<'_>, Trouble> {
         Ok(ShardReader { shard: self, file: self.files.open(&self.key).map_err(Trouble::Io)? })
     }
 
-    pub fn is_absent(&self, chunk: usize) -> bool {
+    pub(super) fn is_absent(&self, chunk: usize) -> bool {
         self.chunks[chunk].is_empty()
     }
 
     /// Count of chunks.
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.chunks.len()
     }
 }
@@ -131,7 +131,7 @@ pub(super) struct ShardReader<'a> {
 impl ShardReader<'_> {
     /// Reads and verifies at least the lines `wanted` of a chunk that is not absent into the beginning of
     /// `room`, `[x][y][z]`; returns the lines that are there.
-    pub fn read<T: StoredSample>(
+    pub(super) fn read<T: StoredSample>(
         &self,
         chunk: usize,
         wanted: &ChunkLines,
@@ -186,7 +186,7 @@ impl ShardReader<'_> {
     }
 
     /// The stored checksum of a chunk; 0 for one that holds only the fill value.
-    pub fn checksum(&self, chunk: usize) -> Result<u32, Trouble> {
+    pub(super) fn checksum(&self, chunk: usize) -> Result<u32, Trouble> {
         let mut sum = [0; CHECKSUM];
         if !self.shard.is_absent(chunk) {
             self.file.read_exact_at(self.shard.chunks[chunk].end, &mut sum)?;

@@ -23,7 +23,7 @@ fn chip(tile: &mut Tile, centre: Point, half: f32, turn: f32) {
 }
 
 /// 628: bricks with broken grains, leaning to one side and the other.
-pub fn limestone_clastic() -> Tile {
+pub(crate) fn limestone_clastic() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(628));
     let mut turns = Dice::new(6281);
     Wall { courses: 10, bricks: 4, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, index| {
@@ -38,7 +38,7 @@ pub fn limestone_clastic() -> Tile {
 }
 
 /// 629: bricks with broken grains and shells.
-pub fn limestone_fossiliferous() -> Tile {
+pub(crate) fn limestone_fossiliferous() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(629));
     let mut turns = Dice::new(6291);
     Wall { courses: 8, bricks: 3, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, index| {
@@ -56,7 +56,7 @@ pub fn limestone_fossiliferous() -> Tile {
 }
 
 /// 630: courses that swell and pinch, with joints where they are thinnest.
-pub fn limestone_nodular() -> Tile {
+pub(crate) fn limestone_nodular() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(630));
     let (courses, bricks) = (10, 5);
     let (height, step) = (tile.side / courses as f32, tile.side / bricks as f32);
@@ -79,7 +79,7 @@ pub fn limestone_nodular() -> Tile {
 }
 
 /// 637: bricks, with a dash and with three grains of silt in turn.
-pub fn limestone_silty() -> Tile {
+pub(crate) fn limestone_silty() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(637));
     Wall { courses: 10, bricks: 4, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, index| {
         upright(tile, foot, height);
@@ -98,7 +98,7 @@ fn silt(tile: &mut Tile, centre: Point, is_dash: bool) {
 }
 
 /// 644: leaning bricks with ooids.
-pub fn dolostone_oolitic() -> Tile {
+pub(crate) fn dolostone_oolitic() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(644));
     Wall { courses: 10, bricks: 4, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, index| {
         leaning(tile, foot, height);
@@ -111,7 +111,7 @@ pub fn dolostone_oolitic() -> Tile {
 }
 
 /// 645: leaning bricks with sand grains.
-pub fn dolostone_sandy() -> Tile {
+pub(crate) fn dolostone_sandy() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(645));
     let mut joints: Vec<(Point, f32)> = Vec::new();
     Wall { courses: 8, bricks: 4, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, _| {
@@ -130,7 +130,7 @@ pub fn dolostone_sandy() -> Tile {
 }
 
 /// 646: leaning bricks, with a dash and with three grains of silt in turn.
-pub fn dolostone_silty() -> Tile {
+pub(crate) fn dolostone_silty() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(6462));
     Wall { courses: 10, bricks: 4, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, index| {
         leaning(tile, foot, height);
@@ -140,7 +140,7 @@ pub fn dolostone_silty() -> Tile {
 }
 
 /// 647: leaning bricks with a clay stroke in each.
-pub fn dolostone_shaly() -> Tile {
+pub(crate) fn dolostone_shaly() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(6471));
     Wall { courses: 8, bricks: 4, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, index| {
         leaning(tile, foot, height);
@@ -151,7 +151,7 @@ pub fn dolostone_shaly() -> Tile {
 }
 
 /// 648: leaning bricks with black nodules of chert.
-pub fn dolostone_cherty() -> Tile {
+pub(crate) fn dolostone_cherty() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(6481));
     Wall { courses: 10, bricks: 4, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, index| {
         leaning(tile, foot, height);
@@ -193,7 +193,7 @@ fn shale_bed(tile: &mut Tile, dice: &mut Dice, top: f32, rows: usize, gap: f32, 
 }
 
 /// 673: shale with thin beds of limestone.
-pub fn shale_limestone() -> Tile {
+pub(crate) fn shale_limestone() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(673));
     for bed in 0..2 {
         let top = bed as f32 * 30.0;
@@ -204,7 +204,7 @@ pub fn shale_limestone() -> Tile {
 }
 
 /// 679: limestone with thin beds of shale.
-pub fn limestone_shale_partings() -> Tile {
+pub(crate) fn limestone_shale_partings() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(679));
     for bed in 0..2 {
         let top = bed as f32 * 30.0;
@@ -215,7 +215,7 @@ pub fn limestone_shale_partings() -> Tile {
 }
 
 /// 680: beds of limestone and of marl.
-pub fn limestone_marl() -> Tile {
+pub(crate) fn limestone_marl() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(680));
     for bed in 0..3 {
         let top = bed as f32 * 20.0;
@@ -226,7 +226,7 @@ pub fn limestone_marl() -> Tile {
 }
 
 /// 622: dashes, every second one with a leaning joint.
-pub fn shale_dolomitic() -> Tile {
+pub(crate) fn shale_dolomitic() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(622));
     dashes(&mut tile, &mut dice, 15, 5, 0.72, |tile, index, at, length| {
         if index % 2 == 0 {
@@ -238,7 +238,7 @@ pub fn shale_dolomitic() -> Tile {
 }
 
 /// 621: rows of dashes with open lenses of chert.
-pub fn shale_cherty() -> Tile {
+pub(crate) fn shale_cherty() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(621));
     dashes(&mut tile, &mut dice, 15, 5, 0.44, |tile, index, at, length| {
         if (index % 5 + index / 5) % 3 == 0 {

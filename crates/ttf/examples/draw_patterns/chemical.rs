@@ -4,7 +4,7 @@ use crate::tile::{Dice, LINE, Point, THIN, Tile, nodule, shard};
 
 /// Rows of dashes, each row shifted against the one before. `each` is called with the left end and the length
 /// of every dash.
-pub fn dashes(
+pub(crate) fn dashes(
     tile: &mut Tile,
     dice: &mut Dice,
     rows: usize,
@@ -26,14 +26,14 @@ pub fn dashes(
 }
 
 /// 620: short dashes, the plainest of shales.
-pub fn shale() -> Tile {
+pub(crate) fn shale() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(620));
     dashes(&mut tile, &mut dice, 20, 6, 0.66, |_, _, _, _| {});
     tile
 }
 
 /// 619: shale with rows of dots.
-pub fn shale_sandy() -> Tile {
+pub(crate) fn shale_sandy() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(619));
     dashes(&mut tile, &mut dice, 15, 4, 0.58, |tile, _, at, length| {
         tile.dot([at[0] + length + 3.1, at[1]], 0.42);
@@ -42,7 +42,7 @@ pub fn shale_sandy() -> Tile {
 }
 
 /// 623: shale with the short joints of limestone.
-pub fn marl() -> Tile {
+pub(crate) fn marl() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(623));
     dashes(&mut tile, &mut dice, 15, 5, 0.72, |tile, index, at, length| {
         if index % 2 == 0 {
@@ -54,7 +54,7 @@ pub fn marl() -> Tile {
 }
 
 /// 624: fine bedding planes close together, some of them broken.
-pub fn shale_carbonaceous() -> Tile {
+pub(crate) fn shale_carbonaceous() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(624));
     for row in 0..24 {
         let y = row as f32 * 2.5 + 1.25;
@@ -72,7 +72,7 @@ pub fn shale_carbonaceous() -> Tile {
 }
 
 /// 625: lens-shaped bands of different thickness, as kerogen lies in shale.
-pub fn oil_shale() -> Tile {
+pub(crate) fn oil_shale() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(6252));
     let mut y = 2.0;
     let mut band = 0;
@@ -94,7 +94,7 @@ pub fn oil_shale() -> Tile {
 }
 
 /// A flat filled body with pointed ends.
-pub fn lens(tile: &mut Tile, centre: Point, radii: [f32; 2]) {
+pub(crate) fn lens(tile: &mut Tile, centre: Point, radii: [f32; 2]) {
     let arc = |sign: f32| {
         (0..=24).map(move |step| {
             let t = step as f32 / 12.0 - 1.0;
@@ -108,14 +108,14 @@ pub fn lens(tile: &mut Tile, centre: Point, radii: [f32; 2]) {
 
 /// Courses of bricks. `joint` draws a head joint: it is called with the foot, the height and the course of
 /// each.
-pub struct Wall {
+pub(crate) struct Wall {
     pub courses: usize,
     pub bricks: usize,
     pub width: f32,
 }
 
 impl Wall {
-    pub fn draw(&self, tile: &mut Tile, dice: &mut Dice, mut joint: impl FnMut(&mut Tile, Point, f32, usize)) {
+    pub(crate) fn draw(&self, tile: &mut Tile, dice: &mut Dice, mut joint: impl FnMut(&mut Tile, Point, f32, usize)) {
         let (height, step) = (tile.side / self.courses as f32, tile.side / self.bricks as f32);
         for course in 0..self.courses {
             let base = (course + 1) as f32 * height;
@@ -129,7 +129,7 @@ impl Wall {
 }
 
 /// 627: bricks.
-pub fn limestone() -> Tile {
+pub(crate) fn limestone() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(627));
     Wall { courses: 10, bricks: 5, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, _| {
         tile.line(foot, [foot[0], foot[1] - height], LINE);
@@ -138,7 +138,7 @@ pub fn limestone() -> Tile {
 }
 
 /// 642: leaning bricks.
-pub fn dolostone() -> Tile {
+pub(crate) fn dolostone() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(642));
     Wall { courses: 10, bricks: 5, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, _| {
         tile.line([foot[0] - 1.9, foot[1]], [foot[0] + 1.9, foot[1] - height], LINE);
@@ -147,7 +147,7 @@ pub fn dolostone() -> Tile {
 }
 
 /// 641: upright and leaning joints alternate.
-pub fn limestone_dolomitic() -> Tile {
+pub(crate) fn limestone_dolomitic() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(641));
     Wall { courses: 10, bricks: 5, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, index| {
         let lean = if (index / 5).is_multiple_of(2) { 0.0 } else { 1.9 };
@@ -157,7 +157,7 @@ pub fn limestone_dolomitic() -> Tile {
 }
 
 /// 635: bricks with ooids.
-pub fn limestone_oolitic() -> Tile {
+pub(crate) fn limestone_oolitic() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(635));
     Wall { courses: 10, bricks: 4, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, index| {
         tile.line(foot, [foot[0], foot[1] - height], LINE);
@@ -170,7 +170,7 @@ pub fn limestone_oolitic() -> Tile {
 }
 
 /// 636: bricks with sand grains.
-pub fn limestone_sandy() -> Tile {
+pub(crate) fn limestone_sandy() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(636));
     let mut joints: Vec<(Point, f32)> = Vec::new();
     Wall { courses: 8, bricks: 4, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, _| {
@@ -187,7 +187,7 @@ pub fn limestone_sandy() -> Tile {
 }
 
 /// 638: bricks with a clay stroke in each second one.
-pub fn limestone_shaly() -> Tile {
+pub(crate) fn limestone_shaly() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(638));
     Wall { courses: 10, bricks: 4, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, _| {
         tile.line(foot, [foot[0], foot[1] - height], LINE);
@@ -198,10 +198,10 @@ pub fn limestone_shaly() -> Tile {
 }
 
 /// The bricks of each course of [`limestone_cherty`] that hold a nodule; no two lie above each other.
-pub const NODULES: [&[usize]; 10] = [&[0, 2], &[3], &[1], &[0, 2], &[3], &[2], &[0, 1], &[3], &[0, 2], &[1]];
+pub(crate) const NODULES: [&[usize]; 10] = [&[0, 2], &[3], &[1], &[0, 2], &[3], &[2], &[0, 1], &[3], &[0, 2], &[1]];
 
 /// 639: bricks with black nodules of chert.
-pub fn limestone_cherty() -> Tile {
+pub(crate) fn limestone_cherty() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(639));
     Wall { courses: 10, bricks: 4, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, index| {
         tile.line(foot, [foot[0], foot[1] - height], LINE);
@@ -213,7 +213,7 @@ pub fn limestone_cherty() -> Tile {
 }
 
 /// 626: soft chalk: fragments of bedding planes and joints with much white between.
-pub fn chalk() -> Tile {
+pub(crate) fn chalk() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(626));
     for course in 0..10 {
         let y = course as f32 * 6.0 + 3.0;
@@ -231,7 +231,7 @@ pub fn chalk() -> Tile {
 }
 
 /// 649: beds of chert, swelling and pinching.
-pub fn chert() -> Tile {
+pub(crate) fn chert() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(649));
     for course in 0..10 {
         let y = course as f32 * 6.0 + 3.0;
@@ -246,7 +246,7 @@ pub fn chert() -> Tile {
 }
 
 /// 658: black, except for thin partings and cleats.
-pub fn coal() -> Tile {
+pub(crate) fn coal() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(658));
     let tops = [0.0, 6.5, 9.5, 17.0, 21.0, 30.0, 33.5, 41.0, 48.5, 52.0, 60.0];
     for band in tops.windows(2) {
@@ -276,7 +276,7 @@ pub fn coal() -> Tile {
 }
 
 /// 667: oblique ruling, every third line broken.
-pub fn gypsum() -> Tile {
+pub(crate) fn gypsum() -> Tile {
     let mut tile = Tile::new(60.0);
     for index in 0..20 {
         let x = index as f32 * 3.0;
@@ -293,7 +293,7 @@ pub fn gypsum() -> Tile {
 }
 
 /// 668: upright crosses in staggered rows: the cubes of halite.
-pub fn salt() -> Tile {
+pub(crate) fn salt() -> Tile {
     let mut tile = Tile::new(60.0);
     for row in 0..10 {
         for column in 0..5 {
@@ -307,7 +307,7 @@ pub fn salt() -> Tile {
 }
 
 /// 677: courses of bricks and beds of shale alternate.
-pub fn limestone_shale() -> Tile {
+pub(crate) fn limestone_shale() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(677));
     for bed in 0..4 {
         let top = bed as f32 * 15.0;
@@ -331,7 +331,7 @@ pub fn limestone_shale() -> Tile {
 }
 
 /// Water: a few long ripples.
-pub fn water() -> Tile {
+pub(crate) fn water() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(11));
     for row in 0..8 {
         let y = row as f32 * 7.5 + 3.75;
@@ -353,7 +353,7 @@ pub fn water() -> Tile {
 }
 
 /// 657: peat: leaning strokes all over, with short flat ones and lumps of wood.
-pub fn peat() -> Tile {
+pub(crate) fn peat() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(657));
     for n in 0..15 {
         let x = 4.0 * n as f32;

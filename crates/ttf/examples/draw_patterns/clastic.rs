@@ -3,7 +3,7 @@
 use crate::tile::{DOT, Dice, LINE, Point, THIN, Tile, pebble, shard};
 
 /// Radii in falling order, `count` of each class, with some variation.
-pub fn radii(dice: &mut Dice, classes: &[(usize, f32)]) -> Vec<f32> {
+pub(crate) fn radii(dice: &mut Dice, classes: &[(usize, f32)]) -> Vec<f32> {
     let mut radii = Vec::new();
     for &(count, radius) in classes {
         radii.extend((0..count).map(|_| radius * dice.between(0.88, 1.12)));
@@ -13,7 +13,7 @@ pub fn radii(dice: &mut Dice, classes: &[(usize, f32)]) -> Vec<f32> {
 }
 
 /// 601: pebbles of several sizes in a sandy matrix.
-pub fn conglomerate() -> Tile {
+pub(crate) fn conglomerate() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(601));
     let sizes = radii(&mut dice, &[(5, 5.4), (9, 3.6), (14, 2.4), (20, 1.5)]);
     let discs = tile.pack(&mut dice, &sizes, 1.6);
@@ -29,7 +29,7 @@ pub fn conglomerate() -> Tile {
 }
 
 /// 602: closely packed gravel.
-pub fn gravel() -> Tile {
+pub(crate) fn gravel() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(6021));
     let sizes = radii(&mut dice, &[(16, 4.3), (30, 3.0), (50, 1.9), (90, 1.15)]);
     for (centre, radius) in tile.pack(&mut dice, &sizes, 0.55) {
@@ -41,7 +41,7 @@ pub fn gravel() -> Tile {
 }
 
 /// 605: angular fragments in a fine matrix.
-pub fn breccia() -> Tile {
+pub(crate) fn breccia() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(60513));
     let sizes = radii(&mut dice, &[(8, 4.9), (13, 3.3), (24, 1.9)]);
     let discs = tile.pack(&mut dice, &sizes, 0.9);
@@ -56,7 +56,7 @@ pub fn breccia() -> Tile {
 }
 
 /// 606: fragments of all sizes that nearly fit together: the cells of a power diagram, shrunk.
-pub fn breccia_packed() -> Tile {
+pub(crate) fn breccia_packed() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(606));
     let sizes = radii(&mut dice, &[(9, 4.6), (22, 2.9), (45, 1.7), (60, 1.1)]);
     let seeds = tile.pack(&mut dice, &sizes, 0.0);
@@ -109,7 +109,7 @@ fn drop_short_edges(corners: &[Point], shortest: f32) -> Vec<Point> {
 }
 
 /// 607: even stipple.
-pub fn sand() -> Tile {
+pub(crate) fn sand() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(607));
     for point in tile.scatter(&mut dice, 2.55, &[], 0.0) {
         tile.dot(point, DOT);
@@ -118,7 +118,7 @@ pub fn sand() -> Tile {
 }
 
 /// Dots in a row, placed irregularly as by hand.
-pub fn dotted_row(tile: &mut Tile, dice: &mut Dice, y: f32, count: usize, height: impl Fn(f32) -> f32) {
+pub(crate) fn dotted_row(tile: &mut Tile, dice: &mut Dice, y: f32, count: usize, height: impl Fn(f32) -> f32) {
     let step = tile.side / count as f32;
     let start = dice.between(0.0, step);
     for index in 0..count {
@@ -128,7 +128,7 @@ pub fn dotted_row(tile: &mut Tile, dice: &mut Dice, y: f32, count: usize, height
 }
 
 /// 608: stipple between close rows of dots, the bedding planes.
-pub fn sandstone_bedded() -> Tile {
+pub(crate) fn sandstone_bedded() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(608));
     let beds = [4.0, 12.5, 19.0, 29.0, 36.5, 47.0, 53.0];
     let mut row = Vec::new();
@@ -143,7 +143,7 @@ pub fn sandstone_bedded() -> Tile {
 }
 
 /// 610: planar sets, with foresets of dots that flatten towards the base of their set.
-pub fn sandstone_crossbedded_planar() -> Tile {
+pub(crate) fn sandstone_crossbedded_planar() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(610));
     let bases = [(15.0, 15.0, 1.0), (33.0, 18.0, -1.0), (46.0, 13.0, 1.0), (60.0, 14.0, -1.0)];
     for (base, height, sense) in bases {
@@ -168,7 +168,7 @@ pub fn sandstone_crossbedded_planar() -> Tile {
 }
 
 /// 611: rows of dots over ripples, each ripple steep on one side.
-pub fn sandstone_rippled() -> Tile {
+pub(crate) fn sandstone_rippled() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(611));
     for row in 0..13 {
         let y = (row as f32 + 0.5) * 60.0 / 13.0;
@@ -179,13 +179,13 @@ pub fn sandstone_rippled() -> Tile {
 }
 
 /// A ripple of unit length: a gentle rise and a steeper fall, mean 0, size about 1.
-pub fn ripple(x: f32) -> f32 {
+pub(crate) fn ripple(x: f32) -> f32 {
     let angle = std::f32::consts::TAU * x;
     angle.sin() + 0.28 * (2.0 * angle).sin()
 }
 
 /// 612: stipple with short strokes of clay.
-pub fn sandstone_shaly() -> Tile {
+pub(crate) fn sandstone_shaly() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(612));
     let mut taken: Vec<(Point, f32)> = Vec::new();
     for row in 0..10 {
@@ -204,7 +204,7 @@ pub fn sandstone_shaly() -> Tile {
 }
 
 /// 616: rows of a dash and three dots, staggered.
-pub fn siltstone() -> Tile {
+pub(crate) fn siltstone() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(616));
     for row in 0..15 {
         let y = row as f32 * 4.0 + 2.0;
@@ -222,7 +222,7 @@ pub fn siltstone() -> Tile {
 
 /// Beds of stipple over beds of rows. `element` draws at the places of a row, which are shifted from row to row and from
 /// bed to bed.
-pub fn beds_under_stipple(seed: u64, columns: usize, mut element: impl FnMut(&mut Tile, Point)) -> Tile {
+pub(crate) fn beds_under_stipple(seed: u64, columns: usize, mut element: impl FnMut(&mut Tile, Point)) -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(seed));
     let step = 60.0 / columns as f32;
     for bed in 0..3 {
@@ -247,12 +247,12 @@ pub fn beds_under_stipple(seed: u64, columns: usize, mut element: impl FnMut(&mu
 }
 
 /// 670: beds of stipple and beds of shale alternate.
-pub fn sandstone_shale() -> Tile {
+pub(crate) fn sandstone_shale() -> Tile {
     beds_under_stipple(670, 6, |tile, [x, y]| tile.line([x, y], [x + 7.0, y], THIN))
 }
 
 /// 681: stones of all sizes and short strokes, unsorted, in a dotted matrix.
-pub fn till() -> Tile {
+pub(crate) fn till() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(681));
     let sizes = radii(&mut dice, &[(4, 3.9), (8, 2.5), (12, 1.35)]);
     let mut taken = tile.pack(&mut dice, &sizes, 3.4);

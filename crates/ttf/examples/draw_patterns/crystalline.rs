@@ -3,7 +3,7 @@
 use crate::tile::{Dice, LINE, Point, THIN, Tile, shard, staggered};
 
 /// 703: steep cleavage in close broken lines, crossed by faint bedding.
-pub fn slate() -> Tile {
+pub(crate) fn slate() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(703));
     // The cleavage leans 60 points to the right over 120 down: twelve lines, each two tiles long, close the
     // tile.
@@ -24,7 +24,7 @@ pub fn slate() -> Tile {
 }
 
 /// 705: flakes of mica along the foliation, bent and feathered, every fifth one heavy.
-pub fn schist() -> Tile {
+pub(crate) fn schist() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(705));
     let mut flake = 0;
     for row in 0..22 {
@@ -51,7 +51,7 @@ pub fn schist() -> Tile {
 }
 
 /// 708: pairs of wavy bands with flecks between them.
-pub fn gneiss() -> Tile {
+pub(crate) fn gneiss() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(708));
     let mut taken: Vec<(Point, f32)> = Vec::new();
     let bands = [(4.0, 3), (17.0, 2), (26.0, 4), (41.5, 2), (51.0, 3)];
@@ -78,7 +78,7 @@ pub fn gneiss() -> Tile {
 }
 
 /// 710: bundles of three curled fibres, one beside the other.
-pub fn serpentinite() -> Tile {
+pub(crate) fn serpentinite() -> Tile {
     let mut tile = Tile::new(60.0);
     let fibres: [&[Point]; 3] = [
         &[[-0.2, -2.4], [-1.2, -1.2], [-1.0, 0.5]],
@@ -94,7 +94,7 @@ pub fn serpentinite() -> Tile {
 }
 
 /// 711: chips of glass: rows of forks that stand and hang in turn.
-pub fn tuff() -> Tile {
+pub(crate) fn tuff() -> Tile {
     let mut tile = Tile::new(60.0);
     for (n, [x, y]) in staggered(60.0, 8, 8).enumerate() {
         let up = if n / 8 % 2 == 0 { 1.0 } else { -1.0 };
@@ -105,7 +105,7 @@ pub fn tuff() -> Tile {
 }
 
 /// 714: blocks in a tuff.
-pub fn volcanic_breccia() -> Tile {
+pub(crate) fn volcanic_breccia() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(714));
     let mut radii: Vec<f32> = (0..9).map(|_| dice.between(4.0, 5.6)).collect();
     radii.extend((0..7).map(|_| dice.between(2.4, 3.2)));
@@ -123,7 +123,7 @@ pub fn volcanic_breccia() -> Tile {
 }
 
 /// 717: flows with columns, each flow with its own joints between uneven contacts.
-pub fn basalt() -> Tile {
+pub(crate) fn basalt() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(717));
     let contacts: Vec<(f32, f32)> = [0.0, 13.0, 31.0, 44.0].iter().map(|&y| (y, dice.turn())).collect();
     let height = |(y, phase): (f32, f32), x: f32| {
@@ -148,7 +148,7 @@ pub fn basalt() -> Tile {
 }
 
 /// 719: short strokes in all directions: interlocking crystals.
-pub fn granite() -> Tile {
+pub(crate) fn granite() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(719));
     for point in tile.scatter(&mut dice, 3.9, &[], 0.0) {
         let (sin, cos) = dice.between(0.0, std::f32::consts::PI).sin_cos();
@@ -159,7 +159,7 @@ pub fn granite() -> Tile {
 }
 
 /// 718: granite, second pattern: crosses turned at random among dots.
-pub fn granite_crosses() -> Tile {
+pub(crate) fn granite_crosses() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(718));
     let points = tile.scatter(&mut dice, 6.4, &[], 0.0);
     let taken: Vec<(Point, f32)> = points.iter().map(|&point| (point, 1.9)).collect();
@@ -177,7 +177,7 @@ pub fn granite_crosses() -> Tile {
 }
 
 /// 730: large crystals in a fine matrix.
-pub fn porphyry() -> Tile {
+pub(crate) fn porphyry() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(729));
     let crystals: Vec<(Point, f32)> =
         tile.scatter(&mut dice, 10.5, &[], 0.0).into_iter().map(|point| (point, 3.2)).collect();

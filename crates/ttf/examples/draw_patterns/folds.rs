@@ -38,7 +38,7 @@ const TIGHT: [Shear; 3] = [
 ];
 
 /// 706: folded foliation.
-pub fn schist_contorted() -> Tile {
+pub(crate) fn schist_contorted() -> Tile {
     let (mut tile, mut dice) = (Tile::new(SIDE), Dice::new(706));
     for line in 0..18 {
         let y = (line as f32 + 0.5) * SIDE / 18.0;
@@ -56,7 +56,7 @@ pub fn schist_contorted() -> Tile {
 }
 
 /// 709: folded groups of bands with flecks between them.
-pub fn gneiss_contorted() -> Tile {
+pub(crate) fn gneiss_contorted() -> Tile {
     let (mut tile, mut dice) = (Tile::new(SIDE), Dice::new(709));
     let mut taken: Vec<(Point, f32)> = Vec::new();
     for (top, lines) in [(2.0, 3), (16.0, 4), (32.0, 2), (44.0, 4)] {
@@ -79,7 +79,7 @@ fn flecks(tile: &mut Tile, dice: &mut Dice, gap: f32, taken: &[(Point, f32)], sp
 }
 
 /// 707: groups of wavy bands, and flakes of schist between them.
-pub fn schist_gneiss() -> Tile {
+pub(crate) fn schist_gneiss() -> Tile {
     let (mut tile, mut dice) = (Tile::new(SIDE), Dice::new(707));
     let shears =
         [Shear { axis: 1, size: 1.3, waves: 2.0, phase: 0.0 }, Shear { axis: 1, size: 0.7, waves: 3.0, phase: 2.2 }];
@@ -112,7 +112,7 @@ pub fn schist_gneiss() -> Tile {
 }
 
 /// 704: wavy foliation with crystals between.
-pub fn granite_schistose() -> Tile {
+pub(crate) fn granite_schistose() -> Tile {
     let (mut tile, mut dice) = (Tile::new(SIDE), Dice::new(704));
     let shears =
         [Shear { axis: 1, size: 2.3, waves: 2.0, phase: 0.8 }, Shear { axis: 0, size: 2.5, waves: 1.0, phase: 0.0 }];
@@ -127,7 +127,7 @@ pub fn granite_schistose() -> Tile {
 }
 
 /// 702: stipple with healed joints: arcs of close dots in all directions.
-pub fn quartzite() -> Tile {
+pub(crate) fn quartzite() -> Tile {
     let (mut tile, mut dice) = (Tile::new(SIDE), Dice::new(7021));
     let mut taken: Vec<(Point, f32)> = Vec::new();
     for centre in tile.scatter(&mut dice, 12.5, &[], 0.0) {

@@ -25,7 +25,7 @@ fn dots_between(tile: &mut Tile, dice: &mut Dice, signs: &[Point], radius: f32, 
 }
 
 /// 712: leaning crosses in rows.
-pub fn tuff_crystal() -> Tile {
+pub(crate) fn tuff_crystal() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(712));
     for [x, y] in staggered(60.0, 8, 6) {
         let centre = [x + dice.jitter(0.5), y + dice.jitter(0.5)];
@@ -37,7 +37,7 @@ pub fn tuff_crystal() -> Tile {
 }
 
 /// 713: long lying crosses.
-pub fn tuff_devitrified() -> Tile {
+pub(crate) fn tuff_devitrified() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(713));
     for [x, y] in staggered(60.0, 10, 5) {
         let x = x + dice.jitter(0.5);
@@ -48,7 +48,7 @@ pub fn tuff_devitrified() -> Tile {
 }
 
 /// 715: blocks of many corners, some of them layered, in a dotted ground.
-pub fn agglomerate() -> Tile {
+pub(crate) fn agglomerate() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(7153));
     let sizes = radii(&mut dice, &[(12, 5.2), (18, 3.4), (34, 2.1)]);
     let blocks = tile.pack(&mut dice, &sizes, 0.25);
@@ -73,7 +73,7 @@ pub fn agglomerate() -> Tile {
 }
 
 /// 716: the letter z, for zeolites.
-pub fn zeolitic() -> Tile {
+pub(crate) fn zeolitic() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(716));
     for [x, y] in staggered(60.0, 8, 5) {
         let (x, y) = (x + dice.jitter(0.5), y + dice.jitter(0.4));
@@ -83,7 +83,7 @@ pub fn zeolitic() -> Tile {
 }
 
 /// 720: bands of blocks ruled one way and the other, between open bands.
-pub fn banded() -> Tile {
+pub(crate) fn banded() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(7201));
     let edge = |y: f32, phase: f32, x: f32| {
         let turn = TAU * x / 60.0;
@@ -119,7 +119,7 @@ pub fn banded() -> Tile {
 }
 
 /// 721: small upright crosses.
-pub fn igneous() -> Tile {
+pub(crate) fn igneous() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(721));
     for [x, y] in staggered(60.0, 14, 7) {
         let centre = [x + dice.jitter(0.3), y + dice.jitter(0.3)];
@@ -137,7 +137,7 @@ fn wedge(tile: &mut Tile, centre: Point, turn: f32, arm: f32, width: f32) {
 }
 
 /// 722: fine strokes and small v's in all directions.
-pub fn rhyolite() -> Tile {
+pub(crate) fn rhyolite() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(7222));
     for (index, point) in tile.scatter(&mut dice, 3.3, &[], 0.0).into_iter().enumerate() {
         let turn = dice.turn();
@@ -151,7 +151,7 @@ pub fn rhyolite() -> Tile {
 }
 
 /// 723: small v's in all directions among dots.
-pub fn dacite() -> Tile {
+pub(crate) fn dacite() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(723));
     let signs = tile.scatter(&mut dice, 6.6, &[], 0.0);
     for &point in &signs {
@@ -163,7 +163,7 @@ pub fn dacite() -> Tile {
 }
 
 /// 724: small v's in all directions.
-pub fn andesite() -> Tile {
+pub(crate) fn andesite() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(7241));
     for point in tile.scatter(&mut dice, 5.6, &[], 0.0) {
         let turn = dice.turn();
@@ -173,7 +173,7 @@ pub fn andesite() -> Tile {
 }
 
 /// 725: leaning crosses among dots.
-pub fn diorite() -> Tile {
+pub(crate) fn diorite() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(725));
     let signs: Vec<Point> = staggered(60.0, 10, 6).collect();
     for &centre in &signs {
@@ -185,7 +185,7 @@ pub fn diorite() -> Tile {
 }
 
 /// 726: needles with a short bar across, in all directions.
-pub fn syenite() -> Tile {
+pub(crate) fn syenite() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(726));
     for point in tile.scatter(&mut dice, 5.9, &[], 0.0) {
         let turn = dice.between(0.0, PI);
@@ -196,7 +196,7 @@ pub fn syenite() -> Tile {
 }
 
 /// 727: pairs of strokes in all directions among dots.
-pub fn gabbro() -> Tile {
+pub(crate) fn gabbro() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(727));
     let signs = tile.scatter(&mut dice, 6.6, &[], 0.0);
     for &point in &signs {
@@ -211,7 +211,7 @@ pub fn gabbro() -> Tile {
 }
 
 /// 728: slanting needles with two short bars across, in rows.
-pub fn peridotite() -> Tile {
+pub(crate) fn peridotite() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(728));
     for [x, y] in staggered(60.0, 8, 6) {
         let centre = [x + dice.jitter(0.3), y + dice.jitter(0.3)];
@@ -224,7 +224,7 @@ pub fn peridotite() -> Tile {
 }
 
 /// 731: upright v's in rows.
-pub fn vitrophyre() -> Tile {
+pub(crate) fn vitrophyre() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(731));
     for [x, y] in staggered(60.0, 8, 6) {
         let (x, y) = (x + dice.jitter(0.4), y + dice.jitter(0.4));
@@ -234,7 +234,7 @@ pub fn vitrophyre() -> Tile {
 }
 
 /// 732: wavy strokes in all directions.
-pub fn quartz() -> Tile {
+pub(crate) fn quartz() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(732));
     for centre in tile.scatter(&mut dice, 6.4, &[], 0.0) {
         let (turn, phase) = (dice.turn(), dice.turn());

@@ -27,12 +27,12 @@ fn sandstone_with_joints(seed: u64, lean: f32) -> Tile {
 }
 
 /// 613: stipple with short beds that have an upright joint.
-pub fn sandstone_calcareous() -> Tile {
+pub(crate) fn sandstone_calcareous() -> Tile {
     sandstone_with_joints(613, 0.0)
 }
 
 /// 614: stipple with short beds that have a leaning joint.
-pub fn sandstone_dolomitic() -> Tile {
+pub(crate) fn sandstone_dolomitic() -> Tile {
     sandstone_with_joints(614, 1.7)
 }
 
@@ -56,17 +56,17 @@ fn siltstone_with_joints(seed: u64, lean: f32) -> Tile {
 }
 
 /// 617: siltstone with upright joints.
-pub fn siltstone_calcareous() -> Tile {
+pub(crate) fn siltstone_calcareous() -> Tile {
     siltstone_with_joints(617, 0.0)
 }
 
 /// 618: siltstone with leaning joints.
-pub fn siltstone_dolomitic() -> Tile {
+pub(crate) fn siltstone_dolomitic() -> Tile {
     siltstone_with_joints(6181, 2.1)
 }
 
 /// 651: beds of chert with a shell in every second body.
-pub fn chert_fossiliferous() -> Tile {
+pub(crate) fn chert_fossiliferous() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(651));
     for course in 0..8 {
         let y = course as f32 * 7.5 + 3.75;
@@ -83,7 +83,7 @@ pub fn chert_fossiliferous() -> Tile {
 }
 
 /// 652: shells, most of them with the hollow side down, as currents leave them.
-pub fn fossiliferous() -> Tile {
+pub(crate) fn fossiliferous() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(6522));
     for (index, centre) in tile.scatter(&mut dice, 8.4, &[], 0.0).into_iter().enumerate() {
         let half = dice.between(2.2, 3.0);
@@ -93,7 +93,7 @@ pub fn fossiliferous() -> Tile {
 }
 
 /// 653: diatoms: a ring between two pairs of short lines.
-pub fn diatomite() -> Tile {
+pub(crate) fn diatomite() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(653));
     for [x, y] in staggered(60.0, 10, 4) {
         let (x, y) = (x + dice.jitter(1.2), y + dice.jitter(0.7));
@@ -108,7 +108,7 @@ pub fn diatomite() -> Tile {
 }
 
 /// 654: close rows of grains, with long strokes of clay among them.
-pub fn graywacke() -> Tile {
+pub(crate) fn graywacke() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(654));
     for row in 0..18 {
         let y = (row as f32 + 0.5) * 60.0 / 18.0;
@@ -129,7 +129,7 @@ pub fn graywacke() -> Tile {
 const LENSES: [f32; 3] = [21.0, 15.0, 18.5];
 
 /// 659: coal with lenses of hatched rock. The black lies in bands between the middles of the lenses.
-pub fn coal_bony() -> Tile {
+pub(crate) fn coal_bony() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(6591));
     let rows: Vec<(f32, f32)> = (0..8).map(|row| (row as f32 * 7.5, row as f32 * 11.0 + dice.jitter(3.0))).collect();
     // Half the thickness of a row's lenses; a little less than nothing between them, so that bands overlap there.
@@ -163,7 +163,7 @@ pub fn coal_bony() -> Tile {
 }
 
 /// 660: beds with roots below them.
-pub fn underclay() -> Tile {
+pub(crate) fn underclay() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(660));
     for (bed, top) in [1.0, 14.0, 25.5, 42.0].into_iter().enumerate() {
         let depth: f32 = [9.0, 7.5, 12.0, 14.5][bed];
@@ -188,7 +188,7 @@ pub fn underclay() -> Tile {
 }
 
 /// 661: crossed ruling.
-pub fn flint_clay() -> Tile {
+pub(crate) fn flint_clay() -> Tile {
     let mut tile = Tile::new(60.0);
     for index in 0..15 {
         let x = index as f32 * 4.0;
@@ -199,7 +199,7 @@ pub fn flint_clay() -> Tile {
 }
 
 /// 662: a stroke that forks.
-pub fn bentonite() -> Tile {
+pub(crate) fn bentonite() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(662));
     for [x, y] in staggered(60.0, 10, 4) {
         let (x, y) = (x + dice.jitter(1.3), y + dice.jitter(0.6));
@@ -210,7 +210,7 @@ pub fn bentonite() -> Tile {
 }
 
 /// 663: a stroke like a bird in flight, for pellets of glauconite.
-pub fn glauconite() -> Tile {
+pub(crate) fn glauconite() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(663));
     for [x, y] in staggered(60.0, 10, 4) {
         let (x, y) = (x + dice.jitter(1.3), y + dice.jitter(0.6));
@@ -221,7 +221,7 @@ pub fn glauconite() -> Tile {
 }
 
 /// 664: a square in a ring.
-pub fn limonite() -> Tile {
+pub(crate) fn limonite() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(664));
     for [x, y] in staggered(60.0, 8, 5) {
         let (x, y) = (x + dice.jitter(1.0), y + dice.jitter(0.8));
@@ -233,7 +233,7 @@ pub fn limonite() -> Tile {
 }
 
 /// 665: a cross in a ring.
-pub fn siderite() -> Tile {
+pub(crate) fn siderite() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(6652));
     for [x, y] in staggered(60.0, 8, 5) {
         let (x, y) = (x + dice.jitter(1.0), y + dice.jitter(0.8));
@@ -245,7 +245,7 @@ pub fn siderite() -> Tile {
 }
 
 /// 666: black nodules, some of them drawn out.
-pub fn phosphorite() -> Tile {
+pub(crate) fn phosphorite() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(6661));
     for centre in tile.scatter(&mut dice, 7.2, &[], 0.0) {
         let (radius, flat, tilt) = (dice.between(1.5, 2.6), dice.between(0.42, 0.6), dice.jitter(0.2));
@@ -255,7 +255,7 @@ pub fn phosphorite() -> Tile {
 }
 
 /// 669: beds of stipple and of siltstone in turn.
-pub fn sandstone_siltstone() -> Tile {
+pub(crate) fn sandstone_siltstone() -> Tile {
     beds_under_stipple(669, 4, |tile, [x, y]| {
         tile.line([x, y], [x + 6.0, y], THIN);
         (0..3).for_each(|dot| tile.dot([x + 8.3 + dot as f32 * 2.2, y], 0.42));
@@ -263,7 +263,7 @@ pub fn sandstone_siltstone() -> Tile {
 }
 
 /// 671: rows of grains over ripples, and rows of clay that follow them.
-pub fn sandstone_shale_rippled() -> Tile {
+pub(crate) fn sandstone_shale_rippled() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(671));
     for row in 0..15 {
         let y = (row as f32 + 0.5) * 4.0;
@@ -285,7 +285,7 @@ pub fn sandstone_shale_rippled() -> Tile {
 }
 
 /// 684: upright wavy strokes, as loess stands in walls.
-pub fn loess() -> Tile {
+pub(crate) fn loess() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(684));
     for column in 0..18 {
         let x = (column as f32 + 0.5) * 60.0 / 18.0;
@@ -304,7 +304,7 @@ pub fn loess() -> Tile {
 }
 
 /// 733: bodies of crossed ruling, and black streaks.
-pub fn ore() -> Tile {
+pub(crate) fn ore() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(7332));
     let sizes = radii(&mut dice, &[(4, 9.0), (4, 5.5)]);
     let bodies = tile.pack(&mut dice, &sizes, 1.2);

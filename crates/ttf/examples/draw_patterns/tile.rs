@@ -5,29 +5,29 @@
 use std::fmt::Write;
 
 /// A point in the tile, in points.
-pub type Point = [f32; 2];
+pub(crate) type Point = [f32; 2];
 
 /// Radius of a grain of sand.
-pub const DOT: f32 = 0.45;
+pub(crate) const DOT: f32 = 0.45;
 /// Width of the lines within a sign.
-pub const THIN: f32 = 0.55;
+pub(crate) const THIN: f32 = 0.55;
 /// Width of the lines that make a pattern: joints, bedding, outlines.
-pub const LINE: f32 = 0.65;
+pub(crate) const LINE: f32 = 0.65;
 
 /// The ink of all patterns: a warm black.
 const INK: &str = "#231f1b";
 
 /// Deterministic pseudo-random numbers (SplitMix64, Steele, Lea and Flood 2014).
-pub struct Dice(u64);
+pub(crate) struct Dice(u64);
 
 impl Dice {
     /// A sequence of its own for each pattern.
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
     }
 
     /// A number that is uniformly distributed in [low, high).
-    pub fn between(&mut self, low: f32, high: f32) -> f32 {
+    pub(crate) fn between(&mut self, low: f32, high: f32) -> f32 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -37,12 +37,12 @@ impl Dice {
     }
 
     /// A uniformly distributed angle.
-    pub fn turn(&mut self) -> f32 {
+    pub(crate) fn turn(&mut self) -> f32 {
         self.between(0.0, std::f32::consts::TAU)
     }
 
     /// A number that is uniformly distributed in [−size, size).
-    pub fn jitter(&mut self, size: f32) -> f32 {
+    pub(crate) fn jitter(&mut self, size: f32) -> f32 {
         self.between(-size, size)
     }
 }
@@ -59,7 +59,7 @@ struct Element {
 }
 
 /// The drawing.
-pub struct Tile {
+pub(crate) struct Tile {
     /// Side in points.
     pub side: f32,
     elements: Vec<Element>,
@@ -67,24 +67,24 @@ pub struct Tile {
 
 impl Tile {
     /// An empty tile.
-    pub fn new(side: f32) -> Self {
+    pub(crate) fn new(side: f32) -> Self {
         Self { side, elements: Vec::new() }
     }
 
     /// A straight stroke.
-    pub fn line(&mut self, from: Point, to: Point, width: f32) {
+    pub(crate) fn line(&mut self, from: Point, to: Point, width: f32) {
         self.polyline(&[from, to], width);
     }
 
     /// Straight strokes through points.
-    pub fn polyline(&mut self, points: &[Point], width: f32) {
+    pub(crate) fn polyline(&mut self, points: &[Point], width: f32) {
         let mut commands = vec![('M', vec![points[0]])];
         commands.extend(points[1..].iter().map(|&point| ('L', vec![point])));
         self.elements.push(Element { style: Style::Stroke(width), commands });
     }
 
     /// A smooth stroke through points (Catmull–Rom).
-    pub fn curve(&mut self, points: &[Point], width: f32) {
+    pub(crate) fn curve(&mut self, points: &[Point], width: f32) {
         let last = points.len() - 1;
         let at = |index: isize| points[index.clamp(0, last as isize) as usize];
         let mut commands = vec![('M', vec![points[0]])];
@@ -95,13 +95,13 @@ impl Tile {
     }
 
     /// A smooth closed outline through points.
-    pub fn blob(&mut self, points: &[Point], width: f32) {
+    pub(crate) fn blob(&mut self, points: &[Point], width: f32) {
         let commands = closed_curve(points);
         self.elements.push(Element { style: Style::Stroke(width), commands });
     }
 
     /// A closed outline with corners.
-    pub fn polygon(&mut self, points: &[Point], width: f32) {
+    pub(crate) fn polygon(&mut self, points: &[Point], width: f32) {
         let mut commands = vec![('M', vec![points[0]])];
         commands.extend(points[1..].iter().map(|&point| ('L', vec![point])));
         commands.push(('Z', Vec::new()));
@@ -109,7 +109,7 @@ impl Tile {
     }
 
     /// A filled area with corners.
-    pub fn filled_polygon(&mut self, points: &[Point]) {
+    pub(crate) fn filled_polygon(&mut self, points: &[Point]) {
         self.polygon(points, 0.0);
         if let Some(element) = self.elements.last_mut() {
             element.style = Style::Fill;
@@ -117,42 +117,42 @@ impl Tile {
     }
 
     /// A smooth filled area.
-    pub fn filled_blob(&mut self, points: &[Point]) {
+    pub(crate) fn filled_blob(&mut self, points: &[Point]) {
         self.elements.push(Element { style: Style::Fill, commands: closed_curve(points) });
     }
 
     /// A round dot: a stroke of no length with round ends.
-    pub fn dot(&mut self, centre: Point, radius: f32) {
+    pub(crate) fn dot(&mut self, centre: Point, radius: f32) {
         let commands = vec![('M', vec![centre]), ('L', vec![centre])];
         self.elements.push(Element { style: Style::Stroke(2.0 * radius), commands });
     }
 
     /// An upright ellipse in outline.
-    pub fn ellipse(&mut self, centre: Point, radii: [f32; 2], width: f32) {
+    pub(crate) fn ellipse(&mut self, centre: Point, radii: [f32; 2], width: f32) {
         let commands = circle(centre, radii);
         self.elements.push(Element { style: Style::Stroke(width), commands });
     }
 
     /// An upright filled ellipse.
-    pub fn filled_ellipse(&mut self, centre: Point, radii: [f32; 2]) {
+    pub(crate) fn filled_ellipse(&mut self, centre: Point, radii: [f32; 2]) {
         let commands = circle(centre, radii);
         self.elements.push(Element { style: Style::Fill, commands });
     }
 
     /// The shortest offset from one point to another, across the edges of the tile.
-    pub fn offset(&self, from: Point, to: Point) -> Point {
+    pub(crate) fn offset(&self, from: Point, to: Point) -> Point {
         [to[0] - from[0], to[1] - from[1]].map(|part| part - (part / self.side).round() * self.side)
     }
 
     /// Distance of two points across the edges of the tile.
-    pub fn distance(&self, a: Point, b: Point) -> f32 {
+    pub(crate) fn distance(&self, a: Point, b: Point) -> f32 {
         let [x, y] = self.offset(a, b);
         x.hypot(y)
     }
 
     /// Poisson-disc points: at least `gap` apart, none closer than `clearance` to an obstacle (centre,
     /// radius), as many as 40 000 attempts place. Their density is even, without rows or gaps.
-    pub fn scatter(&self, dice: &mut Dice, gap: f32, obstacles: &[(Point, f32)], clearance: f32) -> Vec<Point> {
+    pub(crate) fn scatter(&self, dice: &mut Dice, gap: f32, obstacles: &[(Point, f32)], clearance: f32) -> Vec<Point> {
         let mut points: Vec<Point> = Vec::new();
         for _ in 0..40_000 {
             let candidate = [dice.between(0.0, self.side), dice.between(0.0, self.side)];
@@ -167,7 +167,7 @@ impl Tile {
 
     /// Discs of the given radii, largest first, at least `gap` apart. Each lies where a random attempt first
     /// finds room; a disc that finds none is left out.
-    pub fn pack(&self, dice: &mut Dice, radii: &[f32], gap: f32) -> Vec<(Point, f32)> {
+    pub(crate) fn pack(&self, dice: &mut Dice, radii: &[f32], gap: f32) -> Vec<(Point, f32)> {
         let mut discs: Vec<(Point, f32)> = Vec::new();
         for &radius in radii {
             for _ in 0..4_000 {
@@ -182,7 +182,7 @@ impl Tile {
     }
 
     /// The drawing as SVG. Elements that cross an edge are repeated at the opposite edge.
-    pub fn to_svg(&self) -> String {
+    pub(crate) fn to_svg(&self) -> String {
         let side = self.side;
         let mut groups: Vec<(String, String)> = Vec::new();
         for element in &self.elements {
@@ -278,12 +278,12 @@ fn circle([x, y]: Point, [a, b]: [f32; 2]) -> Vec<(char, Vec<Point>)> {
 }
 
 /// A point in polar form around a centre, with the y radius scaled by `flat`.
-pub fn polar(centre: Point, radius: f32, angle: f32, flat: f32) -> Point {
+pub(crate) fn polar(centre: Point, radius: f32, angle: f32, flat: f32) -> Point {
     [centre[0] + radius * angle.cos(), centre[1] + radius * flat * angle.sin()]
 }
 
 /// A rounded, slightly irregular outline: a pebble. `tilt` turns its long axis.
-pub fn pebble(dice: &mut Dice, centre: Point, radius: f32, flat: f32, tilt: f32) -> Vec<Point> {
+pub(crate) fn pebble(dice: &mut Dice, centre: Point, radius: f32, flat: f32, tilt: f32) -> Vec<Point> {
     let phases = [dice.turn(), dice.turn()];
     let (sin, cos) = tilt.sin_cos();
     (0..9)
@@ -297,7 +297,7 @@ pub fn pebble(dice: &mut Dice, centre: Point, radius: f32, flat: f32, tilt: f32)
 }
 
 /// An angular fragment.
-pub fn shard(dice: &mut Dice, centre: Point, radius: f32) -> Vec<Point> {
+pub(crate) fn shard(dice: &mut Dice, centre: Point, radius: f32) -> Vec<Point> {
     let corners = [3, 4, 4, 5][dice.between(0.0, 4.0) as usize];
     let turn = dice.turn();
     let step = std::f32::consts::TAU / corners as f32;
@@ -310,7 +310,7 @@ pub fn shard(dice: &mut Dice, centre: Point, radius: f32) -> Vec<Point> {
 }
 
 /// The outline of a nodule of chert: a flattened ellipse with blunt ends.
-pub fn nodule([x, y]: Point, [half, rise]: [f32; 2]) -> Vec<Point> {
+pub(crate) fn nodule([x, y]: Point, [half, rise]: [f32; 2]) -> Vec<Point> {
     let at = |step: usize| {
         let (sin, cos) = (step as f32 * std::f32::consts::TAU / 14.0).sin_cos();
         [x + half * cos.signum() * cos.abs().powf(0.75), y + rise * sin.signum() * sin.abs().powf(0.65)]
@@ -319,7 +319,7 @@ pub fn nodule([x, y]: Point, [half, rise]: [f32; 2]) -> Vec<Point> {
 }
 
 /// A valve of a shell: a crescent, `half` wide to each side. `up` is 1 for a hollow below, −1 for one above.
-pub fn shell(centre: Point, half: f32, up: f32) -> Vec<Point> {
+pub(crate) fn shell(centre: Point, half: f32, up: f32) -> Vec<Point> {
     let arc = |from: f32, to: f32, high: f32| {
         (0..16).map(move |step| {
             let angle = from + (to - from) * step as f32 / 16.0;
@@ -331,7 +331,7 @@ pub fn shell(centre: Point, half: f32, up: f32) -> Vec<Point> {
 }
 
 /// Short lines across an outline at `angle` from the horizontal, `gap` apart, kept `inset` from its edge along them.
-pub fn hatch(tile: &mut Tile, outline: &[Point], angle: f32, gap: f32, inset: f32, width: f32) {
+pub(crate) fn hatch(tile: &mut Tile, outline: &[Point], angle: f32, gap: f32, inset: f32, width: f32) {
     let (sin, cos) = angle.sin_cos();
     // Along the lines and across them.
     let turned: Vec<Point> = outline.iter().map(|p| [p[0] * cos + p[1] * sin, p[1] * cos - p[0] * sin]).collect();
@@ -358,7 +358,7 @@ pub fn hatch(tile: &mut Tile, outline: &[Point], angle: f32, gap: f32, inset: f3
 }
 
 /// The places of signs in staggered rows: an even number of rows, each shifted by half a step against the one above.
-pub fn staggered(side: f32, rows: usize, columns: usize) -> impl Iterator<Item = Point> {
+pub(crate) fn staggered(side: f32, rows: usize, columns: usize) -> impl Iterator<Item = Point> {
     let (height, step) = (side / rows as f32, side / columns as f32);
     (0..rows).flat_map(move |row| {
         (0..columns)

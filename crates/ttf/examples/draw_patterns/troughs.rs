@@ -92,7 +92,7 @@ fn draw_run(tile: &mut Tile, run: &mut Vec<Point>) {
 }
 
 /// 609: dotted foresets.
-pub fn sandstone_crossbedded() -> Tile {
+pub(crate) fn sandstone_crossbedded() -> Tile {
     let (mut tile, mut dice) = (Tile::new(SIDE), Dice::new(6093));
     let troughs = Troughs::new(&mut dice);
     for index in 0..troughs.scoops.len() {
@@ -106,7 +106,7 @@ pub fn sandstone_crossbedded() -> Tile {
 }
 
 /// 603: foresets of grains and of pebbles in turn.
-pub fn conglomerate_crossbedded() -> Tile {
+pub(crate) fn conglomerate_crossbedded() -> Tile {
     let (mut tile, mut dice) = (Tile::new(SIDE), Dice::new(6032));
     let troughs = Troughs::new(&mut dice);
     for index in 0..troughs.scoops.len() {
@@ -151,11 +151,11 @@ fn bricks(seed: u64, course: f32, brick: f32, lean: f32) -> Tile {
 }
 
 /// 632: foresets of bricks.
-pub fn limestone_crossbedded() -> Tile {
+pub(crate) fn limestone_crossbedded() -> Tile {
     bricks(6321, 3.9, 8.0, 0.0)
 }
 
 /// 643: foresets of leaning bricks.
-pub fn dolostone_crossbedded() -> Tile {
+pub(crate) fn dolostone_crossbedded() -> Tile {
     bricks(6437, 4.6, 10.5, 2.4)
 }

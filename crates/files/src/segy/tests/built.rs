@@ -6,11 +6,11 @@ use super::super::{ByteOrder, SegyError, SegyInfo, SegyOptions, SegyProblem, Seg
 use survey::progress::Progress;
 
 /// Samples of a built trace.
-pub const SAMPLES: usize = 4;
+pub(super) const SAMPLES: usize = 4;
 
 /// One trace: header fields are set by their 1-based byte.
 #[derive(Clone)]
-pub struct Trace {
+pub(super) struct Trace {
     pub inline: i32,
     pub crossline: i32,
     header: [u8; 240],
@@ -19,16 +19,16 @@ pub struct Trace {
 }
 
 impl Trace {
-    pub fn i32(&mut self, byte: usize, value: i32) {
+    pub(super) fn i32(&mut self, byte: usize, value: i32) {
         self.order.put(&mut self.header, byte - 1, value.to_be_bytes());
     }
 
-    pub fn i16(&mut self, byte: usize, value: i16) {
+    pub(super) fn i16(&mut self, byte: usize, value: i16) {
         self.order.put(&mut self.header, byte - 1, value.to_be_bytes());
     }
 
     /// IEEE samples.
-    pub fn floats(&mut self, values: &[f32]) {
+    pub(super) fn floats(&mut self, values: &[f32]) {
         self.samples.clear();
         for value in values {
             let mut bytes = [0; 4];
@@ -40,7 +40,7 @@ impl Trace {
 
 /// A file that is being built.
 #[derive(Clone)]
-pub struct Built {
+pub(super) struct Built {
     pub text: Vec<u8>,
     binary: Vec<u8>,
     pub extended: Vec<u8>,
@@ -51,11 +51,11 @@ pub struct Built {
 impl Built {
     /// Every crossline of every inline, in that order: IEEE, 4 ms, standard bytes, 25 m bins turned by 30° at
     /// X, Y in cm. Sample k is `1000·inline + crossline + k/4`.
-    pub fn grid(inlines: &[i32], crosslines: &[i32]) -> Self {
+    pub(super) fn grid(inlines: &[i32], crosslines: &[i32]) -> Self {
         Self::grid_in(ByteOrder::Big, inlines, crosslines)
     }
 
-    pub fn grid_in(order: ByteOrder, inlines: &[i32], crosslines: &[i32]) -> Self {
+    pub(super) fn grid_in(order: ByteOrder, inlines: &[i32], crosslines: &[i32]) -> Self {
         let pairs = inlines.iter().flat_map(|&i| crosslines.iter().map(move |&x| (i, x)));
         let mut built =
             Self { text: vec![b' '; 3200], binary: vec![0; 400], extended: Vec::new(), traces: Vec::new(), order };
@@ -67,7 +67,7 @@ impl Built {
         built
     }
 
-    pub fn trace(&self, inline: i32, crossline: i32) -> Trace {
+    pub(super) fn trace(&self, inline: i32, crossline: i32) -> Trace {
         let mut trace = Trace { inline, crossline, header: [0; 240], order: self.order, samples: Vec::new() };
         trace.i32(189, inline);
         trace.i32(193, crossline);
@@ -80,27 +80,27 @@ impl Built {
         trace
     }
 
-    pub fn binary(&mut self, byte: usize, value: u16) {
+    pub(super) fn binary(&mut self, byte: usize, value: u16) {
         self.order.put(&mut self.binary, byte - 3201, value.to_be_bytes());
     }
 
-    pub fn binary_bytes<const N: usize>(&mut self, byte: usize, value: [u8; N]) {
+    pub(super) fn binary_bytes<const N: usize>(&mut self, byte: usize, value: [u8; N]) {
         self.order.put(&mut self.binary, byte - 3201, value);
     }
 
     /// Writes a line (from 1) of an ASCII textual header.
-    pub fn say(&mut self, line: usize, words: &str) {
+    pub(super) fn say(&mut self, line: usize, words: &str) {
         let start = 80 * (line - 1);
         self.text[start..start + 80].fill(b' ');
         self.text[start..start + words.len()].copy_from_slice(words.as_bytes());
     }
 
-    pub fn each(mut self, change: impl Fn(usize, &mut Trace)) -> Self {
+    pub(super) fn each(mut self, change: impl Fn(usize, &mut Trace)) -> Self {
         self.traces.iter_mut().enumerate().for_each(|(index, trace)| change(index, trace));
         self
     }
 
-    pub fn bytes(&self) -> Vec<u8> {
+    pub(super) fn bytes(&self) -> Vec<u8> {
         let mut bytes = [self.text.as_slice(), &self.binary, &self.extended].concat();
         for trace in &self.traces {
             bytes.extend(trace.header);
@@ -109,21 +109,21 @@ impl Built {
         bytes
     }
 
-    pub fn scan(&self, options: &SegyOptions) -> Result<SegyInfo, SegyError> {
+    pub(super) fn scan(&self, options: &SegyOptions) -> Result<SegyInfo, SegyError> {
         with_file(&self.bytes(), |path| scan(path, options, &Progress::silent()))
     }
 
-    pub fn read(&self, options: &SegyOptions) -> Result<SegyVolume, SegyError> {
+    pub(super) fn read(&self, options: &SegyOptions) -> Result<SegyVolume, SegyError> {
         with_file(&self.bytes(), |path| read(path, options, &Progress::silent()))
     }
 
     /// Information that is found without options.
-    pub fn info(&self) -> SegyInfo {
+    pub(super) fn info(&self) -> SegyInfo {
         self.scan(&SegyOptions::default()).unwrap_or_else(|e| panic!("{e}"))
     }
 
     /// Why it is refused without options.
-    pub fn refusal(&self) -> (SegyProblem, String) {
+    pub(super) fn refusal(&self) -> (SegyProblem, String) {
         let error = self.scan(&SegyOptions::default()).expect_err("it should have been refused");
         let sentence = format!("{error}; {}", error.remedy().unwrap_or_default());
         (error.problem, sentence)
@@ -132,7 +132,7 @@ impl Built {
 
 impl Trace {
     /// X and Y in cm at two bytes.
-    pub fn place(&mut self, x_byte: usize, y_byte: usize) {
+    pub(super) fn place(&mut self, x_byte: usize, y_byte: usize) {
         let (sin, cos) = std::f64::consts::FRAC_PI_6.sin_cos();
         let (i, x) = (f64::from(self.inline), f64::from(self.crossline));
         self.i16(71, -100);
@@ -142,7 +142,7 @@ impl Trace {
 }
 
 /// Calls `work` with the path of a file that holds `bytes`.
-pub fn with_file<T>(bytes: &[u8], work: impl FnOnce(&std::path::Path) -> T) -> T {
+pub(super) fn with_file<T>(bytes: &[u8], work: impl FnOnce(&std::path::Path) -> T) -> T {
     let mut file = tempfile::NamedTempFile::new().unwrap();
     file.write_all(bytes).unwrap();
     file.flush().unwrap();
