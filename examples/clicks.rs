@@ -153,7 +153,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let entry = project.document().horizons.iter().find(|entry| entry.name == *name).ok_or("no such horizon")?;
     let horizon = content::read_horizon(project.root(), entry, &progress)?;
     let start = Instant::now();
-    let times = Times::load(project.root(), project.document(), &progress)?;
+    let times = Times::load(project.facts(), &progress)?;
     println!("read: {:.2} s", start.elapsed().as_secs_f64());
     let mut nodes = Vec::new();
     for sheet in from_horizon(&horizon, &geometry, &FaultNetwork::none()) {

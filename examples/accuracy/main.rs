@@ -308,7 +308,7 @@ fn devices(cases: &[Case]) -> Result<()> {
         renderer.adapter_name()
     );
     println!("| model | lookup | off edges, of 255 | differing edges |\n|---|---|---|---|");
-    for (version, case) in cases.iter().enumerate() {
+    for (number, case) in (1..).zip(cases) {
         let extent = case.geometry.metric_from_voxel() * VoxelBox::of_size(case.geometry.size()).high();
         let layers = case.stratigraphy.layer_names_bottom_up().into_iter();
         let thickness_m = (extent.z / case.model.layer_count() as f64) as f32;
@@ -324,7 +324,7 @@ fn devices(cases: &[Case]) -> Result<()> {
             param: Some(&case.param),
             packed: Some(&case.packed),
             tables: Some(&tables),
-            version: version as u64,
+            data_key: number,
             ..Inputs::raw(&case.geometry, &[])
         };
         for lookup in [Lookup::Exact, Lookup::Packed] {

@@ -17,7 +17,7 @@ mod store;
 
 use param::{PackedVolume, ParamSettings, Parameterization};
 use project::error::ProjectError;
-use project::pictures::load::{self, Loaded, Rock, Stage};
+use project::pictures::load::{Loaded, Rock, Stage};
 use project::pictures::{Device, Painter};
 use render::{Lookup, Scene};
 use serde::Serialize;
@@ -212,13 +212,13 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
             geometry,
             rock: Some(Arc::new(rock)),
             volumes: Vec::new(),
-            packed: Some(packed),
+            packed: Some(Arc::new(packed)),
             candidates: None,
-            wells: Vec::new(),
+            wells: Arc::default(),
             raw: None,
             tables: Some(tables),
-            version: load::new_version(),
-            data_version: load::new_version(),
+            data_key: side as u64,
+            key: side as u64,
         },
     ))
 }

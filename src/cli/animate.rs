@@ -13,7 +13,8 @@ use image::RgbaImage;
 use page::FileFormat;
 use page::animation::{AnimationShape, AnimationWriter};
 use project::folder::refuse_inside_project;
-use project::pictures::{Device, Motion, Painter, load, scene, write_png};
+use project::pictures::load::{self, Request};
+use project::pictures::{Device, Motion, Painter, scene, write_png};
 use project::{Project, memory_budget};
 use render::Scene;
 use std::fs::{self, File};
@@ -188,12 +189,13 @@ pub(super) fn animate(request: &AnimateRequest, progress: &Progress) -> anyhow::
     };
     // A blend in between needs everything that any blend needs.
     let is_blended = start.blend > 0.0 || !matches!(motion, Motion::Turntable { .. } | Motion::Section { .. });
-    let needed = Scene { blend: if is_blended && !document.volumes.is_empty() { 0.5 } else { 0.0 }, ..start.clone() };
-    let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
-    let mut loaded = load::load_within(&project, &needed, volume_bytes, progress)?;
+    let blend = if is_blended && !document.volumes.is_empty() { 0.5 } else { 0.0 };
+    let mut needed = Scene { blend, ..start.clone() };
     if let Motion::To(end) = &motion {
-        load::read_more(&project, &loaded, end, progress)?.add_to(&mut loaded);
+        load::add_needs(&mut needed, end);
     }
+    let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
+    let loaded = load::load(project.facts(), &Request::new(&needed).within(volume_bytes), progress)?;
     let mut painter = Painter::new(request.device, progress)?;
     let draw = |frame: u32| -> anyhow::Result<RgbaImage> {
         let at = share(frame, request.frames, motion.is_closed(), request.is_once);

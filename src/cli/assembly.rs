@@ -140,7 +140,7 @@ pub(super) fn fault_accept(project: PathBuf, id: u32, name: String) -> Request {
 pub(super) fn evaluate(project: &Path, truth: &Path, progress: &Progress) -> anyhow::Result<Report> {
     let project = Project::open(project)?;
     let truth = project::chains::demo::survey_files::read_truth(truth)?;
-    let candidates = Candidates::load(project.root(), project.document(), progress)?;
+    let candidates = Candidates::load(project.facts(), progress)?;
     let size = candidates.forest.surfaces.size;
     if size != truth.size {
         bail!(

@@ -4,10 +4,10 @@ use super::args::ViewArgs;
 use super::request::{Usage, numbers};
 use glam::{DVec2, DVec3};
 use project::Project;
-use project::pictures::load;
+use project::pictures::load::Wells;
 use render::{Corner, CutShape, Scene, Side, VoxelBox};
-use survey::SurveyGeometry;
 use survey::block::Leaves;
+use survey::{Progress, SurveyGeometry};
 
 /// A box in line numbers and vertical values: two inlines, two crosslines, two values.
 pub(super) type LineBox = [f64; 6];
@@ -114,9 +114,9 @@ pub(super) fn find_wells(cuts: &mut [Cut], project: &Project) -> anyhow::Result<
             let FenceCorner::Well(name) = corner else { continue };
             let frame = project.document().frame()?;
             if wells.is_none() {
-                wells = Some(load::read_wells(project.root(), project.document(), frame)?);
+                wells = Some(project.facts().get(&Wells, &Progress::silent())?);
             }
-            let well = wells.iter().flatten().find(|well| well.name == *name);
+            let well = wells.iter().flat_map(|wells| wells.iter()).find(|well| well.name == *name);
             let Some(head) = well.and_then(|well| well.path.first()) else {
                 let known: Vec<&str> = project.document().wells.iter().map(|well| well.name.as_str()).collect();
                 anyhow::bail!(

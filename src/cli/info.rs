@@ -6,7 +6,8 @@ use files::ImportOptions;
 use files::segy::{SegyFile, SegyOptions};
 use project::Project;
 use project::error::Noun;
-use project::pictures::{load, scene};
+use project::pictures::load::{self, Request};
+use project::pictures::scene;
 use render::{FaceData, Scene};
 use serde_json::json;
 use std::path::Path;
@@ -84,7 +85,7 @@ fn distortion(project: &Project, report: &mut Report, progress: &Progress) -> an
     }
     let scene = scene::choose(document, None)?;
     let scene = Scene { exaggeration: 1.0, blend: 0.0, face_data: FaceData::Distortion, ..scene };
-    let loaded = load::load(project, &scene, progress)?;
+    let loaded = load::load(project.facts(), &Request::new(&scene), progress)?;
     super::distortion::say(document, &loaded.distortion(&scene, progress)?, report);
     Ok(())
 }

@@ -260,14 +260,15 @@ fn parameterize(
     if let Some(change) = change {
         report.say(project.apply(&Command::SetParameterization(change), progress)?.summary());
     }
-    let Some(mut rock) = load::rock(&project, progress)? else {
+    let Some(rock) = load::rock(project.facts(), progress)? else {
         return Err(ProjectError::NoLayers.into());
     };
     let fresh = !derived::holds_volumes(project.root(), &rock.key, size, progress);
+    let mut stages = rock.stages.clone();
     if fresh {
         let start = Instant::now();
         rock.keep_voxels(&project, size, memory, progress)?;
-        rock.stages.push(Stage::new("sampling", start.elapsed()));
+        stages.push(Stage::new("sampling", start.elapsed()));
     }
     let out = derived::volumes_path(project.root());
     let (model, parameterization) = (&rock.model, &rock.parameterization);
@@ -284,7 +285,7 @@ fn parameterize(
     for note in model.report().notes.iter().filter(|note| !note.is_contradiction()) {
         report.say(format!("  {note}"));
     }
-    for stage in &rock.stages {
+    for stage in &stages {
         report.say(format!("  {}: {:.2} s", stage.stage, stage.seconds));
     }
     if !fresh {
@@ -299,7 +300,7 @@ fn parameterize(
         .field("bytes", parameterization.bytes())
         .field("key", &rock.key)
         .field("computed", fresh)
-        .field("stages", &rock.stages)
+        .field("stages", stages)
         .field("notes", notes);
     Ok(report)
 }

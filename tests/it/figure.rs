@@ -255,8 +255,9 @@ mod window {
     use ::app::views::sections::Sections;
     use ::app::work::Rocks;
     use ::figure::map::Mapped;
+    use ::project::pictures::load::{Request, load};
     use render::Scene;
-    use std::sync::{Arc, RwLock};
+    use std::sync::Arc;
     use survey::Progress;
 
     /// What the window exports of a project looked at in some way.
@@ -272,8 +273,7 @@ mod window {
     /// What the window shows.
     fn shown(at: &Path) -> Rocks {
         let opened = ::project::Project::open(&at.join("p.petro")).unwrap();
-        let loaded = project::pictures::load::load(&opened, &Scene::default(), &Progress::silent()).unwrap();
-        Arc::new(RwLock::new(loaded))
+        Arc::new(load(opened.facts(), &Request::new(&Scene::default()), &Progress::silent()).unwrap())
     }
 
     /// The same while the window shows something.
@@ -292,8 +292,9 @@ mod window {
             ..ExportForm::new(path)
         };
         let mapped = Mapped::Structure(1);
-        let page = Page::of(&session, &Overlay::default(), &Sections::default(), mapped, &form, Some(rocks)).unwrap();
+        let page = Page::of(&session, &Overlay::default(), &Sections::default(), mapped, &form).unwrap();
         page.write(&Progress::silent()).unwrap();
+        drop(rocks);
         image::open(at.join("window.png")).unwrap().to_rgb8()
     }
 

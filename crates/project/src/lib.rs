@@ -12,6 +12,7 @@
 //! | [`document`] | the state: what `project.toml` says |
 //! | [`folder`] | how a state, its history and its data lie on disk, and the one place that deletes |
 //! | [`content`], [`styles`] | volumes, horizons, faults, wells and patterns read by the names of a project |
+//! | [`facts`] | what follows from a state, asked for in one way: found in memory, on disk, or computed |
 //! | [`derived`] | what was computed, kept by key |
 //! | [`interpretation`] | from a volume to candidates, from picks to a horizon, from horizons to proposed faults |
 //! | [`check`] | a project verified and repaired |
@@ -30,6 +31,7 @@ pub mod derived;
 pub mod document;
 pub mod error;
 pub mod exports;
+pub mod facts;
 pub mod folder;
 pub mod interpretation;
 pub mod memory_budget;
@@ -37,8 +39,8 @@ pub mod pictures;
 pub mod placement;
 mod project;
 pub mod styles;
-mod weak_cache;
 
 pub use command::{Command, Effect};
 pub use error::ProjectError;
+pub use facts::{Facts, Query};
 pub use project::{HistoryLine, NewProject, Project};

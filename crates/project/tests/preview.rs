@@ -77,14 +77,8 @@ fn the_preview_is_the_page_that_is_written() {
 
 fn is_previewed(project: &Project, figure: &Figure, scene: &Scene, format: &'static FileFormat) {
     let page = |figure: &Figure, picture_dpi: Option<f64>| {
-        let settings = FigureSettings {
-            format,
-            device: Device::Cpu,
-            volume_bytes: 1 << 28,
-            fonts: Vec::new(),
-            picture_dpi,
-            rock: None,
-        };
+        let settings =
+            FigureSettings { format, device: Device::Cpu, volume_bytes: 1 << 28, fonts: Vec::new(), picture_dpi };
         make(project, figure, &InterpreterView::default(), &settings, &Progress::silent()).unwrap().page
     };
     let (written, seen) = (page(figure, None), page(figure, Some(60.0)));

@@ -12,7 +12,7 @@ use project::pictures::load::{self, Rock};
 use project::{ProjectError, content};
 use pyo3::prelude::*;
 use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use store::{ParameterizationWriter, StoredVolume};
 use survey::{Progress, SurveyGeometry, TriangleMesh};
@@ -57,8 +57,8 @@ impl Project {
         py.detach(open).map_err(|error| refusal::of(py, error))
     }
 
-    fn rock(project: &project::Project, progress: &Progress) -> Result<Rock, ProjectError> {
-        load::rock(project, progress)?.ok_or(ProjectError::NoLayers)
+    fn rock(project: &project::Project, progress: &Progress) -> Result<Arc<Rock>, ProjectError> {
+        load::rock(project.facts(), progress)?.ok_or(ProjectError::NoLayers)
     }
 }
 
@@ -249,7 +249,7 @@ impl Project {
             let project = self.lock();
             let rock = Self::rock(&project, progress)?;
             system::memory::check("i, j and k for each voxel", &part, VOXEL_BYTES)?;
-            Ok(rock.parameterization.voxel_box(&rock.model, size, start, part, progress)?)
+            Ok(rock.parameterization.voxel_box(&*rock.model, size, start, part, progress)?)
         };
         let sampled =
             long(py, progress.as_ref(), |progress| on(threads, || sample(progress).map_err(petroglyph::explain)))?;

@@ -79,8 +79,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         volumes: &volumes,
         candidates: None,
         wells: &[],
-        version: 1,
-        data_version: 1,
+        data_key: 1,
     };
     let whole = VoxelBox::of_size(geometry.size());
     let base = Scene { size_px: [800, 640], samples: 2, exaggeration: 1.5, ..Scene::default() };

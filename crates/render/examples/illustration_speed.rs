@@ -165,8 +165,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         volumes: &volumes,
         candidates: None,
         wells: &[],
-        version: 1,
-        data_version: 1,
+        data_key: 1,
     };
     let mut processor = CpuRenderer::default();
     let mut adapter = if options.device == "cpu" { None } else { Some(Renderer::headless()?) };

@@ -156,7 +156,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let geometry = SurveyGeometry::regular([options.side; 3], 1.0, 1.0, VerticalUnit::Metres);
     let volumes = [NamedVolume::whole("v", &volume)];
-    let inputs = Inputs { version: 1, data_version: 1, ..Inputs::raw(&geometry, &volumes) };
+    let inputs = Inputs { data_key: 1, ..Inputs::raw(&geometry, &volumes) };
     let quiet = Progress::silent();
     let mut processor = CpuRenderer::default();
     let mut adapter = if options.device == "cpu" { None } else { Some(Renderer::headless()?) };

@@ -31,12 +31,9 @@ pub struct Inputs<'a> {
     pub candidates: Option<CandidateVolume<'a>>,
     /// Wells.
     pub wells: &'a [DrawnWell<'a>],
-    /// Version of the data. It must change whenever the data behind any of these references changes; uploaded
-    /// data are reused while it stays the same.
-    pub version: u64,
-    /// Version of all but the styles (`tables`): of what a ray can hit. What is kept of model and volumes is used again
-    /// while it stays the same, whatever styles change; 0: never.
-    pub data_version: u64,
+    /// A hash of all but the styles (`tables`): of what a ray can hit. What was uploaded and what is kept of model and
+    /// volumes is used again while it stays the same, whatever styles change; 0: never.
+    pub data_key: u64,
 }
 
 /// A scalar volume and the part of the survey that it covers. Its size and extent may differ from the
@@ -250,8 +247,7 @@ impl<'a> Inputs<'a> {
             volumes,
             candidates: None,
             wells: &[],
-            version: 0,
-            data_version: 0,
+            data_key: 0,
         }
     }
 }

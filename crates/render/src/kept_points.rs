@@ -23,14 +23,14 @@ pub(crate) struct PicturePoints {
 /// What the points of a picture depend on.
 #[derive(Debug, PartialEq)]
 struct PointsOf {
-    data_version: u64,
+    data_key: u64,
     is_illustrated: bool,
     /// The scene in the colours of any other.
     scene: Scene,
 }
 
 impl PointsOf {
-    fn new(resolved: &ResolvedScene, data_version: u64) -> Self {
+    fn new(resolved: &ResolvedScene, data_key: u64) -> Self {
         let outlines = resolved.scene.outlines;
         let mut shapes = Outlines::none();
         shapes.edges.width_px = outlines.edges.width_px;
@@ -47,7 +47,7 @@ impl PointsOf {
             labels: Vec::new(),
             ..resolved.scene.clone()
         };
-        Self { data_version, is_illustrated: resolved.illustrated, scene }
+        Self { data_key, is_illustrated: resolved.illustrated, scene }
     }
 }
 
@@ -88,16 +88,16 @@ impl KeptPoints {
         };
         let needed = bytes([width, height], resolved.scene.samples);
         let is_fixed = resolved.scene.face_data == FaceData::Distortion;
-        if resolved.field.is_some() || !is_clear || is_fixed || inputs.data_version == 0 || needed > self.max_bytes {
+        if resolved.field.is_some() || !is_clear || is_fixed || inputs.data_key == 0 || needed > self.max_bytes {
             return None;
         }
-        let of = PointsOf::new(resolved, inputs.data_version);
+        let of = PointsOf::new(resolved, inputs.data_key);
         if let Some(known) = self.pictures.iter().position(|known| known.of == of) {
             let known = self.pictures.remove(known);
             self.pictures.push(known.clone());
             return Some(known);
         }
-        self.pictures.retain(|known| known.of.data_version == of.data_version);
+        self.pictures.retain(|known| known.of.data_key == of.data_key);
         let held = |pictures: &[Arc<PicturePoints>]| -> usize {
             pictures.iter().map(|known| bytes(known.of.scene.size_px, known.of.scene.samples)).sum()
         };

@@ -50,7 +50,7 @@ pub fn render(scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<Rgb
     CpuRenderer::default().render(scene, inputs, progress)
 }
 
-/// The CPU renderer. It keeps what it has computed from the data while [`Inputs::data_version`] stays the same.
+/// The CPU renderer. It keeps what it has computed from the data while [`Inputs::data_key`] stays the same.
 #[derive(Debug, Default)]
 pub struct CpuRenderer {
     kept: Kept,

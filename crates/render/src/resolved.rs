@@ -92,7 +92,7 @@ impl<'a> ResolvedScene<'a> {
         }
         let volumes = resolve_volumes(&tables, &media, inputs.volumes)?;
         let roaming_box = scene.box_in(inputs.geometry);
-        kept.renew(inputs.data_version);
+        kept.renew(inputs.data_key);
         let relief = resolve_relief(scene, inputs, interpretation, kept)?;
         let hidden =
             tables.globals.blend >= 1.0 && tables.globals.raw_volume != NONE && tables.globals.no_data[3] >= 1.0;

@@ -116,7 +116,7 @@ impl CoverMaker<'_> {
         let volumes = self.loaded.named_volumes();
         let raw = self.loaded.raw.as_ref();
         let volume = raw.and_then(|raw| volumes.iter().find(|volume| volume.name == raw.volume));
-        let model = self.loaded.rock.as_ref().map(|rock| &rock.model);
+        let model = self.loaded.rock.as_ref().map(|rock| &*rock.model);
         let [width, height] = size.map(|n| n as u32);
         let ground = ground.zip(model).map(|(heights, model)| heights.on(model));
         let texel = |n: u32| {

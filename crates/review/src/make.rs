@@ -16,7 +16,7 @@ use project::Project;
 use project::content;
 use project::document::{Document, NoteEntry};
 use project::error::ProjectError;
-use project::pictures::load::{self, Loaded, Rock};
+use project::pictures::load::{self, Loaded, Request, Rock};
 use project::pictures::{Device, Painter, figures, scene};
 use project::styles;
 use render::ground::is_air;
@@ -25,7 +25,7 @@ use std::collections::HashMap;
 use std::path::Path;
 use survey::block::BodyPlane;
 use survey::{Progress, VerticalUnit};
-use ttf::{Colour, LayerStyle, TextureLibrary, TtfTables};
+use ttf::{Colour, LayerStyle, RawColour, TextureLibrary};
 
 /// What a review holds, and in which detail.
 #[derive(Debug, Clone)]
@@ -107,12 +107,16 @@ pub fn make(project: &Project, settings: &ReviewSettings, progress: &Progress) -
     let document = project.document();
     let named = scenes(document, settings, progress)?;
     let has_both = !document.volumes.is_empty() && !document.horizons.is_empty();
-    let first = Scene { blend: if has_both { 0.5 } else { named[0].1.blend }, ..named[0].1.clone() };
-    let loaded = load::load_within(project, &first, settings.volume_bytes, progress)?;
+    let mut first = Scene { blend: if has_both { 0.5 } else { named[0].1.blend }, ..named[0].1.clone() };
+    named[1..].iter().for_each(|(_, scene)| load::add_needs(&mut first, scene));
+    let request = Request::new(&first).within(settings.volume_bytes);
+    let loaded = load::load(project.facts(), &request, progress)?;
     let library = styles::pattern_library(project.root(), document)?;
     let mut maker = Maker {
         project,
         settings,
+        has_both,
+        raw: loaded.raw.clone(),
         loaded,
         library: &library,
         painter: Painter::new(settings.device, progress)?,
@@ -128,7 +132,7 @@ pub fn make(project: &Project, settings: &ReviewSettings, progress: &Progress) -
     let (horizons, faults) = maker.surfaces(named.iter().any(|(_, scene)| scene.ground.is_some()))?;
     let wells = maker.wells()?;
     let layers = maker.layers(document)?;
-    let loaded = maker.loaded;
+    let loaded = Loaded { raw: maker.raw, ..maker.loaded };
     let raw = loaded.raw.as_ref().map(|raw| RawScale {
         volume: raw.volume.clone(),
         function: raw.function.clone(),
@@ -210,6 +214,10 @@ fn with_cuts(scene: &Scene, sets: &[Vec<usize>], taken: u32) -> Scene {
 struct Maker<'a> {
     project: &'a Project,
     settings: &'a ReviewSettings,
+    /// Whether there are measured data and rock, between which a view can blend.
+    has_both: bool,
+    /// The colours of measured data in scenes that state none.
+    raw: Option<RawColour>,
     loaded: Loaded,
     library: &'a TextureLibrary,
     painter: Painter,
@@ -221,7 +229,7 @@ struct Maker<'a> {
 impl Maker<'_> {
     /// A scene with its block, its pictures among the covers.
     fn scene(&mut self, name: &str, scene: &Scene) -> Result<SceneModel, ProjectError> {
-        self.style_for(scene)?;
+        self.load_for(scene)?;
         // Faces are those of the rock, whatever the volume rendering of the scene leaves of them.
         let solid = Scene { media: Default::default(), ..scene.clone() };
         let ground = match (&scene.ground, &self.loaded.rock) {
@@ -248,7 +256,6 @@ impl Maker<'_> {
         let cuts = (1..=sets.len()).map(|n| if all == 1 { "Cut-out".to_owned() } else { format!("Cut-out {n}") });
         let cuts: Vec<String> = cuts.collect();
         let shown = Scene { size_px: PICTURE_PX, samples: 2, ..scene.clone() };
-        load::read_more(self.project, &self.loaded, &shown, self.progress)?.add_to(&mut self.loaded);
         let picture = self.painter.picture(&shown, &self.loaded, POINTS_PER_INCH, self.progress)?;
         Ok(SceneModel {
             name: name.to_owned(),
@@ -261,21 +268,17 @@ impl Maker<'_> {
         })
     }
 
-    /// Compiles the styles for the preset of a scene.
-    fn style_for(&mut self, scene: &Scene) -> Result<(), ProjectError> {
-        let document = self.project.document();
-        let functions = styles::transfer_functions(document).printed(scene.preset);
-        if let Some(rock) = &self.loaded.rock {
-            let names = document.stratigraphy().layer_names_bottom_up();
-            let extent = load::block_extent(&self.loaded.geometry, rock, names);
-            self.loaded.tables = Some(TtfTables::compile(&functions, &extent, self.library)?);
-            self.loaded.version = load::new_version();
-        }
+    /// Loads what a scene needs, in its own styles; most of it is in memory.
+    fn load_for(&mut self, scene: &Scene) -> Result<(), ProjectError> {
+        let blend = if self.has_both { 0.5 } else { scene.blend };
+        let needed = Scene { blend, raw: scene.raw.clone().or_else(|| self.raw.clone()), ..scene.clone() };
+        let request = Request::new(&needed).within(self.settings.volume_bytes);
+        self.loaded = load::load(self.project.facts(), &request, &self.progress.muted())?;
         Ok(())
     }
 
     fn block(&mut self, scene: &Scene, ground: Option<&Heights>) -> Result<Block, ProjectError> {
-        let model = self.loaded.rock.as_ref().map(|rock| &rock.model);
+        let model = self.loaded.rock.as_ref().map(|rock| &*rock.model);
         let on = ground.zip(model).map(|(heights, model)| heights.on(model));
         let (mut block, wanted) = block_of(scene, &self.loaded.geometry, model, on.as_ref());
         let mut covers = Vec::with_capacity(wanted.len());
@@ -358,7 +361,7 @@ impl Maker<'_> {
         if count == 0 {
             return Ok(Vec::new());
         }
-        self.style_for(scene)?;
+        self.load_for(scene)?;
         let block = scene.box_in(&self.loaded.geometry);
         let (low, high) = (block.low(), block.high());
         let mut stacks = Vec::new();
@@ -376,7 +379,7 @@ impl Maker<'_> {
                 };
                 let plane = Some(BodyPlane::of_axis(axis, at as f32, 1.0));
                 let cover = self.cover(&Wanted { plane, rectangle, shade: None }, scene, None, SECTION_DENSITY)?;
-                let model = self.loaded.rock.as_ref().map(|rock| &rock.model);
+                let model = self.loaded.rock.as_ref().map(|rock| &*rock.model);
                 let lines = model.map_or_else(Vec::new, |model| lines_on(model, &rectangle));
                 stack.places.push(SectionPlace { at, cover, lines });
             }

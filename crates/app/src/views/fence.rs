@@ -51,7 +51,7 @@ impl FenceView {
         &mut self,
         ui: &mut Ui,
         session: &Session,
-        rocks: Option<(&Rocks, u64)>,
+        rocks: Option<&Rocks>,
         slices: &Slices,
         overlay: &mut Overlay,
         actions: &mut Vec<Action>,
@@ -65,8 +65,8 @@ impl FenceView {
         }
         let is_interpreting = session.view.panel == Panel::Interpret;
         let show = if is_interpreting { session.view.picking.show } else { FaceData::Rock };
-        if let Some((rocks, version)) = rocks {
-            let requested = (corners.clone(), version, show);
+        if let Some(rocks) = rocks {
+            let requested = (corners.clone(), rocks.key, show);
             if self.requested.as_ref() != Some(&requested) {
                 slices.cut_fence(FenceRequest { corners: corners.clone(), rocks: rocks.clone(), show });
                 self.requested = Some(requested);
@@ -86,8 +86,7 @@ impl FenceView {
         let at = place(&corners, f64::from(share.x) * length);
         let voxel = at.extend(f64::from(share.y) * depth);
         lasso::click(ui, &response, session, voxel, actions);
-        let loaded = rocks?.0.try_read().ok()?;
-        Some(pointed::at_voxel(&loaded, voxel.as_vec3(), None))
+        Some(pointed::at_voxel(rocks?, voxel.as_vec3(), None))
     }
 
     /// Paints the fence with its numbers into a rectangle; nothing until it has been cut.

@@ -61,7 +61,7 @@ impl Presentation {
         session: &Session,
         at: usize,
         (block, overlay): (&mut BlockView, &Overlay),
-        (rocks, drawing): (Option<(&Rocks, u64)>, &Drawing),
+        (rocks, drawing): (Option<&Rocks>, &Drawing),
         actions: &mut Vec<Action>,
     ) {
         obey(ui.ctx(), session, at, actions);

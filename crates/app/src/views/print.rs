@@ -8,7 +8,7 @@ use super::sections::Sections;
 use crate::state::picking::place_of;
 use crate::state::{Compare, ExportForm, Layout, Panel, SectionFill, SectionKind, Session, Shown, State, showing};
 use crate::widgets::page::PREVIEW_DPI;
-use crate::work::{Rocks, compute};
+use crate::work::compute;
 use figure::cut::value_at;
 use figure::draw::block::Comparison;
 use figure::map::Mapped;
@@ -20,7 +20,6 @@ use project::pictures::figures::{self, FigureSettings, InterpreterView};
 use project::{Project, ProjectError, memory_budget};
 use render::{Background, FaceData, Scene};
 use std::path::{Path, PathBuf};
-use std::sync::PoisonError;
 use survey::{Progress, SurveyGeometry};
 use ttf::{Colour, Preset};
 
@@ -33,8 +32,6 @@ pub struct Page {
     figure: Figure,
     view: InterpreterView,
     path: String,
-    /// What the block on the screen is drawn from.
-    rocks: Option<Rocks>,
 }
 
 impl Page {
@@ -45,7 +42,6 @@ impl Page {
         sections: &Sections,
         mapped: Mapped,
         form: &ExportForm,
-        rocks: Option<Rocks>,
     ) -> Option<Self> {
         let geometry = session.document.geometry.as_ref()?;
         let is_interpreting = session.view.panel == Panel::Interpret;
@@ -69,7 +65,7 @@ impl Page {
             preset: Some(session.view.scene.preset),
         };
         let view = interpreter_view(session, overlay.selected());
-        Some(Self { root: session.root.clone(), figure, view, path: form.path.clone(), rocks })
+        Some(Self { root: session.root.clone(), figure, view, path: form.path.clone() })
     }
 
     /// What the page shows.
@@ -101,16 +97,14 @@ impl Page {
         FileFormat::of_page(Path::new(&self.path)).unwrap_or(FileFormat::usual())
     }
 
-    /// How it is drawn: from the model on the screen, where that is of the project's state.
+    /// How it is drawn.
     fn settings(&self, picture_dpi: Option<f64>) -> FigureSettings {
-        let known = |rocks: &Rocks| rocks.read().unwrap_or_else(PoisonError::into_inner).rock.clone();
         FigureSettings {
             format: self.format(),
             device: Device::Auto,
             volume_bytes: memory_budget::half_of_available(),
             fonts: Vec::new(),
             picture_dpi,
-            rock: self.rocks.as_ref().and_then(known),
         }
     }
 

@@ -10,7 +10,7 @@ const SAMPLES: usize = 1 << 16;
 /// The histogram of a volume.
 pub struct Histogram {
     /// Hash of the data that were counted.
-    pub version: u64,
+    pub data_key: u64,
     counts: Vec<f32>,
     /// Lowest and highest value.
     pub range: [f32; 2],
@@ -18,7 +18,7 @@ pub struct Histogram {
 
 impl Histogram {
     /// Counts samples.
-    pub fn of(samples: &[f32], version: u64) -> Self {
+    pub fn of(samples: &[f32], data_key: u64) -> Self {
         let step = (samples.len() / SAMPLES).max(1);
         let values = || samples.iter().step_by(step).copied().filter(|value| value.is_finite());
         let range = [values().fold(f32::INFINITY, f32::min), values().fold(f32::NEG_INFINITY, f32::max)];
@@ -29,7 +29,7 @@ impl Histogram {
         }
         // Amplitudes cluster around zero; the square root makes the tails visible.
         counts.iter_mut().for_each(|count| *count = count.sqrt());
-        Self { version, counts, range }
+        Self { data_key, counts, range }
     }
 
     /// Draws the columns, each in the colour of its value.

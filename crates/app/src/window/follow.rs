@@ -66,8 +66,7 @@ impl Window {
                 }
                 Event::Ready { root, rocks } => {
                     if self.has_open(&root) {
-                        let number = self.views.rocks.as_ref().map_or(1, |(_, number)| number + 1);
-                        self.views.rocks = Some((rocks, number));
+                        self.views.rocks = Some(rocks);
                     }
                 }
                 Event::Drawn(drawn) => self.views.block.receive(ctx, drawn),

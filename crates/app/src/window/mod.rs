@@ -220,8 +220,7 @@ impl Window {
     /// What is on the screen as a page.
     fn page(&self, form: &ExportForm) -> Option<Page> {
         let session = self.state.session.as_ref()?;
-        let rocks = self.views.rocks.as_ref().map(|(rocks, _)| rocks.clone());
-        Page::of(session, &self.views.overlay, &self.views.sections, self.views.map.mapped(session), form, rocks)
+        Page::of(session, &self.views.overlay, &self.views.sections, self.views.map.mapped(session), form)
     }
 
     /// Where a failure of the task is shown.
@@ -365,15 +364,13 @@ impl Window {
             Some(Dialogue::Export(form)) => {
                 if let Some(session) = &self.state.session {
                     let is_drawing = self.work.running.lines().iter().any(|line| line.place == Place::Dialogue);
-                    let loaded = self.views.rocks.as_ref().and_then(|(rocks, _)| rocks.try_read().ok());
-                    let sparse = loaded.as_ref().map_or_else(Vec::new, |loaded| loaded.sparse());
+                    let sparse = self.views.rocks.as_ref().map_or_else(Vec::new, |loaded| loaded.sparse());
                     let shows = export::Shows { form, is_drawing, sparse: &sparse };
                     let asks = export::show(ctx, &self.state, session, shows, &mut self.views.preview, actions);
                     // Where the file lies changes nothing on the page.
                     let form = ExportForm { path: String::new(), ..form.clone() };
                     let is_outdated =
                         self.views.preview.has_page() && !is_drawing && self.views.previewed.as_ref() != Some(&form);
-                    drop(loaded);
                     if asks || is_outdated {
                         self.look_at(form);
                     }

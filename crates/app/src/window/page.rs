@@ -33,7 +33,7 @@ impl Window {
                 });
                 return;
             }
-            let rocks = self.views.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
+            let rocks = self.views.rocks.as_ref();
             let whole = ui.available_rect_before_wrap();
             self.views.pointed = None;
             for (part, rect) in parts(session.view.layout, whole) {
@@ -81,7 +81,7 @@ impl Window {
         ui.separator();
         match session.view.panel {
             Side::Layers => {
-                let rocks = self.views.rocks.as_ref().map(|(rocks, version)| (rocks, *version));
+                let rocks = self.views.rocks.as_ref();
                 self.views.layers.show(
                     ui,
                     &self.state,
@@ -97,7 +97,7 @@ impl Window {
             }
             Side::Values => {
                 notices::show(ui, &self.state, Place::Data, actions);
-                let rocks = self.views.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
+                let rocks = self.views.rocks.as_ref();
                 egui::ScrollArea::vertical().show(ui, |ui| {
                     self.views.functions.show(ui, session, rocks, &self.swatches, actions);
                 });
@@ -115,9 +115,9 @@ fn within(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
 }
 
 /// What the map is made from: while interpreting there is no model.
-fn map_source(session: &Session, rocks: Option<(&Rocks, u64)>, overlay: &Overlay) -> Option<(MapData, u64)> {
+fn map_source(session: &Session, rocks: Option<&Rocks>, overlay: &Overlay) -> Option<(MapData, u64)> {
     if session.view.panel != Side::Interpret {
-        return rocks.map(|(rocks, version)| (MapData::Rocks(rocks.clone()), version));
+        return rocks.map(|rocks| (MapData::Rocks(rocks.clone()), rocks.key));
     }
     let (shown, geometry) = (overlay.interpreted()?, session.document.geometry.as_ref()?);
     Some((MapData::Interpreted(shown.clone(), Box::new(geometry.clone())), shown.number))

@@ -8,7 +8,6 @@ use eframe::egui::{Ui, ViewportCommand};
 use page::list::POINTS_PER_INCH;
 use project::pictures::{Device, Painter};
 use render::{Background, Scene};
-use std::sync::PoisonError;
 
 impl Window {
     /// Shows the scene that is presented; whether one is.
@@ -19,10 +18,10 @@ impl Window {
             ui.ctx().send_viewport_cmd(ViewportCommand::Fullscreen(self.is_full));
         }
         let (Some(at), Some(session)) = (at, &self.state.session) else { return false };
-        let rocks = self.views.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
+        let rocks = self.views.rocks.as_ref();
         let (views, data) = ((&mut self.views.block, &self.views.overlay), (rocks, &self.work.drawing));
         self.views.presentation.show(ui, session, at, views, data, actions);
-        if let Some(rocks) = self.views.rocks.as_ref().map(|(rocks, _)| rocks.clone())
+        if let Some(rocks) = self.views.rocks.clone()
             && self.views.presentation.asks(session)
         {
             self.draw_thumbnails(rocks);
@@ -40,12 +39,10 @@ impl Window {
             for entry in scenes {
                 let scene =
                     Scene { size_px: THUMBNAIL, samples: 2, background: Background::Transparent, ..entry.scene };
-                let loaded = rocks.read().unwrap_or_else(PoisonError::into_inner);
-                if !loaded.holds_media(&scene.media) {
+                if !rocks.holds_media(&scene.media) {
                     continue;
                 }
-                let image = compute(|| painter.picture(&scene, &loaded, POINTS_PER_INCH, progress)).map_err(told)?;
-                drop(loaded);
+                let image = compute(|| painter.picture(&scene, &rocks, POINTS_PER_INCH, progress)).map_err(told)?;
                 outbox.send(Event::Thumbnail { root: root.clone(), name: entry.name, image });
             }
             Ok(())

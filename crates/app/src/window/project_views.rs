@@ -45,7 +45,7 @@ pub(super) struct ProjectViews {
     pub(super) share: ShareView,
     pub(super) presentation: Presentation,
     pub(super) pointed: Option<Pointed>,
-    pub(super) rocks: Option<(Rocks, u64)>,
+    pub(super) rocks: Option<Rocks>,
     pub(super) needs: Option<Needs>,
     pub(super) wanted: Option<Wanted>,
     /// The selection and the sticks when the view was last saved.

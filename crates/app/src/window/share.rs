@@ -37,8 +37,7 @@ impl Window {
     pub(super) fn share_dialogue(&mut self, ctx: &Context, actions: &mut Vec<Action>) {
         let (Some(Dialogue::Share(form)), Some(session)) = (&self.state.dialogue, &self.state.session) else { return };
         let running = self.work.running.lines().into_iter().find(|line| line.place == Place::Dialogue);
-        let loaded = self.views.rocks.as_ref().and_then(|(rocks, _)| rocks.try_read().ok());
-        let sparse = loaded.map_or_else(Vec::new, |loaded| loaded.sparse());
+        let sparse = self.views.rocks.as_ref().map_or_else(Vec::new, |loaded| loaded.sparse());
         let asks = self.views.share.show(ctx, &self.state, session, (form, &sparse), running.as_ref(), actions);
         if asks || (running.is_none() && self.views.share.is_outdated(form)) {
             self.look_at_share(form.clone());

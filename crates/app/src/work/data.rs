@@ -1,28 +1,26 @@
 //! The data that pictures are drawn from: read and computed once, and shared by the threads that draw and by the query
 //! for what is under the cursor.
 //!
-//! A change of style alone only compiles the tables again; model, parameterization and volumes stay.
+//! They are facts of the project: what the window shows at present is found in memory, so that a change of style alone
+//! only compiles the tables again.
 
 use super::latest_value::{Inbox, LatestValueWorker};
 use super::running::Running;
 use super::{Event, Outbox};
 use crate::state::{Notice, Place};
-use model::ModelSettings;
-use project::Project;
-use project::document::{Document, WellEntry};
+use project::Facts;
+use project::document::Document;
 use project::error::ProjectError;
-use project::interpretation::solid;
-use project::pictures::load::{self, Loaded};
-use project::{derived, styles};
+use project::pictures::load::{self, Extent, Loaded, Request};
 use render::media::{LayerOpacity, MediumColour, white_ramp};
 use render::{FaceData, Medium, PickedHorizon, Scene};
 use std::path::PathBuf;
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::Arc;
 use survey::Progress;
-use ttf::{Colour, Preset, TtfTables};
+use ttf::{Colour, Preset};
 
-/// Loaded data. The window's thread must not wait for them; it uses `try_read`.
-pub type Rocks = Arc<RwLock<Loaded>>;
+/// Loaded data.
+pub type Rocks = Arc<Loaded>;
 
 /// A request for data.
 #[derive(Debug, Clone, PartialEq)]
@@ -93,7 +91,6 @@ impl Seen {
 struct Next {
     wanted: Option<Wanted>,
     progress: Option<Progress>,
-    forget: bool,
 }
 
 /// A latest-value worker that loads data.
@@ -119,11 +116,10 @@ impl Loader {
         });
     }
 
-    /// Drops everything that was loaded.
+    /// Stops loading.
     pub(super) fn forget(&self) {
         self.worker.change(|next| {
             next.wanted = None;
-            next.forget = true;
             next.progress.iter().for_each(Progress::cancel);
         });
     }
@@ -135,37 +131,15 @@ impl Drop for Loader {
     }
 }
 
-/// What was loaded last, and for which request.
-struct Kept {
-    root: PathBuf,
-    key: String,
-    volumes: Vec<(String, String)>,
-    seen: Seen,
-    wells: Vec<WellEntry>,
-    rocks: Rocks,
-}
-
 fn work(inbox: &Inbox<Next>, outbox: &Outbox, running: &Running) {
-    let mut kept: Option<Kept> = None;
-    loop {
-        let next = inbox.next(|next| {
-            if std::mem::take(&mut next.forget) {
-                return Some(None);
-            }
-            let wanted = next.wanted.take()?;
-            let (guard, progress) = running.begin("Preparing the picture", Place::Block, outbox.wake.clone());
-            next.progress = Some(progress.clone());
-            Some(Some((wanted, guard, progress)))
-        });
-        let (wanted, guard, progress) = match next {
-            Some(Some(next)) => next,
-            Some(None) => {
-                kept = None;
-                continue;
-            }
-            None => return,
-        };
-        let loaded = load(&wanted, &mut kept, &progress);
+    let begin = |next: &mut Next| {
+        let wanted = next.wanted.take()?;
+        let (guard, progress) = running.begin("Preparing the picture", Place::Block, outbox.wake.clone());
+        next.progress = Some(progress.clone());
+        Some((wanted, guard, progress))
+    };
+    while let Some((wanted, guard, progress)) = inbox.next(begin) {
+        let loaded = load(&wanted, &progress);
         drop(guard);
         match loaded {
             Ok(rocks) => outbox.send(Event::Ready { root: wanted.root, rocks }),
@@ -177,111 +151,22 @@ fn work(inbox: &Inbox<Next>, outbox: &Outbox, running: &Running) {
     }
 }
 
-fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result<Rocks, ProjectError> {
-    let document = &wanted.document;
-    let Purpose::Illustrate(seen) = &wanted.purpose else {
-        return load_bare(wanted, kept, progress);
-    };
-    let key = derived::parameterization_key(document, &ModelSettings::default(), &solid::param_settings(document));
-    let volumes = needed_volumes(document);
-    let same = |kept: &&Kept| kept.root == wanted.root && kept.key == key && kept.volumes == volumes;
-    if let Some(kept) = kept.as_mut().filter(|kept| same(&&**kept)) {
-        if kept.seen != *seen {
-            let project = Project::open(&wanted.root)?;
-            let scene = seen.scene(wanted.preset);
-            let more = {
-                let loaded = kept.rocks.read().unwrap_or_else(PoisonError::into_inner);
-                super::compute(|| load::read_more(&project, &loaded, &scene, progress))?
-            };
-            more.add_to(&mut kept.rocks.write().unwrap_or_else(PoisonError::into_inner));
-            kept.seen = seen.clone();
-        }
-        if kept.wells != document.wells {
-            let geometry = kept.rocks.read().unwrap_or_else(PoisonError::into_inner).geometry.clone();
-            let wells = load::read_wells(&wanted.root, document, &geometry)?;
-            let mut loaded = kept.rocks.write().unwrap_or_else(PoisonError::into_inner);
-            (loaded.wells, loaded.data_version) = (wells, load::new_version());
-            drop(loaded);
-            kept.wells.clone_from(&document.wells);
-        }
-        restyle(&kept.rocks, wanted)?;
-        return Ok(kept.rocks.clone());
-    }
-    // Drop the old data first, so that memory holds one model and its volumes rather than two.
-    *kept = None;
-    let project = Project::open(&wanted.root)?;
-    let scene = seen.scene(wanted.preset);
-    let loaded = super::compute(|| load::load(&project, &scene, progress))?;
-    let rocks = Arc::new(RwLock::new(loaded));
-    let (seen, wells) = (seen.clone(), document.wells.clone());
-    *kept = Some(Kept { root: wanted.root.clone(), key, volumes, seen, wells, rocks: rocks.clone() });
-    Ok(rocks)
-}
-
-/// The data for interpreting: the raw volume, the wells, and the candidates where they are shown.
-fn load_bare(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result<Rocks, ProjectError> {
-    let document = &wanted.document;
-    let raw = styles::transfer_functions(document).raw;
-    let entry = raw.as_ref().and_then(|raw| document.volumes.iter().find(|entry| entry.name == raw.volume));
-    let key = format!("bare {:?} {:?}", wanted.purpose, document.wells);
-    let volumes: Vec<(String, String)> = entry.iter().map(|entry| (entry.name.clone(), entry.hash.clone())).collect();
-    let same = |kept: &&Kept| kept.root == wanted.root && kept.key == key && kept.volumes == volumes;
-    if let Some(kept) = kept.as_ref().filter(same) {
-        let mut loaded = kept.rocks.write().unwrap_or_else(PoisonError::into_inner);
-        (loaded.raw, loaded.version) = (raw, load::new_version());
-        drop(loaded);
-        return Ok(kept.rocks.clone());
-    }
-    *kept = None;
-    let project = Project::open(&wanted.root)?;
-    let face_data = match &wanted.purpose {
-        Purpose::Interpret { extraction: Some(_) } => FaceData::Leaves,
-        _ => FaceData::Rock,
-    };
-    let scene = Scene { face_data, ..Scene::default() };
-    let loaded =
-        super::compute(|| load::load_bare(&project, &scene, project::memory_budget::half_of_available(), progress))?;
-    let rocks = Arc::new(RwLock::new(loaded));
-    let (seen, wells) = (Seen::default(), document.wells.clone());
-    *kept = Some(Kept { root: wanted.root.clone(), key, volumes, seen, wells, rocks: rocks.clone() });
-    Ok(rocks)
-}
-
-/// Names and hashes of the volumes that pictures of a project show.
-fn needed_volumes(document: &Document) -> Vec<(String, String)> {
-    let functions = styles::transfer_functions(document);
-    let scalars = functions.scalars.iter().map(|function| function.volume.clone());
-    let wanted: Vec<String> = scalars.chain(functions.raw.map(|raw| raw.volume)).collect();
-    let entries = document.volumes.iter().filter(|entry| wanted.contains(&entry.name));
-    entries.map(|entry| (entry.name.clone(), entry.hash.clone())).collect()
-}
-
-/// Compiles the styles of a project state into the loaded data.
-fn restyle(rocks: &Rocks, wanted: &Wanted) -> Result<(), ProjectError> {
-    let document = &wanted.document;
-    let functions = styles::transfer_functions(document).printed(wanted.preset);
-    let tables = {
-        let loaded = rocks.read().unwrap_or_else(PoisonError::into_inner);
-        match &loaded.rock {
-            None => None,
-            Some(rock) => {
-                let library = styles::pattern_library(&wanted.root, document)?;
-                let names = document.stratigraphy().layer_names_bottom_up();
-                let block = load::block_extent(&loaded.geometry, rock, names);
-                Some(TtfTables::compile(&functions, &block, &library)?)
-            }
+fn load(wanted: &Wanted, progress: &Progress) -> Result<Rocks, ProjectError> {
+    let (scene, extent) = match &wanted.purpose {
+        Purpose::Illustrate(seen) => (seen.scene(wanted.preset), Extent::Whole),
+        Purpose::Interpret { extraction } => {
+            let face_data = if extraction.is_some() { FaceData::Leaves } else { FaceData::Rock };
+            (Scene { face_data, ..Scene::default() }, Extent::Data(None))
         }
     };
-    let mut loaded = rocks.write().unwrap_or_else(PoisonError::into_inner);
-    loaded.tables = tables;
-    loaded.raw = functions.raw;
-    loaded.version = load::new_version();
-    Ok(())
+    let (facts, request) = (Facts::of(&wanted.root, &wanted.document), Request::new(&scene).of(extent));
+    super::compute(|| load::load(facts, &request, progress)).map(Arc::new)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use project::Project;
     use project::command::{AddHorizon, AddWell, Age, Command};
     use render::{Isosurface, IsosurfaceSource};
     use survey::{SurveyGeometry, VerticalUnit};
@@ -313,9 +198,8 @@ mod tests {
             preset: Preset::Colour,
             purpose: Purpose::Illustrate(Seen::default()),
         };
-        let mut kept = None;
-        let before = load(&wanted(&project), &mut kept, &Progress::silent()).unwrap();
-        assert!(before.read().unwrap().wells.is_empty());
+        let before = load(&wanted(&project), &Progress::silent()).unwrap();
+        assert!(before.wells.is_empty());
         let deviation = write("w.csv", "md_m,x_m,y_m,tvdss_m\n0,50,50,0\n30,50,50,30\n");
         let las = write(
             "w.las",
@@ -324,14 +208,15 @@ mod tests {
         let files = files::well::WellFiles { deviation, las: vec![las], ..Default::default() };
         let well = AddWell { name: "W".to_owned(), files, options: Default::default() };
         project.apply(&Command::AddWell(well), &Progress::silent()).unwrap();
-        let after = load(&wanted(&project), &mut kept, &Progress::silent()).unwrap();
-        assert_eq!(after.read().unwrap().wells.len(), 1);
+        let after = load(&wanted(&project), &Progress::silent()).unwrap();
+        assert_eq!(after.wells.len(), 1);
         // Its log is shown on sections, from its smallest to its largest value.
-        let loaded = after.read().unwrap();
-        let log = loaded.wells[0].log.as_ref().unwrap();
+        let log = after.wells[0].log.as_ref().unwrap();
         assert_eq!((log.name.as_str(), log.range, log.points.len()), ("GR", [40.0, 90.0], 3));
-        drop(loaded);
-        assert!(Arc::ptr_eq(&before, &after), "the model is not computed again");
+        let [first, second] = [&before, &after].map(|loaded| loaded.rock.clone().unwrap());
+        assert!(Arc::ptr_eq(&first, &second), "the model is not computed again");
+        // What was drawn of the data is drawn again, since they have a well more.
+        assert_ne!(before.data_key, after.data_key);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::latest_value::{Inbox, LatestValueWorker};
 use super::{Event, Interpreted, Outbox, Rocks};
 use figure::map::{HorizonMap, MapSource, Mapped};
-use std::sync::{Arc, PoisonError};
+use std::sync::Arc;
 use survey::SurveyGeometry;
 
 /// The data that a map is made from.
@@ -54,8 +54,7 @@ impl Maps {
 fn draw(request: &MapRequest) -> Option<HorizonMap> {
     match &request.data {
         MapData::Rocks(rocks) => {
-            let loaded = rocks.read().unwrap_or_else(PoisonError::into_inner);
-            HorizonMap::new(&loaded.geometry, MapSource::Model(&loaded.rock.as_ref()?.model), request.mapped)
+            HorizonMap::new(&rocks.geometry, MapSource::Model(&rocks.rock.as_ref()?.model), request.mapped)
         }
         MapData::Interpreted(shown, geometry) => {
             HorizonMap::new(geometry, MapSource::Sheets(&shown.horizons_seen()), request.mapped)

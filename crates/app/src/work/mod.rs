@@ -38,12 +38,16 @@ use figure::map::HorizonMap;
 use image::RgbaImage;
 use page::DisplayList;
 use project::command::PickNode;
+use project::{facts, memory_budget};
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, OnceLock};
 use survey::Progress;
 use threads::{keep_working, spawn, spawn_quietly};
 use ttf::Preset;
+
+/// Share of half of the memory that facts of earlier states may take, so that undo and a change of panel find them.
+const KEPT_SHARE: usize = 4;
 
 /// A result.
 pub enum Event {
@@ -159,6 +163,7 @@ pub struct Work {
 impl Work {
     /// Starts the workers.
     pub fn start(wake: Wake) -> Self {
+        facts::keep_within(memory_budget::half_of_available() as usize / KEPT_SHARE);
         let (sender, events) = channel();
         let outbox = Outbox { sender, wake };
         let running = Running::default();
@@ -219,6 +224,7 @@ impl Work {
                 self.root = None;
                 self.data.forget();
                 self.picks.forget();
+                spawn_quietly("forgetting a project", facts::drop_kept);
                 return;
             }
             // The window handles these itself.

@@ -78,7 +78,7 @@ fn times_for(order: &Order, progress: &Progress) -> Option<Arc<Times>> {
         return None;
     }
     let project = Project::open(root).ok()?;
-    Times::load(project.root(), project.document(), progress).ok()
+    Times::load(project.facts(), progress).ok()
 }
 
 fn tell_warnings(guard: &RunningGuard, place: Place, outbox: &Outbox) {

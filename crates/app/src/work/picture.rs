@@ -14,7 +14,6 @@ use page::list::POINTS_PER_INCH;
 use project::pictures::{Device, Painter};
 use render::{Media, RenderError, Scene, Shading};
 use std::path::PathBuf;
-use std::sync::PoisonError;
 use std::time::Instant;
 use survey::Progress;
 
@@ -177,7 +176,7 @@ impl Artist {
 
     /// Finds what is hit at a place and reports a click there.
     fn find(&self, touch: &Touch) {
-        let loaded = touch.rocks.read().unwrap_or_else(PoisonError::into_inner);
+        let loaded = &touch.rocks;
         let scene = loaded.complete(&touch.scene);
         let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
         match render::pick::pick(&scene, &loaded.inputs(&volumes, &wells), touch.at) {
@@ -243,10 +242,9 @@ impl Artist {
         let size_px = scene.size_px.map(|side| side.div_ceil(divisor).max(1));
         let media = media_for(&scene.media, divisor);
         let scene = Scene { size_px, samples, media, in_motion: divisor > 1, ..scene.clone() };
-        let loaded = request.rocks.read().unwrap_or_else(PoisonError::into_inner);
+        let loaded = &request.rocks;
         let start = Instant::now();
-        let image = super::compute(|| painter.picture(&scene, &loaded, POINTS_PER_INCH, progress))?;
-        drop(loaded);
+        let image = super::compute(|| painter.picture(&scene, loaded, POINTS_PER_INCH, progress))?;
         let rays = f64::from(size_px[0]) * f64::from(size_px[1]) * f64::from(samples * samples);
         self.ray_s += (start.elapsed().as_secs_f64() / rays - self.ray_s) * LATEST;
         let device = painter.device().to_owned();

@@ -12,7 +12,7 @@ use project::{ProjectError, content, styles};
 use render::{DrawnWell, FaceData, NamedVolume};
 use std::collections::HashMap;
 use std::path::PathBuf;
-use std::sync::{Arc, PoisonError};
+use std::sync::Arc;
 
 /// A request for a section.
 #[derive(Clone)]
@@ -23,8 +23,6 @@ pub struct SliceRequest {
     pub at: f64,
     /// The data that it is cut from.
     pub rocks: Rocks,
-    /// The number of these data.
-    pub version: u64,
     /// What it shows; amplitudes where no candidates are in memory.
     pub show: FaceData,
     /// The volumes in it.
@@ -33,7 +31,7 @@ pub struct SliceRequest {
     pub project: (PathBuf, Arc<Document>),
 }
 
-/// What a section shows: its position, the number of its data, what of the candidates, which volumes.
+/// What a section shows: its position, the key of its data, what of the candidates, which volumes.
 pub type CutOf = (f64, u64, FaceData, SectionVolumes);
 
 /// The latest request of each kind.
@@ -70,17 +68,13 @@ impl Slices {
                 while let Some(next) = inbox.next(Wanted::take) {
                     outbox.send(match next {
                         Next::Slice(request) => {
-                            let loaded = request.rocks.read().unwrap_or_else(PoisonError::into_inner);
-                            let mut cut = cut(&loaded, &request);
+                            let mut cut = cut(&request.rocks, &request);
                             if let Err(error) = blend(&mut cut, &request) {
                                 outbox.send(Event::Told(Notice::failure(Place::Block, &error)));
                             }
-                            Event::Sliced { cut, of: (request.at, request.version, request.show, request.volumes) }
+                            Event::Sliced { cut, of: (request.at, request.rocks.key, request.show, request.volumes) }
                         }
-                        Next::Fence(request) => {
-                            let loaded = request.rocks.read().unwrap_or_else(PoisonError::into_inner);
-                            Event::Fenced(fence::cut(&loaded, &request))
-                        }
+                        Next::Fence(request) => Event::Fenced(fence::cut(&request.rocks, &request)),
                     });
                 }
             }),

@@ -76,8 +76,7 @@ impl Fold {
             volumes: &[],
             candidates: None,
             wells: &[],
-            version: 1,
-            data_version: 1,
+            data_key: 1,
         }
     }
 

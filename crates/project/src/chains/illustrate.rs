@@ -126,7 +126,6 @@ pub fn run(
         volume_bytes: settings.volume_bytes,
         fonts: Vec::new(),
         picture_dpi: None,
-        rock: None,
     };
     let made = figures::make(&project, &figure, &InterpreterView::default(), &drawing, progress)?;
     figures::write(&made.page, format, out, DPI, &figures::title(&project))?;

@@ -3,10 +3,10 @@
 use super::{Effect, Noun, ProjectError};
 use crate::content;
 use crate::content::volume_facts::{self, Facts};
+use crate::derived::FaultBlocks;
 pub use crate::document::AttributeKind;
 use crate::document::{Origin, Polarity};
 use crate::folder::Draft;
-use crate::interpretation::assembly;
 use crate::interpretation::times::time_volume;
 use crate::memory_budget;
 use ::time::Cut;
@@ -95,7 +95,7 @@ impl ComputeAttribute {
             AttributeKind::Hiatus => {
                 let frame = draft.document.frame()?;
                 let tau = content::read_volume(draft.root(), &from, frame, progress)?;
-                let network = assembly::blocks(draft.root(), &draft.document, progress)?;
+                let network = draft.facts().get(&FaultBlocks, progress)?;
                 let rates = ::time::rates(&tau, &Cut::of_network(&network, tau.size()));
                 store::write_volume(out[0].0, &rates, out[0].1, progress)?;
             }

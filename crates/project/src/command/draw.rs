@@ -2,6 +2,7 @@
 
 use super::pick::next_id;
 use super::{Effect, ProjectError};
+use crate::derived::FaultBlocks;
 use crate::document::{Drawn, DrawnEntry};
 use crate::folder::Draft;
 use crate::interpretation::assembly::{self, AssemblyReport, rebuild};
@@ -62,7 +63,7 @@ impl DrawHorizon {
         self.check(draft.document.frame()?)?;
         let mut log = assembly::log_or_new(draft, &self.horizon)?;
         let candidates = assembly::needed(draft, &log, progress)?;
-        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let blocks = draft.facts().get(&FaultBlocks, progress)?;
         let id = next_id(draft);
         if let Some(colour) = self.colour {
             log.colour = colour;

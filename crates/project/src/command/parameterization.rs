@@ -5,7 +5,7 @@ use crate::content;
 use crate::derived;
 use crate::document::{Origin, ParameterizationEntry};
 use crate::folder::Draft;
-use crate::interpretation::solid;
+use crate::interpretation::solid::{self, SolidModel};
 use crate::interpretation::times::time_volume;
 use interp::reassembly::from_horizon;
 use model::{FaultNetwork, StructuralModel};
@@ -45,13 +45,9 @@ impl SetParameterization {
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         let reading = format!("i, j, k, layer and block at {} x {} x {}", size[0], size[1], size[2]);
         let origin = super::imported(path, reading)?;
-        let model = model(draft, progress)?;
+        let model = draft.facts().get(&SolidModel, progress)?;
         keep(draft, &model, arrays, (name, path.display().to_string()), origin, progress)
     }
-}
-
-fn model(draft: &Draft, progress: &Progress) -> Result<StructuralModel, ProjectError> {
-    solid::structural_model(draft.root(), &draft.document, progress)?.ok_or(ProjectError::NoLayers)
 }
 
 /// Tries arrays on the interpretation, then stores them in the project.
@@ -85,14 +81,14 @@ fn by_time(draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectErro
     let geometry = draft.document.frame()?.clone();
     let entry = time_volume(&draft.document)?.clone();
     let tau = content::read_volume(draft.root(), &entry, &geometry, progress)?;
-    let model = model(draft, progress)?;
+    let model = draft.facts().get(&SolidModel, progress)?;
     let settings = solid::param_settings(&draft.document);
-    let own = Parameterization::compute(&model, &settings, progress)?;
+    let own = Parameterization::compute(&*model, &settings, progress)?;
     let mut size = geometry.size();
     while size.iter().product::<usize>() > MOST_SAMPLES {
         size = size.map(|count| count.div_ceil(2));
     }
-    let mut arrays = own.voxel_volumes(&model, size, progress)?;
+    let mut arrays = own.voxel_volumes(&*model, size, progress)?;
     let mut times = Vec::new();
     for entry in &draft.document.horizons {
         let horizon = content::read_horizon(draft.root(), entry, progress)?;

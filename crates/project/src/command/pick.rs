@@ -2,6 +2,7 @@
 //! moved later.
 
 use super::{Effect, ProjectError};
+use crate::derived::FaultBlocks;
 use crate::document::{Assembly, PickEntry};
 use crate::folder::Draft;
 use crate::interpretation::assembly::{self, AssemblyReport, ReportedOverlap, rebuild};
@@ -181,8 +182,8 @@ fn climbed(
 impl PickNode {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let mut log = assembly::log_or_new(draft, &self.horizon)?;
-        let candidates = Candidates::for_picks(draft.root(), &draft.document, &[self.at], progress)?;
-        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let candidates = Candidates::for_picks(draft.facts(), &[self.at], progress)?;
+        let blocks = draft.facts().get(&FaultBlocks, progress)?;
         let id = next_id(draft);
         let geometry = draft.document.frame()?.clone();
         let stopped_by = self.enter(&mut log, id, &geometry, &candidates, &blocks)?;
@@ -261,8 +262,8 @@ impl PickNodes {
         }
         let mut log = assembly::log_or_new(draft, &first.horizon)?;
         let places: Vec<[f64; 3]> = self.picks.iter().map(|pick| pick.at).collect();
-        let candidates = Candidates::for_picks(draft.root(), &draft.document, &places, progress)?;
-        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let candidates = Candidates::for_picks(draft.facts(), &places, progress)?;
+        let blocks = draft.facts().get(&FaultBlocks, progress)?;
         let id = next_id(draft);
         for (n, pick) in self.picks.iter().enumerate() {
             pick.enter(&mut log, id + n as u32, draft.document.frame()?, &candidates, &blocks)?;
@@ -285,7 +286,7 @@ impl RemovePick {
         log.picks.retain(|pick| pick.id != self.id);
         log.drawn.retain(|drawn| drawn.id != self.id);
         let candidates = assembly::needed(draft, &log, progress)?;
-        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let blocks = draft.facts().get(&FaultBlocks, progress)?;
         rebuild(draft, candidates.as_deref(), &blocks, &name, log, progress)?;
         Ok(Effect::Changed { summary: format!("removed pick {}", self.id) })
     }
@@ -317,10 +318,10 @@ impl MovePick {
         let (name, mut log) = find(draft, self.id)?;
         let place = log.picks.iter().position(|pick| pick.id == self.id);
         let place = place.ok_or(ProjectError::NotClimbable { pick: self.id })?;
-        let candidates = Candidates::for_picks(draft.root(), &draft.document, &[], progress)?;
+        let candidates = Candidates::for_picks(draft.facts(), &[], progress)?;
         // Refuses a log of another extraction.
         assembly::selection(&name, &log, &candidates)?;
-        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let blocks = draft.facts().get(&FaultBlocks, progress)?;
         let PickEntry { leaf, up, operation, .. } = log.picks[place];
         let climb = match self.to {
             Move::Up(by) => Climb::Levels(up.saturating_add(by)),
@@ -367,9 +368,8 @@ impl ReplayPicks {
             .collect();
         let has_picks = logs.iter().any(|(_, log)| !log.picks.is_empty());
         let places: Vec<[f64; 3]> = logs.iter().flat_map(|(_, log)| &log.picks).map(|pick| pick.at).collect();
-        let candidates =
-            has_picks.then(|| Candidates::for_picks(draft.root(), &draft.document, &places, progress)).transpose()?;
-        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let candidates = has_picks.then(|| Candidates::for_picks(draft.facts(), &places, progress)).transpose()?;
+        let blocks = draft.facts().get(&FaultBlocks, progress)?;
         let mut done = Replayed { picks: Vec::new(), horizons: Vec::new(), left: Vec::new() };
         for (name, mut log) in logs {
             let mut replayed = Vec::new();

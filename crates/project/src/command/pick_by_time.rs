@@ -2,6 +2,7 @@
 
 use super::horizon::{Age, insert_made};
 use super::{Effect, Noun, ProjectError};
+use crate::derived::FaultBlocks;
 use crate::document::{Chooser, Document, Origin};
 use crate::folder::Draft;
 use crate::interpretation::assembly;
@@ -77,9 +78,9 @@ impl PickByTime {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let corrected = self.corrected(&draft.document)?;
         let geometry = draft.document.frame()?.clone();
-        let times = Times::load(draft.root(), &draft.document, progress)?;
+        let times = Times::load(draft.facts(), progress)?;
         let Times { tau, reflections, cuts } = times.as_ref();
-        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let blocks = draft.facts().get(&FaultBlocks, progress)?;
         let earlier = corrected.map_or(&[][..], |index| draft.document.horizons[index].origin.seeds());
         let value = |time: f32, chosen_by| (level(tau, time, reflections), Origin::Level { time, chosen_by });
         let (event, origin) = match self.level {

@@ -2,6 +2,7 @@
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
+use crate::derived::FaultBlocks;
 use crate::document::{Assembly, Refinement};
 use crate::folder::Draft;
 use crate::interpretation::assembly::{self, AssemblyReport, put, rebuild, refined, report_on};
@@ -72,7 +73,7 @@ fn refine(
     progress: &Progress,
 ) -> Result<Effect, ProjectError> {
     let index = draft.document.position(Noun::Horizon, name)?;
-    let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+    let blocks = draft.facts().get(&FaultBlocks, progress)?;
     let result = match draft.document.horizons[index].assembly.clone() {
         Some(mut log) => {
             let candidates = assembly::needed(draft, &log, progress)?;

@@ -3,12 +3,12 @@
 use super::horizon::{Age, insert_among, load_all};
 use super::pick_by_time::level_sheets;
 use super::{Effect, Noun, ProjectError};
-use crate::content;
+use crate::derived::FaultBlocks;
 use crate::document::{Chooser, Origin};
 use crate::folder::Draft;
-use crate::interpretation::assembly;
+use crate::interpretation::HorizonSheets;
 use crate::interpretation::times::Times;
-use interp::reassembly::{VoxelSheet, from_horizon, to_horizon};
+use interp::reassembly::{VoxelSheet, to_horizon};
 use serde::{Deserialize, Serialize};
 use survey::{Horizon, Progress, Quality, Volume};
 
@@ -94,16 +94,15 @@ impl StackHorizons {
 
     fn isochrons(&self, draft: &Draft, progress: &Progress) -> Result<Vec<(Horizon, Origin)>, ProjectError> {
         let geometry = draft.document.frame()?.clone();
-        let times = Times::load(draft.root(), &draft.document, progress)?;
-        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let times = Times::load(draft.facts(), progress)?;
+        let blocks = draft.facts().get(&FaultBlocks, progress)?;
         let [top, base] = match &self.between {
             None => range(&times.tau),
             Some(names) => {
                 let mut found = [None; 2];
                 for (name, found) in names.iter().zip(&mut found) {
                     let entry = &draft.document.horizons[draft.document.position(Noun::Horizon, name)?];
-                    let horizon = content::read_horizon(draft.root(), entry, progress)?;
-                    *found = median(&from_horizon(&horizon, &geometry, &blocks), &times.tau);
+                    *found = median(&draft.facts().get(&HorizonSheets(entry), progress)?, &times.tau);
                 }
                 found
             }
@@ -128,12 +127,10 @@ impl StackHorizons {
         progress: &Progress,
     ) -> Result<Vec<(Horizon, Origin)>, ProjectError> {
         let geometry = draft.document.frame()?.clone();
-        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let mut sheets = Vec::new();
         for name in between {
             let entry = &draft.document.horizons[draft.document.position(Noun::Horizon, name)?];
-            let horizon = content::read_horizon(draft.root(), entry, progress)?;
-            sheets.push(from_horizon(&horizon, &geometry, &blocks));
+            sheets.push(draft.facts().get(&HorizonSheets(entry), progress)?);
         }
         let mut made = Vec::new();
         for n in 0..self.count {

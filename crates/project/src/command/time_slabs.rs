@@ -2,8 +2,9 @@
 
 use super::ProjectError;
 use crate::content;
+use crate::derived::FaultBlocks;
 use crate::document::{Document, VolumeEntry};
-use crate::interpretation::assembly;
+use crate::facts::Facts;
 use crate::interpretation::candidates::{Candidates, amplitudes};
 use crate::interpretation::extraction;
 use crate::interpretation::times::Obeyed;
@@ -114,13 +115,13 @@ impl TimeSlabs {
     ) -> Result<Self, ProjectError> {
         let slabs = Slabs::within(document.frame()?.size(), memory_bytes);
         let candidates = if slabs.ranges().len() == 1 {
-            SlabCandidates::All(Candidates::load(root, document, progress)?)
+            SlabCandidates::All(Candidates::load(Facts::of(root, document), progress)?)
         } else {
             SlabCandidates::Stored(extraction::open(root, document)?)
         };
         let from = amplitudes(document)?.clone();
         let geometry = document.frame()?;
-        let network = assembly::blocks(root, document, progress)?;
+        let network = Facts::of(root, document).get(&FaultBlocks, progress)?;
         let obeyed = Obeyed::load(root, document, &network, progress)?;
         let volume = content::open_recorded(root, &from, geometry)?;
         Ok(Self { from, obeyed, volume, candidates, settings: settings.clone(), slabs })
@@ -269,7 +270,7 @@ mod tests {
         new.project().apply(&Command::Extract(extract), &quiet).unwrap();
         let project = new.publish().unwrap();
         let stored = extraction::open(project.root(), project.document()).unwrap();
-        let all = Candidates::load(project.root(), project.document(), &quiet).unwrap();
+        let all = Candidates::load(project.facts(), &quiet).unwrap();
         assert!(all.forest.surfaces.surfaces.len() > 4);
         for range in [0..40, 0..17, 9..33, 38..40] {
             let read = read_surfaces_within(&stored, &range, &quiet).unwrap();

@@ -76,29 +76,26 @@ pub fn read_volume(
     frame: &SurveyGeometry,
     progress: &Progress,
 ) -> Result<Volume<f32>, ProjectError> {
-    Ok(open_recorded(root, entry, frame)?.read_f32(0, progress)?)
+    read_level(root, entry, frame, 0, progress)
 }
 
-/// Reads a volume like [`read_volume`] at the finest level of its pyramid that fits into this many bytes, or at the
-/// coarsest where none does; returns the level, too.
+/// Reads a volume like [`read_volume`] at a level of its pyramid.
 ///
 /// # Errors
 /// Those of [`open_recorded`], or cancelled; at a coarser level the samples are not compared with what was recorded.
-pub fn read_volume_within(
+pub fn read_level(
     root: &Path,
     entry: &VolumeEntry,
     frame: &SurveyGeometry,
-    bytes: u64,
+    level: usize,
     progress: &Progress,
-) -> Result<(Volume<f32>, usize), ProjectError> {
+) -> Result<Volume<f32>, ProjectError> {
     let stored = open_volume(root, entry, frame)?;
-    let fits = |level: &usize| stored.size(*level).iter().map(|&n| n as u64).product::<u64>() * 4 <= bytes;
-    let level = (0..stored.level_count()).find(fits).unwrap_or(stored.level_count() - 1);
     // The hash covers the samples themselves, not the averages of coarser levels.
     if level == 0 {
         check_volume(root, entry, &stored)?;
     }
-    Ok((stored.read_f32(level, progress)?, level))
+    Ok(stored.read_f32(level, progress)?)
 }
 
 /// Reads a horizon of the project in `root`.

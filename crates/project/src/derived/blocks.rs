@@ -1,22 +1,63 @@
-//! Storage of fault blocks: `blocks-KEY.bin`. Computing them takes longer than everything else that one pick needs.
+//! The fault blocks, stored as `blocks-KEY.bin`: computing them takes longer than everything else that one pick needs.
 
 use super::kept::{Kind, damaged, read_array, read_header, write_header};
 use super::{key_of, revision};
+use crate::content;
 use crate::document::Document;
+use crate::error::{Noun, ProjectError};
+use crate::facts::{Facts, Query};
 use glam::{DMat3, DVec3};
 use model::{BlockSignature, FaultNetwork, FaultSurface, Truncation};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};
-use std::path::Path;
-use survey::{HeightField, Progress};
+use survey::{Fault, HeightField, Progress};
 
 const BLOCKS: Kind = Kind { prefix: "blocks", magic: b"PGBLOCK\x02", what: "the fault blocks" };
 
 /// Numbers in a fault's frame: a matrix, an offset, the spacing of its nodes.
 const FRAME: usize = 13;
 
-/// The key of a project's fault blocks: a hash of everything that they depend on.
-pub fn blocks_key(document: &Document) -> String {
+/// The fault blocks of a project.
+#[derive(Debug, Clone, Copy)]
+pub struct FaultBlocks;
+
+impl Query for FaultBlocks {
+    const WHAT: &'static str = "fault blocks";
+    type Inputs = Vec<Fault>;
+    type Answer = FaultNetwork;
+
+    fn key(&self, Facts { document, .. }: Facts<'_>) -> Result<String, ProjectError> {
+        Ok(key_of(&(blocks_key(document), document.names(Noun::Fault))))
+    }
+
+    fn inputs(&self, Facts { root, document }: Facts<'_>, _: &Progress) -> Result<Vec<Fault>, ProjectError> {
+        document.faults.iter().map(|entry| content::read_fault(root, entry)).collect()
+    }
+
+    fn stored(&self, facts: Facts<'_>, _: &str, faults: &Vec<Fault>) -> Option<FaultNetwork> {
+        if faults.is_empty() {
+            return Some(FaultNetwork::none());
+        }
+        let blocks = BLOCKS.load(facts.root, &blocks_key(facts.document), read)?;
+        Some(blocks.named(facts.document.names(Noun::Fault)))
+    }
+
+    fn compute(&self, facts: Facts<'_>, faults: Vec<Fault>, progress: &Progress) -> Result<FaultNetwork, ProjectError> {
+        Ok(FaultNetwork::build(facts.document.frame()?, &faults, progress)?)
+    }
+
+    fn store(&self, facts: Facts<'_>, _: &str, blocks: &FaultNetwork, progress: &Progress) {
+        BLOCKS.keep(facts.root, &blocks_key(facts.document), progress, |out| write(out, blocks));
+    }
+
+    fn bytes(blocks: &FaultNetwork) -> usize {
+        blocks.surfaces().iter().map(|fault| size_of_val(&fault.surface.z[..]) + size_of_val(&fault.extent.z[..])).sum()
+    }
+}
+
+/// A hash of everything that fault blocks depend on but the names that they call their faults by, with which they are not
+/// stored.
+pub(crate) fn blocks_key(document: &Document) -> String {
     #[derive(Serialize)]
     struct Inputs<'a> {
         revision: u32,
@@ -24,16 +65,6 @@ pub fn blocks_key(document: &Document) -> String {
         faults: Vec<String>,
     }
     key_of(&Inputs { revision: revision::MODEL, geometry: &document.geometry, faults: document.fault_shapes() })
-}
-
-/// The fault blocks stored under `key`, if there is an intact file; its faults have no names ([`FaultNetwork::named`]).
-pub fn load_blocks(root: &Path, key: &str) -> Option<FaultNetwork> {
-    BLOCKS.load(root, key, read)
-}
-
-/// Stores fault blocks under `key`; warns if that fails.
-pub fn keep_blocks(root: &Path, key: &str, blocks: &FaultNetwork, progress: &Progress) {
-    BLOCKS.keep(root, key, progress, |out| write(out, blocks));
 }
 
 #[derive(Serialize, Deserialize)]

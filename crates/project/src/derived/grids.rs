@@ -20,6 +20,37 @@ use survey::{HeightField, LevelField, Progress};
 /// Grid files.
 const GRIDS: Kind = Kind { prefix: "grids", magic: b"PGGRIDS\x03", what: "the parameterization" };
 
+/// What a model is built of.
+#[derive(Serialize)]
+struct ModelInputs<'a> {
+    revision: u32,
+    geometry: &'a Option<survey::SurveyGeometry>,
+    horizons: Vec<(&'a str, survey::Contact)>,
+    faults: Vec<(&'a str, Option<usize>, f64)>,
+    model: &'a ModelSettings,
+}
+
+impl<'a> ModelInputs<'a> {
+    fn of(document: &'a Document, model: &'a ModelSettings) -> Self {
+        let ends_at = |name: &str| document.faults.iter().position(|fault| fault.name == name);
+        let faults = document.faults.iter();
+        Self {
+            revision: revision::MODEL,
+            geometry: &document.geometry,
+            horizons: document.horizons.iter().map(|entry| (entry.hash.as_str(), entry.contact)).collect(),
+            faults: faults
+                .map(|entry| (entry.hash.as_str(), entry.truncated_by.as_deref().and_then(ends_at), entry.grown_m))
+                .collect(),
+            model,
+        }
+    }
+}
+
+/// The key of a model: a hash of everything that it depends on.
+pub fn model_key(document: &Document, model: &ModelSettings) -> String {
+    key_of(&ModelInputs::of(document, model))
+}
+
 /// The key of a parameterization: a hash of everything that it depends on.
 pub fn parameterization_key(document: &Document, model: &ModelSettings, settings: &ParamSettings) -> String {
     #[derive(Serialize)]
@@ -32,21 +63,16 @@ pub fn parameterization_key(document: &Document, model: &ModelSettings, settings
         settings: &'a ParamSettings,
         taken: Option<&'a str>,
     }
-    let ends_at = |name: &str| document.faults.iter().position(|fault| fault.name == name);
-    let inputs = Inputs {
-        revision: [revision::MODEL, revision::PARAMETERIZATION],
-        geometry: &document.geometry,
-        horizons: document.horizons.iter().map(|entry| (entry.hash.as_str(), entry.contact)).collect(),
-        faults: document
-            .faults
-            .iter()
-            .map(|entry| (entry.hash.as_str(), entry.truncated_by.as_deref().and_then(ends_at), entry.grown_m))
-            .collect(),
+    let ModelInputs { revision: of_model, geometry, horizons, faults, model } = ModelInputs::of(document, model);
+    key_of(&Inputs {
+        revision: [of_model, revision::PARAMETERIZATION],
+        geometry,
+        horizons,
+        faults,
         model,
         settings,
         taken: document.parameterization.as_ref().map(|entry| entry.hash.as_str()),
-    };
-    key_of(&inputs)
+    })
 }
 
 /// The parameterization stored under `key`, if there is an intact file.

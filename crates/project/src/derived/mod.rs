@@ -19,9 +19,11 @@ mod kept;
 pub mod revision;
 mod scratch;
 
-pub use blocks::{blocks_key, keep_blocks, load_blocks};
+pub use blocks::FaultBlocks;
+pub(crate) use blocks::blocks_key;
 pub use grids::{
-    holds_volumes, keep_grids, keep_volumes, load_grids, load_volumes, parameterization_key, volumes_path, voxels_of,
+    holds_volumes, keep_grids, keep_volumes, load_grids, load_volumes, model_key, parameterization_key, volumes_path,
+    voxels_of,
 };
 
 pub(crate) use kept::verify_kept;
@@ -35,7 +37,16 @@ pub(crate) fn folder(root: &Path) -> PathBuf {
 }
 
 /// The key of a result that is computed from `inputs`, which hold numbers and strings only: these always serialise.
-pub(crate) fn key_of(inputs: &impl Serialize) -> String {
-    let text = serde_json::to_vec(inputs).unwrap_or_default();
-    blake3::hash(&text).to_hex()[..32].to_owned()
+pub fn key_of(inputs: &impl Serialize) -> String {
+    hash_of(inputs).to_hex()[..32].to_owned()
+}
+
+/// The same as a number, never 0.
+pub fn number_of(inputs: &impl Serialize) -> u64 {
+    let [a, b, c, d, e, f, g, h, ..] = *hash_of(inputs).as_bytes();
+    u64::from_le_bytes([a, b, c, d, e, f, g, h]) | 1
+}
+
+fn hash_of(inputs: &impl Serialize) -> blake3::Hash {
+    blake3::hash(&serde_json::to_vec(inputs).unwrap_or_default())
 }

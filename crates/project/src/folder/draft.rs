@@ -3,6 +3,7 @@
 use super::{history, storage};
 use crate::document::Document;
 use crate::error::ProjectError;
+use crate::facts::Facts;
 use std::path::{Path, PathBuf};
 
 /// A copy of the state to change, and a place to write new data to. If it is dropped without being kept, it removes
@@ -24,6 +25,11 @@ impl Draft {
     /// The project's folder.
     pub fn root(&self) -> &Path {
         &self.root
+    }
+
+    /// What follows from the new state.
+    pub(crate) fn facts(&self) -> Facts<'_> {
+        Facts::of(&self.root, &self.document)
     }
 
     /// A new place for data of a kind (`volumes`, `horizons` …): the file name to enter in the document, and the path

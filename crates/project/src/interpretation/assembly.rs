@@ -2,24 +2,23 @@
 
 use super::order;
 use crate::content;
-use crate::derived;
+use crate::derived::FaultBlocks;
 use crate::document::Document;
 use crate::document::{Assembly, HorizonEntry, Origin, Refinement, VolumeEntry};
 use crate::error::{Noun, ProjectError};
 use crate::folder::Draft;
 use crate::interpretation::candidates::Candidates;
 use crate::interpretation::drawn;
-use crate::weak_cache::WeakCache;
+use crate::interpretation::sheets::HorizonSheets;
 use interp::Forest;
 use interp::assembly::{
     AssemblyError, Conflict, ConflictSettings, NamedSheets, Overlap, Selection, assemble, conflicts, node_above,
 };
 use interp::holes::{FillSettings, Filled, Hole, fill_holes, find_holes};
-use interp::reassembly::{Reassembled, VoxelSheet, from_horizon, reassemble, to_horizon};
+use interp::reassembly::{Reassembled, VoxelSheet, reassemble, to_horizon};
 use interp::refine::{SmoothSettings, fill_along};
 use model::{ContactRules, FaultNetwork};
 use serde::Serialize;
-use std::path::Path;
 use std::sync::Arc;
 use survey::{Horizon, Progress, SurveyGeometry};
 
@@ -173,30 +172,6 @@ pub fn sentence(conflict: &ReportedConflict) -> String {
     }
 }
 
-/// The fault blocks of the project. They take longer to compute than everything else that a pick needs, so they are
-/// stored beside the project, and a caller that makes several picks holds them.
-pub fn blocks(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<FaultNetwork>, ProjectError> {
-    static HELD: WeakCache<(SurveyGeometry, Vec<String>, Vec<String>), FaultNetwork> = WeakCache::nothing();
-    let geometry = document.frame()?;
-    // The value calls the faults by their names, so they are part of the key; what is stored is not called anything.
-    let names = document.names(Noun::Fault);
-    HELD.get_or_make((geometry.clone(), document.fault_shapes(), names.clone()), || {
-        if document.faults.is_empty() {
-            return Ok(FaultNetwork::none());
-        }
-        let key = derived::blocks_key(document);
-        // The key relies on the hashes that were recorded, which reading compares with the faults themselves.
-        let faults = document.faults.iter().map(|entry| content::read_fault(root, entry));
-        let faults = faults.collect::<Result<Vec<_>, _>>()?;
-        if let Some(kept) = derived::load_blocks(root, &key) {
-            return Ok(kept.named(names));
-        }
-        let made = FaultNetwork::build(geometry, &faults, progress)?;
-        derived::keep_blocks(root, &key, &made, progress);
-        Ok(made)
-    })
-}
-
 /// The nodes of a log on the present extraction.
 ///
 /// # Errors
@@ -234,7 +209,7 @@ pub(crate) fn needed(
     if log.picks.is_empty() {
         return Ok(None);
     }
-    Candidates::for_picks(draft.root(), &draft.document, &[], progress).map(Some)
+    Candidates::for_picks(draft.facts(), &[], progress).map(Some)
 }
 
 /// Makes the sheets of horizon `name` from `log` and puts both into the draft, with the horizon at its place by depth. A
@@ -272,7 +247,7 @@ pub(crate) fn rebuild(
     report.overlap = ReportedOverlap::new(assembled.overlap, &geometry);
     let horizon = to_horizon(name, &assembled.sheets, &geometry);
     put(draft, &horizon, Some(log), None, progress)?;
-    report.conflicts = conflicts_with(draft, candidates, blocks, name, &assembled.sheets, progress)?;
+    report.conflicts = conflicts_with(draft, candidates, name, &assembled.sheets, progress)?;
     Ok(report)
 }
 
@@ -392,21 +367,18 @@ pub(crate) fn put(
 fn conflicts_with(
     draft: &Draft,
     candidates: Option<&Candidates>,
-    blocks: &FaultNetwork,
     name: &str,
     sheets: &[VoxelSheet],
     progress: &Progress,
 ) -> Result<Vec<ReportedConflict>, ProjectError> {
-    let geometry = draft.document.frame()?;
-    let mut all = Vec::new();
-    for entry in &draft.document.horizons {
-        all.push(if entry.name == name {
-            sheets.to_vec()
-        } else {
-            from_horizon(&content::read_horizon(draft.root(), entry, progress)?, geometry, blocks)
-        });
-    }
-    let all: Vec<&[VoxelSheet]> = all.iter().map(Vec::as_slice).collect();
+    let entries = draft.document.horizons.iter();
+    let other = |entry: &HorizonEntry| {
+        let is_other = entry.name != name;
+        is_other.then(|| draft.facts().get(&HorizonSheets(entry), progress)).transpose()
+    };
+    let others = entries.map(other).collect::<Result<Vec<_>, _>>()?;
+    let all: Vec<&[VoxelSheet]> =
+        others.iter().map(|other| other.as_deref().map_or(sheets, |other| other.as_slice())).collect();
     let found = conflicts_of(&draft.document, candidates, &all)?;
     Ok(found.into_iter().filter(|conflict| conflict.horizons().iter().any(|n| n == name)).collect())
 }
@@ -447,11 +419,11 @@ pub(crate) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), 
     if logs.is_empty() {
         return Ok(());
     }
-    let candidates = Candidates::for_picks(draft.root(), &draft.document, &[], progress).ok();
+    let candidates = Candidates::for_picks(draft.facts(), &[], progress).ok();
     if candidates.is_none() && logs.iter().any(|(_, log)| !log.picks.is_empty()) {
         progress.warn("the assembled horizons are as they were: there is no extraction to assemble them from");
     }
-    let blocks = blocks(draft.root(), &draft.document, progress)?;
+    let blocks = draft.facts().get(&FaultBlocks, progress)?;
     for (name, log) in logs.into_iter().filter(|(_, log)| candidates.is_some() || log.picks.is_empty()) {
         match rebuild(draft, candidates.as_deref(), &blocks, &name, log, progress) {
             Ok(_) => {}

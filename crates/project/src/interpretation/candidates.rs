@@ -1,27 +1,24 @@
 //! The present extraction as picks need it: its trees and its key.
 //!
-//! A caller that makes several picks holds the result of [`Candidates::load`]. While it lives, callers that ask for the
-//! same extraction get it without reading anything but its report. A single command takes [`Candidates::for_picks`]: of a
-//! large extraction, the surfaces that were picked or lie near a place are read alone. The others are empty there.
+//! A caller that makes several picks holds the result of [`Candidates::load`]. A single command takes
+//! [`Candidates::for_picks`]: of a large extraction, the surfaces that were picked or lie near a place are read alone.
+//! The others are empty there.
 
 use super::extraction;
 use crate::document::{Document, VolumeEntry};
 use crate::error::ProjectError;
-use crate::weak_cache::WeakCache;
+use crate::facts::{Facts, Query};
 use glam::{DVec2, Vec3};
 use interp::Forest;
 use interp::assembly::{AssemblyError, ClosestLeaf, leaf_at};
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use store::StoredCandidates;
+use survey::candidates::ForestCounts;
 use survey::{Progress, SurveyGeometry};
 
 /// Candidates that take at most so many bytes are read whole by every command.
 const FEW_BYTES: u64 = 512 << 20;
-
-/// Key of the weak cache: path and key of the extraction.
-static HELD: WeakCache<(PathBuf, String), Candidates> = WeakCache::nothing();
 
 /// Candidates to pick from.
 #[derive(Debug)]
@@ -34,39 +31,58 @@ pub struct Candidates {
     pub max_distance: f32,
 }
 
+/// All candidates of an extraction that is open.
+struct AllOf<'a>(&'a StoredCandidates);
+
+impl Query for AllOf<'_> {
+    const WHAT: &'static str = "horizon candidates";
+    type Inputs = ();
+    type Answer = Candidates;
+
+    fn key(&self, _: Facts<'_>) -> Result<String, ProjectError> {
+        Ok(self.0.info().key.clone())
+    }
+
+    fn inputs(&self, _: Facts<'_>, _: &Progress) -> Result<(), ProjectError> {
+        Ok(())
+    }
+
+    fn compute(&self, _: Facts<'_>, (): (), progress: &Progress) -> Result<Candidates, ProjectError> {
+        let (key, max_distance) = (self.0.info().key.clone(), self.0.info().max_distance);
+        Ok(Candidates { forest: extraction::forest(self.0, progress)?, key, max_distance })
+    }
+
+    fn bytes(Candidates { forest: Forest { surfaces, nodes, .. }, .. }: &Candidates) -> usize {
+        extraction::bytes_of(ForestCounts {
+            vertices: surfaces.vertices.len(),
+            triangles: surfaces.triangles.len(),
+            surfaces: surfaces.surfaces.len(),
+            nodes: nodes.len(),
+        }) as usize
+    }
+}
+
 impl Candidates {
-    /// The candidates of the project in `root`: those that someone holds, if they are of the present extraction,
-    /// otherwise read from disk.
+    /// All candidates of a project's present extraction.
     ///
     /// # Errors
     /// [`ProjectError::NotExtracted`] if there are none; data are damaged, or the user cancelled.
-    pub fn load(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<Self>, ProjectError> {
-        let path = extraction::candidates_path(root, document)?;
-        let stored = StoredCandidates::open(&path)?;
-        let (key, max_distance) = (stored.info().key.clone(), stored.info().max_distance);
-        HELD.get_or_make((path, key.clone()), || {
-            Ok(Self { forest: extraction::forest(&stored, progress)?, key, max_distance })
-        })
+    pub fn load(facts: Facts<'_>, progress: &Progress) -> Result<Arc<Self>, ProjectError> {
+        let path = extraction::candidates_path(facts.root, facts.document)?;
+        facts.get(&AllOf(&StoredCandidates::open(&path)?), progress)
     }
 
-    /// The candidates that commands on picks need: all of them if someone holds them or they are few, otherwise the
-    /// surfaces that any horizon was picked from, and those near `places`.
+    /// The candidates that commands on picks need: all of them if they are in memory or few, otherwise the surfaces that
+    /// any horizon was picked from, and those near `places`.
     ///
     /// # Errors
     /// As [`Candidates::load`].
-    pub fn for_picks(
-        root: &Path,
-        document: &Document,
-        places: &[[f64; 3]],
-        progress: &Progress,
-    ) -> Result<Arc<Self>, ProjectError> {
-        let path = extraction::candidates_path(root, document)?;
-        let stored = StoredCandidates::open(&path)?;
-        let held = HELD.get(&(path, stored.info().key.clone()));
-        match held {
+    pub fn for_picks(facts: Facts<'_>, places: &[[f64; 3]], progress: &Progress) -> Result<Arc<Self>, ProjectError> {
+        let stored = StoredCandidates::open(&extraction::candidates_path(facts.root, facts.document)?)?;
+        match facts.held(&AllOf(&stored))? {
             Some(held) => Ok(held),
-            None if extraction::forest_bytes(&stored)? <= FEW_BYTES => Self::load(root, document, progress),
-            None => Ok(Arc::new(Self::part(&stored, document, places, progress)?)),
+            None if extraction::forest_bytes(&stored)? <= FEW_BYTES => facts.get(&AllOf(&stored), progress),
+            None => Ok(Arc::new(Self::part(&stored, facts.document, places, progress)?)),
         }
     }
 

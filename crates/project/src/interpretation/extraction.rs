@@ -145,8 +145,12 @@ pub fn report(candidates: &StoredCandidates) -> Option<ExtractReport> {
 
 /// Memory that all surfaces and trees of candidates take while they are read, bytes.
 pub(crate) fn forest_bytes(candidates: &StoredCandidates) -> Result<u64, ProjectError> {
-    let ForestCounts { vertices, triangles, surfaces, nodes } = candidates.forest_counts()?;
-    Ok((16 * vertices + 12 * triangles + 40 * surfaces + 64 * nodes) as u64)
+    Ok(bytes_of(candidates.forest_counts()?))
+}
+
+/// Memory that surfaces and trees of these counts take, bytes.
+pub(crate) fn bytes_of(ForestCounts { vertices, triangles, surfaces, nodes }: ForestCounts) -> u64 {
+    (16 * vertices + 12 * triangles + 40 * surfaces + 64 * nodes) as u64
 }
 
 /// Surfaces and trees of a project's candidates.

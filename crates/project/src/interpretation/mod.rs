@@ -10,5 +10,8 @@ pub(crate) mod drawn;
 pub mod extraction;
 pub(crate) mod order;
 pub mod proposals;
+mod sheets;
 pub mod solid;
 pub mod times;
+
+pub use sheets::HorizonSheets;

@@ -6,11 +6,11 @@
 //! them. A fault that the project already has is reported but not proposed.
 
 use crate::content;
-use crate::derived::{Scratch, folder, key_of, revision};
+use crate::derived::{FaultBlocks, Scratch, folder, key_of, revision};
 use crate::document::{Document, Origin};
 use crate::error::{Noun, ProjectError};
+use crate::facts::Facts;
 use crate::folder::{history, storage};
-use crate::interpretation::assembly;
 use crate::interpretation::candidates::{Candidates, amplitudes};
 use ::time::{Cut, FoundFault, TimeSettings, find_faults};
 use attribute::{DipSettings, SemblanceSettings, dip, semblance};
@@ -168,7 +168,7 @@ pub(crate) fn compute(
     }
     let volume = document.volumes.iter().find(|entry| entry.geometry.is_none());
     // The key relies on the hashes that were recorded; all that it is made of has now been compared with them.
-    let blocks = assembly::blocks(root, document, progress)?;
+    let blocks = Facts::of(root, document).get(&FaultBlocks, progress)?;
     if let Some(entry) = volume {
         content::open_recorded(root, entry, geometry)?;
     }
@@ -212,7 +212,7 @@ fn from_candidates(
     let key = whole_key(document, settings);
     // The key relies on the hashes that were recorded.
     content::open_recorded(root, amplitudes(document)?, geometry)?;
-    let blocks = assembly::blocks(root, document, progress)?;
+    let blocks = Facts::of(root, document).get(&FaultBlocks, progress)?;
     if let Some(known) = read(root, document, &key) {
         return Ok((key, known));
     }
@@ -233,7 +233,7 @@ fn new_faults(
     progress: &Progress,
 ) -> Result<Vec<FoundFault>, ProjectError> {
     memory::check("finding faults", &document.frame()?.size(), FINDING_BYTES)?;
-    let candidates = Candidates::load(root, document, progress)?;
+    let candidates = Candidates::load(Facts::of(root, document), progress)?;
     let seismic = content::read_volume(root, amplitudes(document)?, document.frame()?, progress)?;
     let fewest = TimeSettings::default().fewest_vertices;
     let found = find_faults(&seismic, &candidates.forest.surfaces, fewest, progress)?;

@@ -1,12 +1,13 @@
 //! The solid model of an interpretation, and the settings with which it is parameterized.
 
 use crate::content;
+use crate::derived;
 use crate::document::Document;
-use crate::error::ProjectError;
+use crate::error::{Noun, ProjectError};
+use crate::facts::{Facts, Query};
 use model::{ModelSettings, StructuralModel};
 use param::ParamSettings;
-use std::path::Path;
-use survey::{Progress, SurveyGeometry};
+use survey::{Fault, Horizon, Progress, SurveyGeometry};
 use system::memory;
 
 /// Memory that the model takes at least for each horizon at each trace.
@@ -59,27 +60,47 @@ pub fn extent_m(geometry: &SurveyGeometry) -> [f64; 2] {
     [geometry.inline_vector.length() * nx, geometry.crossline_vector.length() * ny]
 }
 
-/// Builds the model of a state of the project in `root`; `None` without horizons.
-///
-/// # Errors
-/// Data are damaged, the interpretation does not make a solid model, or the user cancelled.
-pub fn structural_model(
-    root: &Path,
-    document: &Document,
-    progress: &Progress,
-) -> Result<Option<StructuralModel>, ProjectError> {
-    if document.horizons.is_empty() {
-        return Ok(None);
+/// The model of an interpretation.
+#[derive(Debug, Clone, Copy)]
+pub struct SolidModel;
+
+impl Query for SolidModel {
+    const WHAT: &'static str = "model";
+    type Inputs = (Vec<Horizon>, Vec<Fault>);
+    type Answer = StructuralModel;
+
+    fn key(&self, Facts { document, .. }: Facts<'_>) -> Result<String, ProjectError> {
+        // What the model reports names horizons and faults.
+        let names = [Noun::Horizon, Noun::Fault].map(|noun| document.names(noun));
+        Ok(derived::key_of(&(derived::model_key(document, &ModelSettings::default()), names)))
     }
-    let horizons = document.horizons.iter().map(|entry| content::read_horizon(root, entry, progress));
-    let horizons = horizons.collect::<Result<Vec<_>, _>>()?;
-    let faults = document.faults.iter().map(|entry| content::read_fault(root, entry));
-    let faults = faults.collect::<Result<Vec<_>, _>>()?;
-    let (geometry, settings) = (document.frame()?, ModelSettings::default());
-    let [inlines, crosslines, _] = geometry.size();
-    memory::check("the model of the survey", &[inlines, crosslines, horizons.len()], MODEL_BYTES)?;
-    let model = StructuralModel::build(geometry, &document.stratigraphy(), &horizons, &faults, &settings, progress)?;
-    Ok(Some(model))
+
+    fn inputs(&self, Facts { root, document }: Facts<'_>, progress: &Progress) -> Result<Self::Inputs, ProjectError> {
+        if document.horizons.is_empty() {
+            return Err(ProjectError::NoLayers);
+        }
+        let horizons = document.horizons.iter().map(|entry| content::read_horizon(root, entry, progress));
+        let horizons = horizons.collect::<Result<_, _>>()?;
+        let faults = document.faults.iter().map(|entry| content::read_fault(root, entry));
+        Ok((horizons, faults.collect::<Result<_, _>>()?))
+    }
+
+    fn compute(
+        &self,
+        Facts { document, .. }: Facts<'_>,
+        (horizons, faults): Self::Inputs,
+        progress: &Progress,
+    ) -> Result<StructuralModel, ProjectError> {
+        let (geometry, settings) = (document.frame()?, ModelSettings::default());
+        let [inlines, crosslines, _] = geometry.size();
+        memory::check("the model of the survey", &[inlines, crosslines, horizons.len()], MODEL_BYTES)?;
+        Ok(StructuralModel::build(geometry, &document.stratigraphy(), &horizons, &faults, &settings, progress)?)
+    }
+
+    fn bytes(model: &StructuralModel) -> usize {
+        let [inlines, crosslines, _] = model.size();
+        inlines * crosslines * model.layer_count() * model.block_count() * MODEL_BYTES
+    }
 }
 
 #[cfg(test)]

@@ -1,26 +1,20 @@
 //! Geologic time as picks need it, and what of a project it obeys.
 //!
-//! A caller that picks by time several times holds the result of [`Times::load`]. While it lives, the next pick reads
-//! nothing.
+//! A caller that picks by time several times holds the result of [`Times::load`], so that the next pick reads nothing.
 
 use crate::content;
+use crate::derived::{FaultBlocks, blocks_key, key_of};
 use crate::document::{Document, HorizonEntry, Origin, VolumeEntry};
 use crate::error::ProjectError;
-use crate::interpretation::assembly;
+use crate::facts::{Facts, Query};
 use crate::interpretation::candidates::{Candidates, amplitudes};
-use crate::weak_cache::WeakCache;
 use ::time::{Cut, Interpretation, Jump, KnownHorizon, Place, Reflections};
 use interp::reassembly::from_horizon;
 use model::FaultNetwork;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use survey::{Contact, Progress, Quality, SurveyGeometry, Volume, Well, well::is_same_surface};
 use system::memory;
-
-/// What geologic time depends on: path, hash of its volume, key of the extraction, faults.
-type Key = (PathBuf, String, String, Vec<String>);
-
-static HELD: WeakCache<Key, Times> = WeakCache::nothing();
 
 /// The newest geologic time of a project, with the reflections and faults that picks by it need. Memory: 4 bytes a voxel
 /// and 20 a vertex of the candidates.
@@ -42,24 +36,50 @@ impl std::fmt::Debug for Times {
 /// Memory that times and reflections take for each sample while they are read.
 const HELD_BYTES: usize = 16;
 
+/// The geologic time that an entry is of.
+struct TimesOf<'a>(&'a VolumeEntry);
+
+impl Query for TimesOf<'_> {
+    const WHAT: &'static str = "geologic time";
+    type Inputs = (Volume<f32>, Arc<Candidates>, Arc<FaultNetwork>);
+    type Answer = Times;
+
+    fn key(&self, facts: Facts<'_>) -> Result<String, ProjectError> {
+        let extraction = facts.document.extraction.as_ref().map(|entry| &entry.key);
+        Ok(key_of(&(&self.0.file, &self.0.hash, extraction, blocks_key(facts.document))))
+    }
+
+    fn inputs(&self, facts: Facts<'_>, progress: &Progress) -> Result<Self::Inputs, ProjectError> {
+        let frame = facts.document.frame()?;
+        memory::check("geologic time and all reflections", &frame.size(), HELD_BYTES)?;
+        let candidates = Candidates::load(facts, progress)?;
+        let tau = content::read_volume(facts.root, self.0, frame, progress)?;
+        Ok((tau, candidates, facts.get(&FaultBlocks, progress)?))
+    }
+
+    fn compute(
+        &self,
+        _: Facts<'_>,
+        (tau, candidates, blocks): Self::Inputs,
+        _: &Progress,
+    ) -> Result<Times, ProjectError> {
+        let cuts = Cut::of_network(&blocks, tau.size());
+        let reflections = Reflections::new(&candidates.forest.surfaces, &cuts);
+        Ok(Times { tau, reflections, cuts })
+    }
+
+    fn bytes(times: &Times) -> usize {
+        times.tau.samples().len() * HELD_BYTES
+    }
+}
+
 impl Times {
-    /// Geologic time of the project in `root`: what someone holds if it is still right, otherwise read from disk.
+    /// Geologic time of a project.
     ///
     /// # Errors
     /// [`ProjectError::NoTime`], there are no candidates, data are damaged, or the user cancelled.
-    pub fn load(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<Self>, ProjectError> {
-        let entry = time_volume(document)?;
-        let candidates = document.extraction.as_ref().map_or_else(String::new, |entry| entry.key.clone());
-        let faults = document.fault_shapes();
-        HELD.get_or_make((root.join(&entry.file), entry.hash.clone(), candidates, faults), || {
-            memory::check("geologic time and all reflections", &document.frame()?.size(), HELD_BYTES)?;
-            let candidates = Candidates::load(root, document, progress)?;
-            let tau = content::read_volume(root, entry, document.frame()?, progress)?;
-            let blocks = assembly::blocks(root, document, progress)?;
-            let cuts = Cut::of_network(&blocks, tau.size());
-            let reflections = Reflections::new(&candidates.forest.surfaces, &cuts);
-            Ok(Self { tau, reflections, cuts })
-        })
+    pub fn load(facts: Facts<'_>, progress: &Progress) -> Result<Arc<Self>, ProjectError> {
+        facts.get(&TimesOf(time_volume(facts.document)?), progress)
     }
 }
 

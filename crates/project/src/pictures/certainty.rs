@@ -3,6 +3,7 @@
 //! As in the model and in the dashes of pictures, a place within four traces of a pick counts as picked.
 
 use super::load::Rock;
+use crate::document::Document;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -97,9 +98,10 @@ impl Rock {
         (0..model.stratigraphy().horizons.len()).map(share).collect()
     }
 
-    /// The same by name.
-    pub fn picked(&self) -> Vec<PickedShare> {
-        let named = self.model.stratigraphy().horizons.iter().zip(self.picked_shares());
-        named.map(|(horizon, share)| PickedShare { name: horizon.name.clone(), share }).collect()
+    /// The same by the names that the horizons have in a project.
+    pub fn picked(&self, document: &Document) -> Vec<PickedShare> {
+        let shares = self.picked.get_or_init(|| self.picked_shares());
+        let named = document.stratigraphy().horizons.into_iter().zip(shares);
+        named.map(|(horizon, share)| PickedShare { name: horizon.name, share: *share }).collect()
     }
 }

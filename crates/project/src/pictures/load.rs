@@ -1,23 +1,23 @@
 //! Loads the input of renderers from a project: reads data, builds the model, parameterizes layers and compiles styles.
-//! Each step does only what is needed, and earlier results are taken from `derived/`.
+//! Each part is a [`Query`], so that whoever loads again, for another scene or state, computes only what has changed.
 
 use super::PickedShare;
-use crate::Project;
 use crate::document::{Document, volumes_within};
 use crate::error::ProjectError;
-use crate::interpretation::solid;
+use crate::facts::{Facts, Query};
+use crate::interpretation::solid::{self, SolidModel};
 use crate::pictures::shown_candidates::ShownCandidates;
 pub use crate::pictures::volumes::{LoadedSamples, LoadedVolume};
 use crate::pictures::volumes::{Reading, SMALL_BYTES, read_volumes};
-pub use crate::pictures::wells::{LoadedLog, LoadedWell, read_wells};
+pub use crate::pictures::wells::{LoadedLog, LoadedWell, Wells};
 use crate::{content, derived, memory_budget, styles};
 use glam::Vec3;
 use model::{ModelSettings, StructuralModel};
-use param::{ComputeCost, PackedVolume, Parameterization, VoxelParameterization};
+use param::{ComputeCost, PackedVolume, Parameterization, RegionGrid, VoxelParameterization};
 use render::distortion::{self, LayerDistortion};
 use render::touched::Places;
 use render::{DrawnWell, FaceData, Inputs, Lookup, Media, NamedVolume, RenderError, Scene};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 use survey::{Progress, SurveyGeometry};
@@ -26,6 +26,9 @@ use ttf::{BlockExtent, LayerExtent, RawColour, TransferFunctions, TtfTables};
 
 /// Memory that the sampled parameterization takes for each voxel: i, j, k, layer and block.
 const VOXEL_BYTES: usize = 16;
+
+/// Memory that the packed volume takes for each voxel: three floats.
+const PACKED_BYTES: usize = 12;
 
 /// Number of samples along each axis at which mean thicknesses are measured.
 const THICKNESS_SAMPLES: usize = 48;
@@ -49,7 +52,7 @@ impl Stage {
 /// The interpretation as a solid model, with its map to flat space.
 pub struct Rock {
     /// Regions of every point.
-    pub model: StructuralModel,
+    pub model: Arc<StructuralModel>,
     /// i, j, k.
     pub parameterization: Parameterization,
     /// Key: identifies what it was computed from.
@@ -58,65 +61,98 @@ pub struct Rock {
     pub stages: Vec<Stage>,
     /// Metres that k = 0 … 1 spans in each layer, once they were measured.
     thicknesses_m: OnceLock<Vec<f32>>,
+    /// How much of each horizon was picked, youngest first, once it was measured.
+    pub(super) picked: OnceLock<Vec<f64>>,
 }
 
 impl Rock {
     /// What was computed under a key, in stages.
-    pub fn new(model: StructuralModel, parameterization: Parameterization, key: String, stages: Vec<Stage>) -> Self {
-        Self { model, parameterization, key, stages, thicknesses_m: OnceLock::new() }
+    pub fn new(
+        model: impl Into<Arc<StructuralModel>>,
+        parameterization: Parameterization,
+        key: String,
+        stages: Vec<Stage>,
+    ) -> Self {
+        let (thicknesses_m, picked) = (OnceLock::new(), OnceLock::new());
+        Self { model: model.into(), parameterization, key, stages, thicknesses_m, picked }
     }
 }
 
-/// Builds the model alone, from which sections and maps are cut; `None` for a project without horizons. Warns of what
+/// The model alone, from which sections and maps are cut; `None` for a project without horizons. Warns of what
 /// contradicts itself.
 ///
 /// # Errors
 /// Data are damaged, the interpretation does not make a solid model, or the user cancelled.
 pub fn structural_model(
-    project: &Project,
+    facts: Facts<'_>,
     progress: &Progress,
-) -> Result<Option<(StructuralModel, Stage)>, ProjectError> {
+) -> Result<Option<(Arc<StructuralModel>, Stage)>, ProjectError> {
+    if facts.document.horizons.is_empty() {
+        return Ok(None);
+    }
     let start = Instant::now();
-    let model = solid::structural_model(project.root(), project.document(), progress)?;
-    let notes = model.iter().flat_map(|model| &model.report().notes);
+    let model = facts.get(&SolidModel, progress)?;
+    let notes = model.report().notes.iter();
     notes.filter(|note| note.is_contradiction()).for_each(|note| progress.warn(note.to_string()));
-    Ok(model.map(|model| (model, Stage::new("model", start.elapsed()))))
+    Ok(Some((model, Stage::new("model", start.elapsed()))))
 }
 
-/// Builds the model and its parameterization; `None` for a project without horizons.
+/// The model and its parameterization; `None` for a project without horizons.
 ///
 /// # Errors
 /// Data are damaged, the interpretation does not make a solid model, or the user cancelled.
-pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, ProjectError> {
-    let document = project.document();
-    let Some((model, stage)) = structural_model(project, progress)? else { return Ok(None) };
-    let mut stages = vec![stage];
-    let param_settings = solid::param_settings(document);
-    let key = rock_key(document);
-    solid::check_coordinates(model.size(), &param_settings)?;
-    let parameterization = match derived::load_grids(project.root(), &key) {
-        Some(kept) if is_of(&kept, &model) => kept,
-        _ => {
-            let start = Instant::now();
-            let computed = match &document.parameterization {
-                None => Parameterization::compute(&model, &param_settings, progress)?,
-                Some(entry) => {
-                    let volumes = content::read_parameterization(project.root(), entry, progress)?;
-                    let arrays = derived::voxels_of(volumes);
-                    Parameterization::of_volumes(&model, &arrays, &param_settings, progress)?.0
-                }
-            };
-            stages.push(Stage::new("parameterization", start.elapsed()));
-            derived::keep_grids(project.root(), &key, &computed, progress);
-            computed
-        }
-    };
-    Ok(Some(Rock::new(model, parameterization, key, stages)))
+pub fn rock(facts: Facts<'_>, progress: &Progress) -> Result<Option<Arc<Rock>>, ProjectError> {
+    if facts.document.horizons.is_empty() { Ok(None) } else { facts.get(&SolidRock, progress).map(Some) }
 }
 
-/// The key of the interpretation of a project's state.
-fn rock_key(document: &Document) -> String {
-    derived::parameterization_key(document, &ModelSettings::default(), &solid::param_settings(document))
+/// The interpretation of a project's state. The parameterization is stored beside the project.
+struct SolidRock;
+
+impl Query for SolidRock {
+    const WHAT: &'static str = "rock";
+    type Inputs = (Arc<StructuralModel>, Stage);
+    type Answer = Rock;
+
+    fn key(&self, Facts { document, .. }: Facts<'_>) -> Result<String, ProjectError> {
+        Ok(derived::parameterization_key(document, &ModelSettings::default(), &solid::param_settings(document)))
+    }
+
+    fn inputs(&self, facts: Facts<'_>, progress: &Progress) -> Result<Self::Inputs, ProjectError> {
+        let (model, stage) = structural_model(facts, progress)?.ok_or(ProjectError::NoLayers)?;
+        solid::check_coordinates(model.size(), &solid::param_settings(facts.document))?;
+        Ok((model, stage))
+    }
+
+    fn stored(&self, facts: Facts<'_>, key: &str, (model, stage): &Self::Inputs) -> Option<Rock> {
+        let kept = derived::load_grids(facts.root, key).filter(|kept| is_of(kept, model))?;
+        Some(Rock::new(model.clone(), kept, key.to_owned(), vec![stage.clone()]))
+    }
+
+    fn compute(
+        &self,
+        facts: Facts<'_>,
+        (model, stage): Self::Inputs,
+        progress: &Progress,
+    ) -> Result<Rock, ProjectError> {
+        let (start, settings) = (Instant::now(), solid::param_settings(facts.document));
+        let computed = match &facts.document.parameterization {
+            None => Parameterization::compute(&*model, &settings, progress)?,
+            Some(entry) => {
+                let arrays = derived::voxels_of(content::read_parameterization(facts.root, entry, progress)?);
+                Parameterization::of_volumes(&*model, &arrays, &settings, progress)?.0
+            }
+        };
+        let stages = vec![stage, Stage::new("parameterization", start.elapsed())];
+        Ok(Rock::new(model, computed, self.key(facts)?, stages))
+    }
+
+    fn store(&self, facts: Facts<'_>, key: &str, rock: &Rock, progress: &Progress) {
+        derived::keep_grids(facts.root, key, &rock.parameterization, progress);
+    }
+
+    fn bytes(rock: &Rock) -> usize {
+        SolidModel::bytes(&rock.model) + rock.parameterization.grids.iter().map(RegionGrid::bytes).sum::<usize>()
+    }
 }
 
 /// Whether a parameterization has the size, layers and blocks of a model.
@@ -125,27 +161,53 @@ fn is_of(parameterization: &Parameterization, model: &StructuralModel) -> bool {
     counts == (model.size(), model.layer_count(), model.block_count())
 }
 
-impl Rock {
-    /// Whether this is the rock of a project's state.
-    pub fn is_of(&self, document: &Document) -> bool {
-        self.key == rock_key(document)
+/// The paper's packed volume of a rock.
+struct Packed(Arc<Rock>);
+
+impl Query for Packed {
+    const WHAT: &'static str = "packed volume";
+    type Inputs = VoxelParameterization;
+    type Answer = PackedVolume;
+
+    fn key(&self, _: Facts<'_>) -> Result<String, ProjectError> {
+        Ok(self.0.key.clone())
     }
 
+    fn inputs(&self, facts: Facts<'_>, progress: &Progress) -> Result<VoxelParameterization, ProjectError> {
+        self.0.voxels(facts.root, facts.document.frame()?.size(), progress)
+    }
+
+    fn compute(
+        &self,
+        facts: Facts<'_>,
+        voxels: VoxelParameterization,
+        _: &Progress,
+    ) -> Result<PackedVolume, ProjectError> {
+        let (size, model) = (facts.document.frame()?.size(), &self.0.model);
+        Ok(PackedVolume::from_voxels(&voxels, size, model.layer_count(), model.block_count()))
+    }
+
+    fn bytes(packed: &PackedVolume) -> usize {
+        packed.size.iter().product::<usize>() * PACKED_BYTES
+    }
+}
+
+impl Rock {
     /// The parameterization sampled on a lattice: the stored one, otherwise sampled now.
     ///
     /// # Errors
     /// The size has no samples or does not fit into memory, or the user cancelled.
     pub fn voxels(
         &self,
-        project: &Project,
+        root: &Path,
         size: [usize; 3],
         progress: &Progress,
     ) -> Result<VoxelParameterization, ProjectError> {
-        match derived::load_volumes(project.root(), &self.key, size, progress) {
+        match derived::load_volumes(root, &self.key, size, progress) {
             Some(kept) => Ok(kept),
             None => {
                 memory::check("i, j and k for each voxel", &size, VOXEL_BYTES)?;
-                Ok(self.parameterization.voxel_volumes(&self.model, size, progress)?)
+                Ok(self.parameterization.voxel_volumes(&*self.model, size, progress)?)
             }
         }
     }
@@ -210,153 +272,189 @@ pub struct Loaded {
     /// The volumes that the scene shows.
     pub volumes: Vec<LoadedVolume>,
     /// The packed volume, for the lookup that needs it.
-    pub packed: Option<PackedVolume>,
+    pub packed: Option<Arc<PackedVolume>>,
     /// The volume shown as raw data and its colours.
     pub raw: Option<RawColour>,
     /// Wells, in voxels.
-    pub wells: Vec<LoadedWell>,
+    pub wells: Arc<Vec<LoadedWell>>,
     /// Horizon candidates, if the scene shows them or horizons in volumes.
     pub candidates: Option<ShownCandidates>,
     /// Compiled styles.
     pub tables: Option<TtfTables>,
-    /// A number that no other loaded data of this process have: renderers keep what they uploaded while it stays the
-    /// same.
-    pub version: u64,
-    /// The same of all but the styles: it stays when only `tables` and `raw` change.
-    pub data_version: u64,
+    /// A hash of all but the styles: renderers keep what they uploaded while it stays the same.
+    pub data_key: u64,
+    /// A hash of all of it: while it stays the same, so does every picture.
+    pub key: u64,
 }
 
-/// A number that was not given before.
-pub fn new_version() -> u64 {
-    static NEXT: AtomicU64 = AtomicU64::new(1);
-    NEXT.fetch_add(1, Ordering::Relaxed)
+/// What is asked of a project for pictures of a scene.
+#[derive(Clone, Copy)]
+pub struct Request<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// What of the project is needed.
+    pub extent: Extent<'a>,
+    /// Most memory for the samples of each volume, bytes; larger volumes are read at a coarser level of their pyramid,
+    /// and a warning says so.
+    pub volume_bytes: u64,
+    /// Volumes up to this size are read whole in any case, bytes.
+    pub small_bytes: u64,
 }
 
-/// Reads and computes what `scene` needs.
+/// What of a project is needed.
+#[derive(Clone, Copy)]
+pub enum Extent<'a> {
+    /// All that any view of the scene needs.
+    Whole,
+    /// What the processor needs to draw the scene once: of large volumes, the samples on faces and ground alone, so that
+    /// pictures of a volume of any size have its own resolution; and no layer coordinates where measured data hide the
+    /// rock. [`Loaded::has_missed`] says whether that was enough.
+    Faces,
+    /// Measured data alone, whatever horizons there are, so that nobody waits for a model: the raw volume, the wells and
+    /// the part of the extraction that the scene shows. With places, of large volumes only the samples there.
+    Data(Option<&'a Places<'a>>),
+}
+
+impl<'a> Request<'a> {
+    /// All that any view of a scene needs, within half of the memory that is available for each volume.
+    pub fn new(scene: &'a Scene) -> Self {
+        let volume_bytes = memory_budget::half_of_available();
+        Self { scene, extent: Extent::Whole, volume_bytes, small_bytes: SMALL_BYTES }
+    }
+
+    /// The same of a part.
+    #[must_use]
+    pub fn of(self, extent: Extent<'a>) -> Self {
+        Self { extent, ..self }
+    }
+
+    /// The same within so many bytes for each volume.
+    #[must_use]
+    pub fn within(self, volume_bytes: u64) -> Self {
+        Self { volume_bytes, ..self }
+    }
+
+    /// The styles that the scene is drawn in.
+    fn functions(&self, document: &Document) -> TransferFunctions {
+        let mut functions = styles::transfer_functions(document);
+        if let Extent::Data(_) = self.extent {
+            return functions;
+        }
+        if let Some(raw) = &self.scene.raw {
+            functions.raw = Some(raw.clone());
+        }
+        functions.printed(self.scene.preset)
+    }
+
+    /// The interpretation, as far as it is needed.
+    fn rock(
+        &self,
+        facts: Facts<'_>,
+        functions: &TransferFunctions,
+        progress: &Progress,
+    ) -> Result<Option<Arc<Rock>>, ProjectError> {
+        match self.extent {
+            Extent::Data(_) => Ok(None),
+            // Measured data alone need no interpretation, but outlines and ground do.
+            Extent::Faces if is_hidden(self.scene, functions) => match facts.held(&SolidRock)? {
+                None => Ok(model_alone(facts, progress)?.map(Arc::new)),
+                known => Ok(known),
+            },
+            Extent::Faces | Extent::Whole => rock(facts, progress),
+        }
+    }
+
+    /// The names of the volumes that are needed.
+    fn volumes<'n>(&'n self, functions: &'n TransferFunctions, has_rock: bool) -> Vec<&'n str> {
+        let is_data = matches!(self.extent, Extent::Data(_));
+        let scalars = functions.scalars.iter().filter(|_| !is_data).map(|function| function.volume.as_str());
+        let raw = functions.raw.iter().filter(|_| is_data || self.scene.blend > 0.0 || !has_rock);
+        scalars.chain(raw.map(|raw| raw.volume.as_str())).chain(volumes_within(self.scene)).collect()
+    }
+}
+
+/// Adds what another scene shows in volumes to a scene that stands for both when they are loaded.
+pub fn add_needs(scene: &mut Scene, of: &Scene) {
+    let (media, more) = (&mut scene.media, &of.media);
+    media.surroundings.extend(more.all().cloned());
+    media.isosurfaces.extend(more.isosurfaces.iter().cloned());
+    media.horizons.extend(more.horizons.iter().cloned());
+    if of.face_data.shows_candidates() {
+        scene.face_data = of.face_data;
+    }
+    if of.face_data.shows_candidates() || !more.horizons.is_empty() {
+        scene.tree_level = of.tree_level;
+    }
+}
+
+/// Reads and computes what is asked for and is not in memory.
 ///
 /// # Errors
 /// Data are damaged, the interpretation does not make a solid model, styles cannot be drawn, or the user cancelled.
-pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loaded, ProjectError> {
-    load_within(project, scene, memory_budget::half_of_available(), progress)
-}
-
-/// The same with at most this many bytes for the samples of each volume; larger volumes are read at a coarser level of
-/// their pyramid, and a warning says so.
-///
-/// # Errors
-/// As [`load`].
-pub fn load_within(
-    project: &Project,
-    scene: &Scene,
-    volume_bytes: u64,
-    progress: &Progress,
-) -> Result<Loaded, ProjectError> {
-    load_with(project, None, scene, volume_bytes, progress)
-}
-
-/// The same where the interpretation may be known already, as while a window shows it; one of another state is not used.
-///
-/// # Errors
-/// As [`load`].
-pub fn load_with(
-    project: &Project,
-    known: Option<Arc<Rock>>,
-    scene: &Scene,
-    volume_bytes: u64,
-    progress: &Progress,
-) -> Result<Loaded, ProjectError> {
-    load_scene(project, known, scene, (volume_bytes, Extent::Whole), progress)
-}
-
-/// What of a volume is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Extent {
-    Whole,
-    /// Of volumes larger than this what is on faces.
-    Faces {
-        small_bytes: u64,
-    },
-}
-
-impl Extent {
-    /// What the processor needs to draw a scene once: of volumes that are larger than some, the samples on faces and ground
-    /// alone, so that pictures of a volume of any size have its own resolution; and no layer coordinates where measured
-    /// data hide the rock. [`Loaded::has_missed`] tells whether that was enough.
-    pub(crate) const FACES: Self = Self::Faces { small_bytes: SMALL_BYTES };
-}
-
-pub(crate) fn load_scene(
-    project: &Project,
-    known: Option<Arc<Rock>>,
-    scene: &Scene,
-    (volume_bytes, extent): (u64, Extent),
-    progress: &Progress,
-) -> Result<Loaded, ProjectError> {
-    let document = project.document();
+pub fn load(facts: Facts<'_>, request: &Request<'_>, progress: &Progress) -> Result<Loaded, ProjectError> {
+    let (document, scene) = (facts.document, request.scene);
     let geometry = document.frame()?.clone();
-    let mut functions = styles::transfer_functions(document);
-    if let Some(raw) = &scene.raw {
-        functions.raw = Some(raw.clone());
-    }
-    functions = functions.printed(scene.preset);
-    let rock = match known.filter(|rock| rock.is_of(document)) {
-        Some(rock) => Some(rock),
-        // Measured data alone need no interpretation, but outlines and ground do.
-        None if extent != Extent::Whole && is_hidden(scene, &functions) => {
-            model_alone(project, progress)?.map(Arc::new)
-        }
-        None => rock(project, progress)?.map(Arc::new),
-    };
-    let picked = rock.as_ref().map_or_else(Vec::new, |rock| rock.picked());
+    let functions = request.functions(document);
+    let rock = request.rock(facts, &functions, progress)?;
+    let picked = rock.as_ref().map_or_else(Vec::new, |rock| rock.picked(document));
     if scene.blend < 1.0 {
         super::sparse_sentences(&sparse(&picked)).into_iter().for_each(|sentence| progress.warn(sentence));
     }
     let packed = match (&rock, scene.lookup) {
-        (Some(rock), Lookup::Packed) => {
-            let voxels = rock.voxels(project, geometry.size(), progress)?;
-            let model = &rock.model;
-            Some(PackedVolume::from_voxels(&voxels, geometry.size(), model.layer_count(), model.block_count()))
-        }
+        (Some(rock), Lookup::Packed) => Some(facts.get(&Packed(rock.clone()), progress)?),
         _ => None,
     };
     let tables = match &rock {
         None => None,
         Some(rock) => {
-            let library = styles::pattern_library(project.root(), document)?;
+            let library = styles::pattern_library(facts.root, document)?;
             let block = block_extent(&geometry, rock, document.stratigraphy().layer_names_bottom_up());
             Some(TtfTables::compile(&functions, &block, &library)?)
         }
     };
-    let mut wanted: Vec<&str> = functions.scalars.iter().map(|function| function.volume.as_str()).collect();
-    if let Some(raw) = &functions.raw
-        && (scene.blend > 0.0 || rock.is_none())
-    {
-        wanted.push(&raw.volume);
-    }
-    wanted.extend(volumes_within(scene));
-    let model = rock.as_ref().map(|rock| &rock.model);
-    let rendered: Vec<&str> = volumes_within(scene).collect();
-    let (places, small_bytes) = match extent {
-        Extent::Whole => (None, 0),
-        Extent::Faces { small_bytes } => (Places::of(scene, &geometry, model), small_bytes),
+    let model = rock.as_ref().map(|rock| &*rock.model);
+    let on_faces;
+    let places = match request.extent {
+        Extent::Whole => None,
+        Extent::Faces => {
+            on_faces = Places::of(scene, &geometry, model);
+            on_faces.as_ref()
+        }
+        Extent::Data(places) => places,
     };
-    let reading = Reading { bytes: volume_bytes, places: places.as_ref(), small_bytes, whole: &rendered };
-    let volumes = read_volumes(project.root(), document, &geometry, &wanted, &reading, progress)?;
-    let candidates = ShownCandidates::load(project, scene, model, progress)?;
-    let wells = read_wells(project.root(), document, &geometry)?;
-    Ok(Loaded {
-        wells,
-        candidates,
-        geometry,
-        rock,
-        picked,
-        volumes,
-        packed,
-        raw: functions.raw,
-        tables,
-        version: new_version(),
-        data_version: new_version(),
-    })
+    let rendered: Vec<&str> = volumes_within(scene).collect();
+    let reading = Reading { bytes: request.volume_bytes, places, small_bytes: request.small_bytes, whole: &rendered };
+    let volumes = read_volumes(facts, &request.volumes(&functions, rock.is_some()), &reading, progress)?;
+    let candidates = ShownCandidates::load(facts, scene, rock.as_deref(), progress)?;
+    let wells = facts.get(&Wells, progress)?;
+    let of_model = rock.as_ref().map(|rock| (&rock.key, derived::model_key(document, &ModelSettings::default())));
+    let of_volumes: Vec<_> = volumes.iter().map(|volume| (&volume.name, &volume.key)).collect();
+    let of_candidates = candidates.as_ref().map(|candidates| (candidates.data_key(), candidates.level()));
+    let parts = (&geometry, of_model, packed.is_some(), of_volumes, of_candidates, Wells.key(facts)?);
+    let data_key = derived::number_of(&parts);
+    let key = derived::number_of(&(data_key, &functions, &functions.faults, &document.textures, document.layers()));
+    Ok(Loaded { geometry, rock, picked, volumes, packed, raw: functions.raw, wells, candidates, tables, data_key, key })
+}
+
+/// Draws from what a request reads. Where that asks for samples that were not read, it is drawn from all samples instead:
+/// where the rays of a picture end is known before it is drawn, but not what all of its parts look up beside them.
+///
+/// # Errors
+/// Those of [`load`] and `draw`.
+pub fn drawn<T, E: From<ProjectError>>(
+    facts: Facts<'_>,
+    request: &Request<'_>,
+    progress: &Progress,
+    mut draw: impl FnMut(&Loaded) -> Result<T, E>,
+) -> Result<(T, Loaded), E> {
+    let loaded = load(facts, request, progress)?;
+    let made = draw(&loaded)?;
+    if !loaded.has_missed() {
+        return Ok((made, loaded));
+    }
+    let extent = if let Extent::Data(_) = request.extent { Extent::Data(None) } else { Extent::Whole };
+    let loaded = load(facts, &request.of(extent), progress)?;
+    Ok((draw(&loaded)?, loaded))
 }
 
 /// Whether measured data hide all rock of a scene, and nothing else needs layer coordinates.
@@ -367,8 +465,8 @@ fn is_hidden(scene: &Scene, functions: &TransferFunctions) -> bool {
 }
 
 /// The model without layer coordinates; its key is none, so that it stands for nothing else.
-fn model_alone(project: &Project, progress: &Progress) -> Result<Option<Rock>, ProjectError> {
-    let Some((model, stage)) = structural_model(project, progress)? else { return Ok(None) };
+fn model_alone(facts: Facts<'_>, progress: &Progress) -> Result<Option<Rock>, ProjectError> {
+    let Some((model, stage)) = structural_model(facts, progress)? else { return Ok(None) };
     let empty = Parameterization {
         size: model.size(),
         layers: model.layer_count(),
@@ -377,91 +475,6 @@ fn model_alone(project: &Project, progress: &Progress) -> Result<Option<Rock>, P
         cost: ComputeCost::default(),
     };
     Ok(Some(Rock::new(model, empty, String::new(), vec![stage])))
-}
-
-/// What a scene shows beyond what is loaded.
-pub struct More {
-    volumes: Vec<LoadedVolume>,
-    candidates: Option<ShownCandidates>,
-}
-
-/// Reads the volumes and horizons that the volume rendering of `scene` needs and that are not loaded yet. The
-/// model stays as it is.
-///
-/// # Errors
-/// Data are damaged, or the user cancelled.
-pub fn read_more(project: &Project, loaded: &Loaded, scene: &Scene, progress: &Progress) -> Result<More, ProjectError> {
-    let document = project.document();
-    let missing: Vec<&str> = volumes_within(scene).filter(|name| !loaded.has_volume(name)).collect();
-    let limit = memory_budget::half_of_available();
-    let reading = Reading::whole(limit);
-    let volumes = read_volumes(project.root(), document, &loaded.geometry, &missing, &reading, progress)?;
-    let candidates = ShownCandidates::load(project, scene, loaded.rock.as_ref().map(|rock| &rock.model), progress)?;
-    Ok(More { volumes, candidates })
-}
-
-impl More {
-    /// Adds the data to what is loaded.
-    pub fn add_to(self, loaded: &mut Loaded) {
-        loaded.volumes.extend(self.volumes);
-        loaded.candidates = self.candidates;
-        (loaded.version, loaded.data_version) = (new_version(), new_version());
-    }
-}
-
-/// Reads what interpreting needs: the raw volume, the wells, and the part of the extraction that `scene` shows; no
-/// model, whatever horizons there are.
-///
-/// # Errors
-/// Data are damaged, or the user cancelled.
-pub fn load_bare(
-    project: &Project,
-    scene: &Scene,
-    volume_bytes: u64,
-    progress: &Progress,
-) -> Result<Loaded, ProjectError> {
-    load_sections(project, scene, None, volume_bytes, progress)
-}
-
-/// The same, of volumes that are larger than some only the samples at these places, for a picture of sections.
-///
-/// # Errors
-/// As [`load_bare`].
-pub fn load_sections(
-    project: &Project,
-    scene: &Scene,
-    places: Option<&Places>,
-    volume_bytes: u64,
-    progress: &Progress,
-) -> Result<Loaded, ProjectError> {
-    let rendered: Vec<&str> = volumes_within(scene).collect();
-    let reading = Reading { bytes: volume_bytes, places, small_bytes: SMALL_BYTES, whole: &rendered };
-    load_read(project, scene, &reading, progress)
-}
-
-pub(crate) fn load_read(
-    project: &Project,
-    scene: &Scene,
-    reading: &Reading,
-    progress: &Progress,
-) -> Result<Loaded, ProjectError> {
-    let document = project.document();
-    let geometry = document.frame()?.clone();
-    let raw = styles::transfer_functions(document).raw;
-    let wanted: Vec<&str> = raw.iter().map(|raw| raw.volume.as_str()).chain(volumes_within(scene)).collect();
-    Ok(Loaded {
-        rock: None,
-        picked: Vec::new(),
-        volumes: read_volumes(project.root(), document, &geometry, &wanted, reading, progress)?,
-        packed: None,
-        wells: read_wells(project.root(), document, &geometry)?,
-        candidates: ShownCandidates::load(project, scene, None, progress)?,
-        tables: None,
-        version: new_version(),
-        data_version: new_version(),
-        raw,
-        geometry,
-    })
 }
 
 /// What styles are compiled for: sizes in metres, and the names of the layers, bottom to top.
@@ -540,15 +553,14 @@ impl Loaded {
     pub fn inputs<'a>(&'a self, volumes: &'a [NamedVolume<'a>], wells: &'a [DrawnWell<'a>]) -> Inputs<'a> {
         Inputs {
             geometry: &self.geometry,
-            model: self.rock.as_ref().map(|rock| &rock.model),
+            model: self.rock.as_ref().map(|rock| &*rock.model),
             param: self.rock.as_ref().map(|rock| &rock.parameterization),
-            packed: self.packed.as_ref(),
+            packed: self.packed.as_deref(),
             tables: self.tables.as_ref(),
             volumes,
             candidates: self.candidates.as_ref().map(ShownCandidates::candidates),
             wells,
-            version: self.version,
-            data_version: self.data_version,
+            data_key: self.data_key,
         }
     }
 }

@@ -77,7 +77,7 @@ impl Rock {
         progress: &Progress,
     ) -> Result<(), ProjectError> {
         let (start, part) = writer.samples_of(place, files);
-        let sampled = self.parameterization.voxel_box(&self.model, writer.size(), start, part, &progress.muted())?;
+        let sampled = self.parameterization.voxel_box(&*self.model, writer.size(), start, part, &progress.muted())?;
         let volumes = ParameterizationVolumes {
             i: sampled.i,
             j: sampled.j,

@@ -9,20 +9,21 @@
 //!
 //! In memory: five bytes a voxel, and the trees without their triangles.
 
-use crate::Project;
-use crate::document::Document;
-use crate::document::PickEntry;
+use crate::derived;
+use crate::document::{Document, HorizonEntry, PickEntry};
 use crate::error::{Noun, ProjectError};
+use crate::facts::{Facts, Query};
 use crate::interpretation::assembly::picked_selection;
 use crate::interpretation::extraction;
 use crate::pictures::horizon_distance::{self, FARTHEST};
+use crate::pictures::load::Rock;
 use glam::Vec3;
 use interp::Forest;
 use interp::assembly::selected_leaves;
-use model::StructuralModel;
 use render::media::Colouring;
 use render::{CandidateVolume, FaceData, Scene};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use store::StoredCandidates;
 use survey::CandidateBox;
 use survey::Progress;
@@ -36,11 +37,13 @@ const CANDIDATE_BYTES: usize = 8;
 
 /// What a scene shows of candidates and horizons.
 pub struct ShownCandidates {
-    voxels: CandidateBox,
+    voxels: Arc<CandidateBox>,
+    /// A hash of what the voxels are made of.
+    data_key: String,
     voxels_per_step: f32,
     /// Key of the extraction; `None` where sheets are shown instead.
     key: Option<String>,
-    trees: Forest,
+    trees: Arc<Forest>,
     level: u32,
     groups: Option<Vec<u32>>,
     /// Ids by the name of the horizon.
@@ -81,16 +84,16 @@ impl ShownCandidates {
     /// # Errors
     /// [`ProjectError::NotExtracted`] if there is neither an extraction nor a horizon to show instead; a horizon is
     /// unknown, data are damaged, or the user cancelled.
-    pub fn load(
-        project: &Project,
+    pub(crate) fn load(
+        facts: Facts<'_>,
         scene: &Scene,
-        model: Option<&StructuralModel>,
+        rock: Option<&Rock>,
         progress: &Progress,
     ) -> Result<Option<Self>, ProjectError> {
         if !is_shown(scene) {
             return Ok(None);
         }
-        let document = project.document();
+        let document = facts.document;
         let size = document.frame()?.size();
         let horizons = &scene.media.horizons;
         let mut named = Vec::new();
@@ -100,51 +103,42 @@ impl ShownCandidates {
         let asks_leaves = scene.face_data.shows_candidates() || horizons.iter().any(|horizon| horizon.name.is_none());
         let by_level = scene.tree_level > 0
             && (scene.face_data == FaceData::Leaves || horizons.iter().any(|h| h.colouring == Colouring::ByLeaf));
-        let stored = stored(project, size, progress)?;
-        if stored.is_none() && (by_level || asks_leaves && model.is_none()) {
+        let stored = stored(facts, size, progress)?;
+        if stored.is_none() && (by_level || asks_leaves && rock.is_none()) {
             return Err(ProjectError::NotExtracted);
         }
+        let trees = match &stored {
+            Some(stored) => facts.get(&Trees(stored), progress)?,
+            None => Arc::default(),
+        };
+        let key = stored.as_ref().map(|stored| stored.info().key.clone());
+        let picked = key.as_ref().map(|key| picked(document, key, &trees)).unwrap_or_default();
+        let is_picked = |index: &usize| picked.contains_key(&document.horizons[*index].name);
+        let mut unpicked: Vec<usize> = named.iter().copied().filter(|index| !is_picked(index)).collect();
+        let wanted = stored.as_ref().filter(|_| asks_leaves || unpicked.len() < named.len());
+        if wanted.is_none() && asks_leaves {
+            progress.warn(
+                "no horizon candidates have been extracted; the horizons of the interpretation are shown in their place",
+            );
+            unpicked = (0..document.horizons.len()).collect();
+        }
+        let voxels_per_step = wanted.map_or(FARTHEST, |stored| stored.info().max_distance) / STEPS;
+        let first_id = trees.leaf_count() as u32 + 1;
+        let sheets = rock.filter(|_| !unpicked.is_empty()).map(|rock| Sheets { rock, which: &unpicked, first_id });
+        let id = |index: &usize| (document.horizons[*index].name.clone(), first_id + *index as u32);
+        let ids = sheets.iter().flat_map(|sheets| sheets.which.iter().map(id)).collect();
+        let asked = ShownVoxels { extraction: wanted, sheets, size, farthest: voxels_per_step * STEPS };
         let mut shown = Self {
-            voxels: CandidateBox { size, distance: Vec::new(), leaf: Vec::new() },
-            voxels_per_step: FARTHEST / STEPS,
-            key: None,
-            trees: Forest::default(),
+            voxels: facts.get(&asked, progress)?,
+            data_key: asked.key(facts)?,
+            voxels_per_step,
             level: 0,
             groups: None,
-            picked: BTreeMap::new(),
-            sheets: BTreeMap::new(),
+            key,
+            trees,
+            picked,
+            sheets: ids,
         };
-        if let Some(stored) = &stored {
-            shown.trees = Forest::of_nodes(stored.read_nodes(progress)?)?;
-            shown.key = Some(stored.info().key.clone());
-            shown.take_picks(document);
-        }
-        let is_picked = |index: &usize| shown.picked.contains_key(&document.horizons[*index].name);
-        let mut unpicked: Vec<usize> = named.iter().copied().filter(|index| !is_picked(index)).collect();
-        let wanted = stored.filter(|_| asks_leaves || unpicked.len() < named.len());
-        shown.voxels = match &wanted {
-            Some(stored) => {
-                memory::check("horizon candidates at every sample", &size, CANDIDATE_BYTES)?;
-                shown.voxels_per_step = stored.info().max_distance / STEPS;
-                stored.read(0, progress)?
-            }
-            None => {
-                if asks_leaves {
-                    progress.warn(
-                        "no horizon candidates have been extracted; the horizons of the interpretation are shown in their place",
-                    );
-                    unpicked = (0..document.horizons.len()).collect();
-                }
-                horizon_distance::nothing_near(size)
-            }
-        };
-        if let (Some(model), false) = (model, unpicked.is_empty()) {
-            let first_id = shown.trees.leaf_count() as u32 + 1;
-            let farthest = shown.voxels_per_step * STEPS;
-            horizon_distance::add_horizons(model, &unpicked, first_id, farthest, &mut shown.voxels, progress)?;
-            let id = |index: usize| (document.horizons[index].name.clone(), first_id + index as u32);
-            shown.sheets = unpicked.into_iter().map(id).collect();
-        }
         shown.show_level(scene.tree_level);
         Ok(Some(shown))
     }
@@ -154,29 +148,8 @@ impl ShownCandidates {
         self.key.as_deref()
     }
 
-    /// Takes over the picks of a project's state; the voxels stay as they are. Picks made on another extraction are
-    /// left out.
-    pub fn take_picks(&mut self, document: &Document) {
-        self.picked.clear();
-        let Some(key) = &self.key else { return };
-        for entry in &document.horizons {
-            let Some(log) = &entry.assembly else { continue };
-            let of_this = |pick: &PickEntry| {
-                pick.extraction == *key && (1..=self.trees.leaf_count()).contains(&(pick.leaf as usize))
-            };
-            if !log.picks.iter().all(of_this) {
-                continue;
-            }
-            let Ok(selection) = picked_selection(log, &self.trees) else { continue };
-            let leaves = selected_leaves(&self.trees, &selection);
-            if !leaves.is_empty() {
-                self.picked.insert(entry.name.clone(), leaves);
-            }
-        }
-    }
-
     /// Distinguishes leaves by the nodes at a level of their trees; 0 = by themselves.
-    pub fn show_level(&mut self, level: u32) {
+    fn show_level(&mut self, level: u32) {
         self.level = level;
         self.groups = (level > 0 && self.trees.leaf_count() > 0).then(|| {
             let mut groups = self.trees.nodes_at_level(level);
@@ -186,6 +159,11 @@ impl ShownCandidates {
             groups.extend((groups.len()..=last).map(|id| nodes + id as u32));
             groups
         });
+    }
+
+    /// A hash of what the voxels are made of.
+    pub(crate) fn data_key(&self) -> &str {
+        &self.data_key
     }
 
     /// The level that is shown.
@@ -226,9 +204,102 @@ impl ShownCandidates {
     }
 }
 
+/// Ids of the leaves of each horizon that was picked on the extraction of this key alone, by its name.
+fn picked(document: &Document, key: &str, trees: &Forest) -> BTreeMap<String, Vec<u32>> {
+    let of_this = |pick: &PickEntry| pick.extraction == key && (1..=trees.leaf_count()).contains(&(pick.leaf as usize));
+    let leaves = |entry: &HorizonEntry| {
+        let log = entry.assembly.as_ref().filter(|log| log.picks.iter().all(of_this))?;
+        let leaves = selected_leaves(trees, &picked_selection(log, trees).ok()?);
+        (!leaves.is_empty()).then(|| (entry.name.clone(), leaves))
+    };
+    document.horizons.iter().filter_map(leaves).collect()
+}
+
+/// The trees of an extraction without vertices and triangles.
+struct Trees<'a>(&'a StoredCandidates);
+
+impl Query for Trees<'_> {
+    const WHAT: &'static str = "trees of candidates";
+    type Inputs = ();
+    type Answer = Forest;
+
+    fn key(&self, _: Facts<'_>) -> Result<String, ProjectError> {
+        Ok(self.0.info().key.clone())
+    }
+
+    fn inputs(&self, _: Facts<'_>, _: &Progress) -> Result<(), ProjectError> {
+        Ok(())
+    }
+
+    fn compute(&self, _: Facts<'_>, (): (), progress: &Progress) -> Result<Forest, ProjectError> {
+        Ok(Forest::of_nodes(self.0.read_nodes(progress)?)?)
+    }
+
+    fn bytes(trees: &Forest) -> usize {
+        size_of_val(&trees.nodes[..])
+    }
+}
+
+/// Horizons that are shown by their sheets.
+struct Sheets<'a> {
+    rock: &'a Rock,
+    /// Their numbers.
+    which: &'a [usize],
+    /// The id of the first horizon.
+    first_id: u32,
+}
+
+/// Distances and leaves at every voxel: those of an extraction, and those of sheets.
+struct ShownVoxels<'a> {
+    extraction: Option<&'a StoredCandidates>,
+    sheets: Option<Sheets<'a>>,
+    size: [usize; 3],
+    /// Largest distance, voxels.
+    farthest: f32,
+}
+
+impl Query for ShownVoxels<'_> {
+    const WHAT: &'static str = "distances and leaves";
+    type Inputs = CandidateBox;
+    type Answer = CandidateBox;
+
+    fn key(&self, _: Facts<'_>) -> Result<String, ProjectError> {
+        let extraction = self.extraction.map(|stored| &stored.info().key);
+        let sheets = self.sheets.as_ref().map(|sheets| (&sheets.rock.key, sheets.which, sheets.first_id));
+        Ok(derived::key_of(&(extraction, sheets, self.size, self.farthest)))
+    }
+
+    fn inputs(&self, _: Facts<'_>, progress: &Progress) -> Result<CandidateBox, ProjectError> {
+        match self.extraction {
+            Some(stored) => {
+                memory::check("horizon candidates at every sample", &self.size, CANDIDATE_BYTES)?;
+                Ok(stored.read(0, progress)?)
+            }
+            None => Ok(horizon_distance::nothing_near(self.size)),
+        }
+    }
+
+    fn compute(
+        &self,
+        _: Facts<'_>,
+        mut voxels: CandidateBox,
+        progress: &Progress,
+    ) -> Result<CandidateBox, ProjectError> {
+        if let Some(Sheets { rock, which, first_id }) = &self.sheets {
+            let model = &rock.model;
+            horizon_distance::add_horizons(model, which, *first_id, self.farthest, &mut voxels, progress)?;
+        }
+        Ok(voxels)
+    }
+
+    fn bytes(voxels: &CandidateBox) -> usize {
+        voxels.distance.len() + size_of_val(&voxels.leaf[..])
+    }
+}
+
 /// The project's extraction, if there is one on its lattice.
-fn stored(project: &Project, size: [usize; 3], progress: &Progress) -> Result<Option<StoredCandidates>, ProjectError> {
-    let stored = match extraction::open(project.root(), project.document()) {
+fn stored(facts: Facts<'_>, size: [usize; 3], progress: &Progress) -> Result<Option<StoredCandidates>, ProjectError> {
+    let stored = match extraction::open(facts.root, facts.document) {
         Ok(stored) => stored,
         Err(ProjectError::NotExtracted) => return Ok(None),
         Err(error) => return Err(error),

@@ -2,18 +2,20 @@
 //! cells in which faces and sections take samples.
 
 use crate::content;
-use crate::document::{Document, VolumeEntry};
+use crate::derived;
+use crate::document::VolumeEntry;
 use crate::error::ProjectError;
+use crate::facts::{Facts, Query};
 use crate::placement;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use render::touched::Places;
 use render::{NamedVolume, Samples, VoxelBox};
 use std::ops::Range;
-use std::path::Path;
+use std::sync::Arc;
 use store::{BRICK, StoredVolume};
 use survey::sparse_volume::CELL;
-use survey::{Progress, SparseVolume, SurveyGeometry, Volume};
+use survey::{Progress, SparseVolume, Volume};
 
 /// Volumes up to this size are read whole, bytes: that is quick, and what follows may need all of it.
 pub(crate) const SMALL_BYTES: u64 = 64 << 20;
@@ -26,9 +28,11 @@ pub struct LoadedVolume {
     /// Its name.
     pub name: String,
     /// Its samples.
-    pub samples: LoadedSamples,
+    pub samples: Arc<LoadedSamples>,
     /// Voxel positions of its first and last sample.
     pub covers: VoxelBox,
+    /// A hash of what was read, and from what.
+    pub(crate) key: String,
 }
 
 /// Samples of a volume.
@@ -39,10 +43,20 @@ pub enum LoadedSamples {
     Sparse(SparseVolume),
 }
 
+impl LoadedSamples {
+    /// Counts of samples along each axis.
+    fn size(&self) -> [usize; 3] {
+        match self {
+            Self::Whole(volume) => volume.size(),
+            Self::Sparse(volume) => volume.size(),
+        }
+    }
+}
+
 impl LoadedVolume {
     /// In the form that renderers take.
     pub fn named(&self) -> NamedVolume<'_> {
-        let volume = match &self.samples {
+        let volume = match &*self.samples {
             LoadedSamples::Whole(volume) => Samples::Whole(volume),
             LoadedSamples::Sparse(volume) => Samples::Sparse(volume),
         };
@@ -51,7 +65,7 @@ impl LoadedVolume {
 
     /// All samples, if they are there.
     pub fn whole(&self) -> Option<&Volume<f32>> {
-        match &self.samples {
+        match &*self.samples {
             LoadedSamples::Whole(volume) => Some(volume),
             LoadedSamples::Sparse(_) => None,
         }
@@ -59,7 +73,7 @@ impl LoadedVolume {
 
     /// Whether samples were asked for that were not read.
     pub(crate) fn has_missed(&self) -> bool {
-        matches!(&self.samples, LoadedSamples::Sparse(volume) if volume.has_missed())
+        matches!(&*self.samples, LoadedSamples::Sparse(volume) if volume.has_missed())
     }
 }
 
@@ -75,32 +89,53 @@ pub(crate) struct Reading<'a> {
     pub whole: &'a [&'a str],
 }
 
-impl Reading<'_> {
-    /// Of every volume all samples.
-    pub fn whole(bytes: u64) -> Self {
-        Self { bytes, places: None, small_bytes: 0, whole: &[] }
+/// All samples of a volume at a level of its pyramid.
+struct SamplesAt<'a> {
+    entry: &'a VolumeEntry,
+    level: usize,
+}
+
+impl Query for SamplesAt<'_> {
+    const WHAT: &'static str = "samples";
+    type Inputs = ();
+    type Answer = LoadedSamples;
+
+    fn key(&self, _: Facts<'_>) -> Result<String, ProjectError> {
+        Ok(derived::key_of(&(&self.entry.file, &self.entry.hash, self.level)))
+    }
+
+    fn inputs(&self, _: Facts<'_>, _: &Progress) -> Result<(), ProjectError> {
+        Ok(())
+    }
+
+    fn compute(&self, facts: Facts<'_>, (): (), progress: &Progress) -> Result<LoadedSamples, ProjectError> {
+        let frame = facts.document.frame()?;
+        content::read_level(facts.root, self.entry, frame, self.level, progress).map(LoadedSamples::Whole)
+    }
+
+    fn bytes(samples: &LoadedSamples) -> usize {
+        samples.size().iter().product::<usize>() * size_of::<f32>()
     }
 }
 
-/// Reads the volumes that are `wanted`; warns of those that are shown coarser than they are.
+/// Reads the volumes that are `wanted` and not in memory; warns of those that are shown coarser than they are.
 ///
 /// # Errors
 /// Data are damaged, or the user cancelled.
 pub(crate) fn read_volumes(
-    root: &Path,
-    document: &Document,
-    geometry: &SurveyGeometry,
+    facts: Facts<'_>,
     wanted: &[&str],
     reading: &Reading,
     progress: &Progress,
 ) -> Result<Vec<LoadedVolume>, ProjectError> {
+    let geometry = facts.document.frame()?;
     let mut volumes = Vec::new();
-    for entry in document.volumes.iter().filter(|entry| wanted.contains(&entry.name.as_str())) {
+    for entry in facts.document.volumes.iter().filter(|entry| wanted.contains(&entry.name.as_str())) {
         let lattice = entry.geometry.as_ref().unwrap_or(geometry);
         let covers = placement::covers(geometry, lattice)
             .map_err(|source| ProjectError::Placement { name: entry.name.clone(), source })?;
         let places = reading.places.filter(|_| !reading.whole.contains(&entry.name.as_str()));
-        let (samples, level) = read_samples(root, (entry, geometry), &covers, places, reading, progress)?;
+        let Read { samples, level, key } = read_samples(facts, entry, &covers, places, reading, progress)?;
         if level > 0 {
             let apart = 1 << level;
             progress.warn(format!(
@@ -108,41 +143,56 @@ pub(crate) fn read_volumes(
                 entry.name
             ));
         }
-        let size = match &samples {
-            LoadedSamples::Whole(volume) => volume.size(),
-            LoadedSamples::Sparse(volume) => volume.size(),
-        };
-        let covers = at_level(covers, lattice.size(), size, level);
-        volumes.push(LoadedVolume { name: entry.name.clone(), samples, covers });
+        let covers = at_level(covers, lattice.size(), samples.size(), level);
+        volumes.push(LoadedVolume { name: entry.name.clone(), samples, covers, key });
     }
     Ok(volumes)
 }
 
-/// Reads a volume, or its samples at some places, at the finest level that fits into memory; returns the level too.
+/// Samples of a volume, their level and their key.
+struct Read {
+    samples: Arc<LoadedSamples>,
+    level: usize,
+    key: String,
+}
+
+/// A volume, or its samples at some places, at the finest level that is in memory or fits into it.
 fn read_samples(
-    root: &Path,
-    (entry, geometry): (&VolumeEntry, &SurveyGeometry),
+    facts: Facts<'_>,
+    entry: &VolumeEntry,
     covers: &VoxelBox,
     places: Option<&Places>,
     &Reading { bytes, small_bytes, .. }: &Reading,
     progress: &Progress,
-) -> Result<(LoadedSamples, usize), ProjectError> {
-    if let Some(places) = places {
-        let stored = content::open_recorded(root, entry, geometry)?;
-        let full = stored.size(0);
-        if full.iter().map(|&count| count as u64).product::<u64>() * 4 > small_bytes {
-            for level in 0..stored.level_count() {
-                let covers = at_level(*covers, full, stored.size(level), level);
-                let wanted = wanted_cells(stored.size(level), &covers, places);
-                if SparseVolume::bytes(stored.size(level), wanted.iter().filter(|wanted| **wanted).count()) <= bytes {
-                    let sparse = read_sparse(&stored, level, &wanted, progress)?;
-                    return Ok((LoadedSamples::Sparse(sparse), level));
-                }
+) -> Result<Read, ProjectError> {
+    let all = |level: usize| SamplesAt { entry, level };
+    if let Some(samples) = facts.held(&all(0))? {
+        return Ok(Read { samples, level: 0, key: all(0).key(facts)? });
+    }
+    let frame = facts.document.frame()?;
+    let stored = content::open_volume(facts.root, entry, frame)?;
+    let bytes_at = |level: usize| stored.size(level).iter().map(|&n| n as u64).product::<u64>() * 4;
+    if let Some(places) = places.filter(|_| bytes_at(0) > small_bytes) {
+        content::open_recorded(facts.root, entry, frame)?;
+        for level in 0..stored.level_count() {
+            let size = stored.size(level);
+            let wanted = wanted_cells(size, &at_level(*covers, stored.size(0), size, level), places);
+            if SparseVolume::bytes(size, wanted.iter().filter(|wanted| **wanted).count()) <= bytes {
+                let cells = blake3::hash(bytemuck::cast_slice(&wanted));
+                let key = derived::key_of(&(all(level).key(facts)?, cells.to_hex().as_str()));
+                let samples = Arc::new(LoadedSamples::Sparse(read_sparse(&stored, level, &wanted, progress)?));
+                return Ok(Read { samples, level, key });
             }
         }
     }
-    let (volume, level) = content::read_volume_within(root, entry, geometry, bytes, progress)?;
-    Ok((LoadedSamples::Whole(volume), level))
+    let mut level = stored.level_count() - 1;
+    for finer in 0..level {
+        if bytes_at(finer) <= bytes || facts.held(&all(finer))?.is_some() {
+            level = finer;
+            break;
+        }
+    }
+    Ok(Read { samples: facts.get(&all(level), progress)?, level, key: all(level).key(facts)? })
 }
 
 /// The cells of a volume, `[x][y][z]`, in which interpolation at the places takes samples.

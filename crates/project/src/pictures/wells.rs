@@ -1,11 +1,12 @@
 //! Wells of a project in voxels, as pictures show them.
 
 use crate::content;
-use crate::document::Document;
+use crate::derived;
 use crate::error::ProjectError;
+use crate::facts::{Facts, Query};
 use glam::DVec3;
-use std::path::Path;
-use survey::{SurveyGeometry, Well};
+use survey::well::Top;
+use survey::{Progress, SurveyGeometry, Well};
 use ttf::Colour;
 
 /// A well of the project in voxels.
@@ -45,28 +46,41 @@ fn shown_log(well: &Well, geometry: &SurveyGeometry) -> Option<LoadedLog> {
     (range[0] <= range[1]).then(|| LoadedLog { name: curve.name.clone(), points, range })
 }
 
-/// Reads the wells of a project's state, in voxels of `geometry`.
-///
-/// # Errors
-/// A well cannot be read.
-pub fn read_wells(
-    root: &Path,
-    document: &Document,
-    geometry: &SurveyGeometry,
-) -> Result<Vec<LoadedWell>, ProjectError> {
-    let mut wells = Vec::new();
-    for entry in &document.wells {
-        let well = content::read_well(root, entry)?;
-        let placed = well.tops.iter().filter_map(|top| Some((well.voxel_at_md(top.md_m, geometry)?, top.name.clone())));
-        let (tops, top_names) = placed.unzip();
-        wells.push(LoadedWell {
-            name: entry.name.clone(),
-            colour: entry.colour,
-            path: well.path_in_voxels(geometry),
-            tops,
-            top_names,
-            log: shown_log(&well, geometry),
-        });
+/// The wells of a project, in voxels.
+#[derive(Debug, Clone, Copy)]
+pub struct Wells;
+
+impl Query for Wells {
+    const WHAT: &'static str = "wells";
+    type Inputs = Vec<Well>;
+    type Answer = Vec<LoadedWell>;
+
+    fn key(&self, Facts { document, .. }: Facts<'_>) -> Result<String, ProjectError> {
+        Ok(derived::key_of(&(&document.wells, document.frame()?)))
     }
-    Ok(wells)
+
+    fn inputs(&self, Facts { root, document }: Facts<'_>, _: &Progress) -> Result<Vec<Well>, ProjectError> {
+        document.wells.iter().map(|entry| content::read_well(root, entry)).collect()
+    }
+
+    fn compute(
+        &self,
+        Facts { document, .. }: Facts<'_>,
+        wells: Vec<Well>,
+        _: &Progress,
+    ) -> Result<Vec<LoadedWell>, ProjectError> {
+        let geometry = document.frame()?;
+        let placed = document.wells.iter().zip(wells).map(|(entry, well)| {
+            let place = |top: &Top| Some((well.voxel_at_md(top.md_m, geometry)?, top.name.clone()));
+            let (tops, top_names) = well.tops.iter().filter_map(place).unzip();
+            let (path, log) = (well.path_in_voxels(geometry), shown_log(&well, geometry));
+            LoadedWell { name: entry.name.clone(), colour: entry.colour, path, tops, top_names, log }
+        });
+        Ok(placed.collect())
+    }
+
+    fn bytes(wells: &Vec<LoadedWell>) -> usize {
+        let points = |well: &LoadedWell| well.log.as_ref().map_or(0, |log| size_of_val(&log.points[..]));
+        wells.iter().map(|well| size_of_val(&well.path[..]) + points(well)).sum()
+    }
 }

@@ -25,6 +25,7 @@ use crate::command::{Command, Effect};
 use crate::derived;
 use crate::document::{Document, data_file};
 use crate::error::ProjectError;
+use crate::facts::Facts;
 use crate::folder::{self, CREATING, Draft, IMPORTING, Lock, Step, acquaintance, forget_creation, history, storage};
 use crate::interpretation::{extraction, proposals};
 use std::fs;
@@ -101,6 +102,11 @@ impl Project {
     /// Something exists at `root`, or its parent folder cannot be written.
     pub fn create(root: &Path, geometry: Option<SurveyGeometry>) -> Result<NewProject, ProjectError> {
         NewProject::begin(root, geometry)
+    }
+
+    /// What follows from the present state.
+    pub fn facts(&self) -> Facts<'_> {
+        Facts::of(&self.root, &self.document)
     }
 
     /// The same, but that changes wait for so long while another process is changing it, and are refused then. Without

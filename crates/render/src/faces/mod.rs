@@ -3,7 +3,7 @@
 //! There is one compute shader, assembled from the file of the pass and the files that it uses; each names
 //! its CPU twin. A picture is drawn in tiles, so that no dispatch runs long enough for the watchdog of a
 //! driver, cancelling is quick, and an image may exceed the limits of the device. Uploaded data are kept
-//! while [`Inputs::version`] stays the same. Of the parameterization only the visible part is uploaded.
+//! while [`Inputs::data_key`] stays the same. Of the parameterization only the visible part is uploaded.
 //!
 //! A compute shader instead of a fragment shader: on data-centre cards it was found to be far faster, and on
 //! the software driver there is no difference.
@@ -72,7 +72,7 @@ pub struct Renderer {
     layouts: [wgpu::BindGroupLayout; 4],
     pipeline_layout: wgpu::PipelineLayout,
     pipelines: HashMap<(Variant, EntryPoint), wgpu::ComputePipeline>,
-    version: Option<u64>,
+    data_key: Option<u64>,
     model: Option<ModelBuffers>,
     grids: Option<GridBuffers>,
     packed: Option<PackedTexture>,
@@ -154,7 +154,7 @@ impl Renderer {
             layouts,
             pipeline_layout,
             pipelines: HashMap::new(),
-            version: None,
+            data_key: None,
             model: None,
             grids: None,
             packed: None,
@@ -223,13 +223,13 @@ impl Renderer {
 
     /// Uploads what the device does not hold yet.
     fn upload(&mut self, resolved: &ResolvedScene, inputs: &Inputs) -> Result<(), RenderError> {
-        if self.version != Some(inputs.version) {
+        if inputs.data_key == 0 || self.data_key != Some(inputs.data_key) {
             self.model = None;
             self.grids = None;
             self.packed = None;
             self.candidates = None;
             self.volumes.clear();
-            self.version = Some(inputs.version);
+            self.data_key = Some(inputs.data_key);
         }
         self.upload_interpretation(resolved)?;
         let gpu = &self.gpu;

@@ -196,8 +196,7 @@ fn a_split_pool_draws_the_same() {
         volumes: &[],
         candidates: None,
         wells: &[],
-        version: 1,
-        data_version: 1,
+        data_key: 1,
     };
     let scene = Scene { size_px: [90, 70], samples: 1, ..Scene::default() };
     let mut renderer = Renderer::headless().unwrap();

@@ -85,7 +85,7 @@ impl<'a> MediaField<'a> {
             if volume.volume.whole().is_none() {
                 return Err(RenderError::ONLY_A_PART);
             }
-            let prepared = kept.of(inputs.data_version, &volume);
+            let prepared = kept.of(inputs.data_key, &volume);
             Ok::<_, RenderError>(FieldMedium::new(volume, prepared, FunctionTable::new(function), zone))
         };
         let model = inputs.model;

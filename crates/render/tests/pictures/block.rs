@@ -63,8 +63,7 @@ impl Block {
             volumes,
             candidates: None,
             wells: &[],
-            version: 1,
-            data_version: 1,
+            data_key: 1,
         }
     }
 }

@@ -138,7 +138,7 @@ fn cancelled_and_new_data(renderer: &mut Renderer, base: &Scene, inputs: &Inputs
     let mut upside_down = synthetic.seismic.clone();
     upside_down.samples_mut().iter_mut().for_each(|value| *value = -*value);
     let volumes = [NamedVolume::whole("seismic", &upside_down), inputs.volumes[1]];
-    let changed = Inputs { volumes: &volumes, version: 2, data_version: 2, ..*inputs };
+    let changed = Inputs { volumes: &volumes, data_key: 2, ..*inputs };
     let after = renderer.render(&raw, &changed, &Progress::silent()).unwrap();
     assert!(!compare(&before, &after).unwrap().agrees());
 }

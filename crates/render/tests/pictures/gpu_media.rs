@@ -310,7 +310,7 @@ fn a_lost_device_is_opened_anew() {
     let geometry = survey::SurveyGeometry::regular([9; 3], 10.0, 10.0, survey::VerticalUnit::Metres);
     let volume = survey::Volume::filled([9; 3], 0.7f32);
     let volumes = [NamedVolume::whole("v", &volume)];
-    let inputs = render::Inputs { version: 1, ..render::Inputs::raw(&geometry, &volumes) };
+    let inputs = render::Inputs { data_key: 1, ..render::Inputs::raw(&geometry, &volumes) };
     let media = Media { faces: Faces::None, surroundings: vec![medium("v", white_ramp(1.0, 0.0))], ..Media::default() };
     let scene = Scene { size_px: [40, 30], samples: 1, media, ..Scene::default() };
     let mut renderer = Renderer::headless().expect("a Vulkan driver, or PETROGLYPH_GPU_TESTS=skip");

@@ -83,7 +83,7 @@ fn gpu_and_cpu_agree_on_horizons_of_any_shape() {
     let folds = [("fold", fold()), ("fold with harmonic k", fold().with_k(KDefinition::Harmonic))];
     let mut grounds = Vec::new();
     for (version, (name, block)) in (1..).zip(salts.into_iter().chain(folds)) {
-        let inputs = Inputs { version, data_version: version, ..block.inputs(&[]) };
+        let inputs = Inputs { data_key: version, ..block.inputs(&[]) };
         let mut earlier = None;
         for scene in [Scene { cut_outs: cut_outs.clone(), ..base.clone() }, Scene { ground, ..base.clone() }] {
             let reference = render::reference::render(&scene, &inputs, &quiet).unwrap();

@@ -35,7 +35,7 @@ fn points_that_are_coloured_again_are_those_of_a_fresh_picture() {
     for pictures in [2.2, 1.2, 0.5] {
         let mut renderer = CpuRenderer::keeping_points((pictures * 90.0 * 70.0 * 4.0 * 68.0) as usize);
         for (version, of, scene) in [(1, 0, &scene), (2, 1, &scene), (3, 0, &dense), (4, 1, &turned), (5, 0, &scene)] {
-            let inputs = Inputs { version, data_version: 1, ..blocks[of].inputs(&[]) };
+            let inputs = Inputs { data_key: 1, ..blocks[of].inputs(&[]) };
             let kept = renderer.render(scene, &inputs, &quiet).unwrap();
             assert!(kept == render(scene, &inputs, &quiet).unwrap(), "picture {version}, room for {pictures}");
         }
@@ -56,7 +56,7 @@ fn what_is_kept_between_pictures_does_not_show() {
     let mut pictures = Vec::new();
     // The second block comes as other data, once with a version of its own and once without any.
     for (of, version) in [(&blocks[0], 1), (&blocks[1], 2), (&blocks[0], 0), (&blocks[1], 0)] {
-        let inputs = Inputs { version, data_version: version, ..of.inputs(&[]) };
+        let inputs = Inputs { data_key: version, ..of.inputs(&[]) };
         for scene in [&scene, &turned, &boxed, &cut, &turned] {
             let kept = renderer.render(scene, &inputs, &quiet).unwrap();
             assert!(kept == render(scene, &inputs, &quiet).unwrap(), "version {version}");

@@ -105,7 +105,7 @@ impl BlockView {
         &mut self,
         ui: &mut Ui,
         session: &Session,
-        rocks: Option<(&Rocks, u64)>,
+        rocks: Option<&Rocks>,
         drawing: &Drawing,
         overlay: &Overlay,
         actions: &mut Vec<Action>,
@@ -113,10 +113,7 @@ impl BlockView {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Block"));
         let view = &session.view;
-        let is_known = rocks.is_none_or(|(rocks, _)| rocks.try_read().is_ok());
-        let holds = |part: &dyn Fn(&Loaded) -> bool| {
-            rocks.is_some_and(|(rocks, _)| rocks.try_read().is_ok_and(|loaded| part(&loaded)))
-        };
+        let holds = |part: &dyn Fn(&Loaded) -> bool| rocks.is_some_and(|loaded| part(loaded));
         let horizons = holds(&|loaded| loaded.candidates.is_some()).then(|| overlay.leaves(session));
         let mut shown = showing::scene(session, horizons.as_deref());
         // Just after interpreting the model is not loaded yet, so there is no relief to draw.
@@ -148,10 +145,9 @@ impl BlockView {
         if !has_lasso && !sticks::drag(&mut self.held, ui, session, &response, pane, actions) {
             self.hand.touch(ui, &response, session, [pane, rect], &handles, actions);
         }
-        // While the loaded data are being changed they cannot be looked at; the next frame tries again.
-        if let Some((rocks, version)) = rocks.filter(|_| is_known) {
+        if let Some(rocks) = rocks {
             self.dark[0] = is_dark(session);
-            self.request(scenes, rocks, version, drawing);
+            self.request(scenes, rocks, drawing);
         }
         self.paint(ui, session, compare, &rects, rect);
         // In volume rendering the picture contains the horizons, once it is final.
@@ -165,12 +161,11 @@ impl BlockView {
         if response.contains_pointer() || self.hand.is_closed() {
             self.paint_handles(ui, &handles, pane, response.hover_pos());
         }
-        let pointed = response.hover_pos().filter(|_| !self.hand.is_closed()).and_then(|at| {
-            let loaded = rocks?.0.try_read().ok()?;
-            pointed::on_block(&loaded, &shown, size, dvec(at - pane.min))
-        });
-        if let (true, Some((how, at)), Some((rocks, _))) =
-            (is_clear(session), lasso::pick_at(ui, &response, session), rocks)
+        let pointed = response
+            .hover_pos()
+            .filter(|_| !self.hand.is_closed())
+            .and_then(|at| pointed::on_block(rocks?, &shown, size, dvec(at - pane.min)));
+        if let (true, Some((how, at)), Some(rocks)) = (is_clear(session), lasso::pick_at(ui, &response, session), rocks)
         {
             // In volume rendering the place that was clicked may lie anywhere behind the face.
             let scene = Scene { size_px: pane_px(pane), ..shown };
@@ -183,9 +178,9 @@ impl BlockView {
     }
 
     /// Requests other pictures when something visible has changed.
-    fn request(&mut self, scenes: Vec<Scene>, rocks: &Rocks, version: u64, drawing: &Drawing) {
+    fn request(&mut self, scenes: Vec<Scene>, rocks: &Rocks, drawing: &Drawing) {
         let is_moving = self.hand.is_closed();
-        let requested = (scenes, version, is_moving);
+        let requested = (scenes, rocks.key, is_moving);
         if self.requested.as_ref() == Some(&requested) {
             return;
         }

@@ -52,7 +52,7 @@ impl Functions {
         &mut self,
         ui: &mut Ui,
         session: &Session,
-        rocks: Option<(&Rocks, u64)>,
+        rocks: Option<&Rocks>,
         swatches: &Swatches,
         actions: &mut Vec<Action>,
     ) {
@@ -83,7 +83,7 @@ impl Functions {
         ui: &mut Ui,
         document: &Document,
         raw: &RawColour,
-        rocks: Option<(&Rocks, u64)>,
+        rocks: Option<&Rocks>,
         actions: &mut Vec<Action>,
     ) {
         ui.heading("Colours of raw data");
@@ -102,15 +102,14 @@ impl Functions {
     }
 
     /// Counts the values of a volume, once for each state of the data.
-    fn count(&mut self, volume: &str, rocks: Option<(&Rocks, u64)>) {
-        let Some((rocks, version)) = rocks else { return };
-        if self.histograms.get(volume).is_some_and(|known| known.version == version) {
+    fn count(&mut self, volume: &str, rocks: Option<&Rocks>) {
+        let Some(loaded) = rocks else { return };
+        if self.histograms.get(volume).is_some_and(|known| known.data_key == loaded.data_key) {
             return;
         }
-        let Ok(loaded) = rocks.try_read() else { return };
         let Some(found) = loaded.volumes.iter().find(|loaded| loaded.name == volume) else { return };
         let Some(whole) = found.whole() else { return };
-        let histogram = Histogram::of(whole.samples(), version);
+        let histogram = Histogram::of(whole.samples(), loaded.data_key);
         self.histograms.insert(volume.to_owned(), histogram);
     }
 
@@ -164,7 +163,7 @@ impl Functions {
         &mut self,
         ui: &mut Ui,
         document: &Document,
-        rocks: Option<(&Rocks, u64)>,
+        rocks: Option<&Rocks>,
         swatches: &Swatches,
         actions: &mut Vec<Action>,
     ) {

@@ -8,7 +8,6 @@ use eframe::egui::{Button, Ui};
 use project::command::{Command, SetLayer};
 use project::pictures::figures::{NamedConfusion, confusions};
 use std::path::PathBuf;
-use std::sync::PoisonError;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use ttf::Preset;
 
@@ -25,8 +24,8 @@ const LEAST: f32 = 80.0;
 struct Key {
     /// The project, its step and the revision of the window's copy: opened again, it may have another step.
     project: (PathBuf, u32, u64),
-    /// The version of the loaded data.
-    version: u64,
+    /// The key of the loaded data.
+    loaded: u64,
     preset: Preset,
     has_ground: bool,
     is_illustrated: bool,
@@ -42,13 +41,7 @@ pub(super) struct Legibility {
 
 impl Legibility {
     /// Lists the pairs, and compares again when something has changed.
-    pub(super) fn show(
-        &mut self,
-        ui: &mut Ui,
-        session: &Session,
-        rocks: Option<(&Rocks, u64)>,
-        actions: &mut Vec<Action>,
-    ) {
+    pub(super) fn show(&mut self, ui: &mut Ui, session: &Session, rocks: Option<&Rocks>, actions: &mut Vec<Action>) {
         match self.coming.as_ref().map(Receiver::try_recv) {
             Some(Ok(found)) => (self.found, self.coming) = (found, None),
             Some(Err(TryRecvError::Disconnected)) => self.coming = None,
@@ -85,12 +78,12 @@ impl Legibility {
     }
 
     /// Compares the layers if what they depend on has changed and no comparison is under way.
-    fn follow(&mut self, ui: &Ui, session: &Session, rocks: Option<(&Rocks, u64)>) {
-        let Some((rocks, version)) = rocks else { return };
+    fn follow(&mut self, ui: &Ui, session: &Session, rocks: Option<&Rocks>) {
+        let Some(rocks) = rocks else { return };
         let scene = &session.view.scene;
         let key = Key {
             project: (session.root.clone(), session.document.step, session.revision),
-            version,
+            loaded: rocks.key,
             preset: scene.preset,
             has_ground: scene.ground.is_some(),
             is_illustrated: scene.blend < 1.0,
@@ -104,9 +97,8 @@ impl Legibility {
         let (rocks, root, document) = (rocks.clone(), session.root.clone(), session.document.clone());
         let (scene, context) = (scene.clone(), ui.ctx().clone());
         std::thread::spawn(move || {
-            let loaded = rocks.read().unwrap_or_else(PoisonError::into_inner);
             // What cannot be read here is told where the picture is drawn.
-            let found = confusions(&root, &document, loaded.rock.as_deref(), &scene).unwrap_or_default();
+            let found = confusions(&root, &document, rocks.rock.as_deref(), &scene).unwrap_or_default();
             if sender.send(found).is_ok() {
                 context.request_repaint();
             }

@@ -66,7 +66,7 @@ impl Layers {
         ui: &mut Ui,
         state: &State,
         session: &Session,
-        (swatches, rocks): (&Swatches, Option<(&Rocks, u64)>),
+        (swatches, rocks): (&Swatches, Option<&Rocks>),
         tiles: &mut Tiles,
         actions: &mut Vec<Action>,
     ) {
@@ -89,7 +89,7 @@ impl Layers {
             });
             return;
         }
-        if let Some(loaded) = rocks.and_then(|(rocks, _)| rocks.try_read().ok()) {
+        if let Some(loaded) = rocks {
             self.picked.clone_from(&loaded.picked);
         }
         ScrollArea::vertical().show(ui, |ui| {

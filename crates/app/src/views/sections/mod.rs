@@ -111,7 +111,7 @@ impl Sections {
         ui: &mut Ui,
         session: &Session,
         kind: SectionKind,
-        rocks: Option<(&Rocks, u64)>,
+        rocks: Option<&Rocks>,
         slices: &Slices,
         overlay: &mut Overlay,
         actions: &mut Vec<Action>,
@@ -122,13 +122,13 @@ impl Sections {
         let is_interpreting = session.view.panel == Panel::Interpret;
         let volumes = &session.view.volumes;
         let show = if is_interpreting { session.view.picking.show } else { FaceData::Rock };
-        if let Some((rocks, version)) = rocks
-            && pane.requested.as_ref().is_none_or(|of| (of.0, of.1, of.2, &of.3) != (at, version, show, volumes))
+        if let Some(rocks) = rocks
+            && pane.requested.as_ref().is_none_or(|of| (of.0, of.1, of.2, &of.3) != (at, rocks.key, show, volumes))
         {
-            pane.requested = Some((at, version, show, volumes.clone()));
+            pane.requested = Some((at, rocks.key, show, volumes.clone()));
             let project = (session.root.clone(), Arc::new(session.document.clone()));
             let volumes = volumes.clone();
-            slices.cut(SliceRequest { kind, at, rocks: rocks.clone(), version, show, volumes, project });
+            slices.cut(SliceRequest { kind, at, rocks: rocks.clone(), show, volumes, project });
         }
         header(ui, session, kind, geometry, actions);
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
@@ -150,7 +150,7 @@ impl Sections {
             let share = (pointer - image.min) / image.size();
             DVec2::new(f64::from(share.x) * extent.x, f64::from(share.y) * extent.y)
         };
-        if let Some(loaded) = rocks.and_then(|(rocks, _)| rocks.try_read().ok()) {
+        if let Some(loaded) = rocks {
             let page = |st: DVec2| image.min + vec2((st.x / extent.x) as f32, (st.y / extent.y) as f32) * image.size();
             wells::draw(&painter, session, (kind, body), &loaded.wells, page);
         }
@@ -183,8 +183,7 @@ impl Sections {
         } else {
             lasso::click(ui, &response, session, voxel, actions);
         }
-        let loaded = rocks?.0.try_read().ok()?;
-        Some(pointed::at_voxel(&loaded, voxel.as_vec3(), Some(kind.axis())))
+        Some(pointed::at_voxel(rocks?, voxel.as_vec3(), Some(kind.axis())))
     }
 }
 

@@ -2,16 +2,20 @@
 
 use super::ShownPick;
 use crate::state::picking::Pick;
+use interp::ExtractReport;
 use interp::assembly::{ClimbSettings, Occupancy, Overlap, Selection, node_above};
-use interp::reassembly::reassemble;
+use interp::reassembly::{VoxelSheet, reassemble};
 use model::FaultNetwork;
+use project::Facts;
+use project::derived::FaultBlocks;
 use project::document::Document;
 use project::error::ProjectError;
 use project::interpretation::assembly::{self, ReportedOverlap};
 use project::interpretation::candidates::Candidates;
+use project::interpretation::{HorizonSheets, extraction};
 use std::path::PathBuf;
 use std::sync::Arc;
-use survey::SurveyGeometry;
+use survey::{Progress, SurveyGeometry};
 
 /// The project that is being interpreted, and what was read of it.
 pub(super) struct Followed {
@@ -19,10 +23,34 @@ pub(super) struct Followed {
     pub(super) document: Document,
     pub(super) geometry: SurveyGeometry,
     pub(super) candidates: Option<Arc<Candidates>>,
+    /// The report of the extraction.
+    pub(super) extraction: Option<ExtractReport>,
     pub(super) blocks: Arc<FaultNetwork>,
+    /// The sheets of each horizon.
+    pub(super) sheets: Vec<Arc<Vec<VoxelSheet>>>,
 }
 
 impl Followed {
+    /// Reads what a state of the project in `root` needs and is not in memory.
+    ///
+    /// # Errors
+    /// Data are damaged, or the user cancelled.
+    pub(super) fn read(root: PathBuf, document: Document, progress: &Progress) -> Result<Self, ProjectError> {
+        let facts = Facts::of(&root, &document);
+        let geometry = document.frame()?.clone();
+        // Candidates that cannot be opened are damaged; this is an error, and not an extraction that is absent.
+        let extraction = match extraction::open(&root, &document) {
+            Err(ProjectError::NotExtracted) => None,
+            opened => Some(opened?),
+        };
+        let candidates = extraction.as_ref().map(|_| Candidates::load(facts, progress)).transpose()?;
+        let extraction = extraction.and_then(|stored| extraction::report(&stored));
+        let blocks = facts.get(&FaultBlocks, progress)?;
+        let sheets = document.horizons.iter().map(|entry| facts.get(&HorizonSheets(entry), progress));
+        let sheets = sheets.collect::<Result<_, _>>()?;
+        Ok(Self { root, document, geometry, candidates, extraction, blocks, sheets })
+    }
+
     /// The candidates, if there is an extraction.
     pub(super) fn candidates(&self) -> Result<&Candidates, ProjectError> {
         self.candidates.as_deref().ok_or(ProjectError::NotExtracted)

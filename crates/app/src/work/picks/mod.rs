@@ -1,8 +1,8 @@
 //! What the interpretation needs: candidates in memory, the horizons' sheets, the leaf under a click, the selected node
 //! as sheets.
 //!
-//! One thread keeps the present extraction and what was made of it, so that a click takes milliseconds; it reads again
-//! only what has changed. Orders are carried out in turn, except that of several states to follow, or selections to
+//! One thread holds the present extraction and what was made of it, so that a click takes milliseconds: of the next state
+//! it asks for the same facts, and what has not changed is found in memory. Orders are carried out in turn, except that of several states to follow, or selections to
 //! draw, only the last counts. Extracting and proposing faults take long and run on threads and processors of their
 //! own. Places are voxels unless stated otherwise.
 
@@ -20,20 +20,19 @@ use interp::ExtractReport;
 use interp::assembly::{ClimbSettings, highest_valid, selected_leaves};
 use interp::faults::Proposal;
 use interp::holes::{Hole, find_holes};
-use interp::reassembly::{VoxelSheet, from_horizon, reassemble};
+use interp::reassembly::{VoxelSheet, reassemble};
 use model::picked_share;
 use project::Project;
 use project::command::{Command, Effect, Extract, ProposeFaults};
 use project::content;
+use project::document::Assembly;
 use project::document::Document;
-use project::document::{Assembly, HorizonEntry};
 use project::error::ProjectError;
 use project::folder::DEFAULT_WAIT;
 use project::interpretation::assembly::{self, AssemblyReport, ReportedOverlap, conflicts_of, report_on, sentence};
 use project::interpretation::candidates::Candidates;
-use project::interpretation::{extraction, proposals};
+use project::interpretation::proposals;
 use project::pictures::PickedShare;
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -257,14 +256,12 @@ struct Keeper {
     outbox: Outbox,
     running: Running,
     followed: Option<Followed>,
-    /// Sheets, by the hash of the horizon and those of the faults.
-    sheets: HashMap<String, Arc<Vec<VoxelSheet>>>,
     number: u64,
 }
 
 impl Keeper {
     fn new(outbox: Outbox, running: Running) -> Self {
-        Self { outbox, running, followed: None, sheets: HashMap::new(), number: 0 }
+        Self { outbox, running, followed: None, number: 0 }
     }
 
     fn work(&mut self, orders: &Receiver<Order>) {
@@ -294,7 +291,7 @@ impl Keeper {
 
     fn carry_out(&mut self, order: Order) -> Result<(), ProjectError> {
         match order {
-            Order::Forget => (self.followed, self.sheets) = (None, HashMap::new()),
+            Order::Forget => self.followed = None,
             Order::Follow(root, document) => self.follow(root, *document)?,
             Order::Renew => {
                 let known = self.followed.as_ref().map(|known| (known.root.clone(), known.document.clone()));
@@ -357,105 +354,61 @@ impl Keeper {
         Ok(())
     }
 
+    /// Reads what a state needs. If that fails, the state before is still the one that is interpreted.
     fn follow(&mut self, root: PathBuf, document: Document) -> Result<(), ProjectError> {
-        let geometry = document.frame()?.clone();
-        let former = self.followed.take().filter(|former| former.root == root);
         let (guard, progress) =
             self.running.begin("Reading the interpretation", Place::Interpret, self.outbox.wake.clone());
-        // Candidates that cannot be opened are damaged; this is an error, and not an extraction that is absent.
-        let stored = match extraction::open(&root, &document) {
-            Err(ProjectError::NotExtracted) => None,
-            opened => Some(opened?),
-        };
-        let key = stored.as_ref().map(|stored| stored.info().key.clone());
-        let (former_candidates, former_blocks) = match former {
-            Some(former) => {
-                let same = hashes(&former.document) == hashes(&document);
-                (former.candidates, same.then_some(former.blocks))
-            }
-            None => (None, None),
-        };
-        let candidates = match former_candidates.filter(|kept| Some(&kept.key) == key.as_ref()) {
-            Some(kept) => Some(kept),
-            None if stored.is_some() => Some(Candidates::load(&root, &document, &progress)?),
-            None => None,
-        };
-        let blocks = match former_blocks {
-            Some(kept) => kept,
-            None => assembly::blocks(&root, &document, &progress)?,
-        };
-        let report = stored.and_then(|stored| extraction::report(&stored));
-        let followed = Followed { root, document, geometry, candidates, blocks };
-        let shown = self.interpreted(&followed, report, &progress)?;
+        let followed = Followed::read(root, document, &progress)?;
+        self.number += 1;
+        let shown = interpreted(&followed, self.number)?;
         drop(guard);
         self.followed = Some(followed);
         self.outbox.send(Event::Interpreted(Arc::new(shown)));
         Ok(())
     }
+}
 
-    fn interpreted(
-        &mut self,
-        followed: &Followed,
-        extraction: Option<ExtractReport>,
-        progress: &Progress,
-    ) -> Result<Interpreted, ProjectError> {
-        let Followed { root, document, geometry, candidates, blocks } = followed;
-        let candidates = candidates.as_deref();
-        let faults_key = hashes(document).join(" ");
-        let mut kept = HashMap::new();
-        for entry in &document.horizons {
-            let key = format!("{} {faults_key}", entry.hash);
-            let sheets = match self.sheets.remove(&key) {
-                Some(sheets) => sheets,
-                None => Arc::new(from_horizon(&content::read_horizon(root, entry, progress)?, geometry, blocks)),
-            };
-            kept.insert(key, sheets);
-        }
-        self.sheets = kept;
-        let sheets_of = |entry: &HorizonEntry| self.sheets[&format!("{} {faults_key}", entry.hash)].clone();
-        let all: Vec<Arc<Vec<VoxelSheet>>> = document.horizons.iter().map(sheets_of).collect();
-        let slices: Vec<&[VoxelSheet]> = all.iter().map(|sheets| sheets.as_slice()).collect();
-        let conflicts = conflicts_of(document, candidates, &slices)?;
-        let [nx, ny, _] = geometry.size();
-        let horizons = document.horizons.iter().zip(&all).map(|(entry, sheets)| {
-            let log = entry.assembly.as_ref();
-            let chosen = log.zip(candidates).and_then(|(log, c)| assembly::selection(&entry.name, log, c).ok());
-            let overlap = chosen.as_ref().zip(candidates).and_then(|(chosen, candidates)| {
-                let found = reassemble(&candidates.forest, chosen, &seeds(log, candidates), blocks).overlap;
-                ReportedOverlap::new(found, geometry)
-            });
-            let mine = conflicts.iter().filter(|conflict| conflict.horizons().contains(&entry.name));
-            InterpretedHorizon {
-                name: entry.name.clone(),
-                colour: entry.own_colour(),
-                sheets: sheets.clone(),
-                leaves: chosen
-                    .as_ref()
-                    .zip(candidates)
-                    .map_or_else(Vec::new, |(chosen, candidates)| selected_leaves(&candidates.forest, chosen)),
-                report: AssemblyReport { overlap, ..report_on(sheets, geometry) },
-                picked: PickedShare {
-                    name: entry.name.clone(),
-                    share: picked_share([nx, ny], on_data(sheets, nx * ny)),
-                },
-                filled: filled(sheets),
-                holes: find_holes(sheets, [nx, ny]),
-                conflicts: mine.map(sentence).collect(),
-                outdated: log.is_some_and(|log| !log.picks.is_empty()) && chosen.is_none(),
-            }
+/// What is drawn and reported of a state.
+fn interpreted(followed: &Followed, number: u64) -> Result<Interpreted, ProjectError> {
+    let Followed { root, document, geometry, candidates, blocks, sheets: all, .. } = followed;
+    let candidates = candidates.as_deref();
+    let slices: Vec<&[VoxelSheet]> = all.iter().map(|sheets| sheets.as_slice()).collect();
+    let conflicts = conflicts_of(document, candidates, &slices)?;
+    let [nx, ny, _] = geometry.size();
+    let horizons = document.horizons.iter().zip(all).map(|(entry, sheets)| {
+        let log = entry.assembly.as_ref();
+        let chosen = log.zip(candidates).and_then(|(log, c)| assembly::selection(&entry.name, log, c).ok());
+        let overlap = chosen.as_ref().zip(candidates).and_then(|(chosen, candidates)| {
+            let found = reassemble(&candidates.forest, chosen, &seeds(log, candidates), blocks).overlap;
+            ReportedOverlap::new(found, geometry)
         });
-        let horizons = horizons.collect();
-        let faults = document
-            .faults
-            .iter()
-            .map(|entry| Ok(ShownFault { colour: entry.ink(), ..shown(&content::read_fault(root, entry)?, geometry) }));
-        let faults = faults.collect::<Result<_, ProjectError>>()?;
-        let (proposals, unit) = proposed(root, document, geometry);
-        self.number += 1;
-        let (root, step) = (root.clone(), document.step);
-        let key = candidates.map(|candidates| candidates.key.clone());
-        Ok(Interpreted { root, step, number: self.number, horizons, faults, extraction, key, proposals, unit })
-    }
+        let mine = conflicts.iter().filter(|conflict| conflict.horizons().contains(&entry.name));
+        InterpretedHorizon {
+            name: entry.name.clone(),
+            colour: entry.own_colour(),
+            sheets: sheets.clone(),
+            leaves: chosen
+                .as_ref()
+                .zip(candidates)
+                .map_or_else(Vec::new, |(chosen, candidates)| selected_leaves(&candidates.forest, chosen)),
+            report: AssemblyReport { overlap, ..report_on(sheets, geometry) },
+            picked: PickedShare { name: entry.name.clone(), share: picked_share([nx, ny], on_data(sheets, nx * ny)) },
+            filled: filled(sheets),
+            holes: find_holes(sheets, [nx, ny]),
+            conflicts: mine.map(sentence).collect(),
+            outdated: log.is_some_and(|log| !log.picks.is_empty()) && chosen.is_none(),
+        }
+    });
+    let horizons = horizons.collect();
+    let faults = document
+        .faults
+        .iter()
+        .map(|entry| Ok(ShownFault { colour: entry.ink(), ..shown(&content::read_fault(root, entry)?, geometry) }));
+    let faults = faults.collect::<Result<_, ProjectError>>()?;
+    let (proposals, unit) = proposed(root, document, geometry);
+    let (root, step) = (root.clone(), document.step);
+    let (extraction, key) = (followed.extraction.clone(), candidates.map(|candidates| candidates.key.clone()));
+    Ok(Interpreted { root, step, number, horizons, faults, extraction, key, proposals, unit })
 }
 
 /// The traces at which one of these sheets lies on data.
@@ -478,11 +431,6 @@ fn seeds(log: Option<&Assembly>, candidates: &Candidates) -> Vec<u32> {
     picks.filter_map(|pick| Some(forest.nodes[*leaf(pick.leaf)? as usize].triangles.start)).collect()
 }
 
-/// What the fault blocks depend on.
-fn hashes(document: &Document) -> Vec<String> {
-    document.fault_shapes()
-}
-
 fn shown(fault: &Fault, geometry: &SurveyGeometry) -> ShownFault {
     ShownFault { name: fault.name.clone(), colour: Colour::BLACK, triangles: content::fault_triangles(fault, geometry) }
 }
@@ -500,3 +448,6 @@ fn proposed(root: &Path, document: &Document, geometry: &SurveyGeometry) -> (Vec
 pub fn voxel_of_overlap(geometry: &SurveyGeometry, overlap: &ReportedOverlap) -> DVec3 {
     voxel_of(geometry, overlap.at)
 }
+
+#[cfg(test)]
+mod tests;

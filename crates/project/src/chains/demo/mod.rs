@@ -11,11 +11,11 @@ use crate::command::{
     AddFault, AddScene, Climb, Command, Effect, Extract, FillHorizon, ImportVolume, PickNode, SetContact, SetLayer,
 };
 use crate::content;
+use crate::derived::FaultBlocks;
 use crate::document::Polarity;
 use crate::error::{Noun, ProjectError};
-use crate::interpretation::assembly::blocks;
 use crate::interpretation::candidates::Candidates;
-use crate::pictures::load::{self, Stage};
+use crate::pictures::load::{self, Request, Stage};
 use crate::pictures::{Device, Painter};
 use files::ImportOptions;
 use files::segy::SegyOptions;
@@ -118,7 +118,7 @@ pub fn run(out: &Path, progress: &Progress) -> Result<Demonstration, ProjectErro
         project.apply(&Command::AddScene(AddScene { name: name.to_owned(), scene }), progress)?;
     }
     // The half-way picture needs everything that all three need.
-    let loaded = load::load(&project, &Scene { blend: 0.5, ..scene.clone() }, progress)?;
+    let loaded = load::load(project.facts(), &Request::new(&Scene { blend: 0.5, ..scene.clone() }), progress)?;
     done.stages.extend(loaded.rock.iter().flat_map(|rock| rock.stages.clone()));
     let mut painter = Painter::new(Device::Auto, progress)?;
     for (name, blend) in PICTURES {
@@ -181,8 +181,8 @@ fn assemble(project: &mut Project, files: &SynthSurvey, progress: &Progress) -> 
     let truth = survey_files::read_truth(&files.truth)?;
     let frame = project.document().frame()?.clone();
     // Held for all picks, so that the candidates are read only once.
-    let _candidates = Candidates::load(project.root(), project.document(), progress)?;
-    let _blocks = blocks(project.root(), project.document(), progress)?;
+    let _candidates = Candidates::load(project.facts(), progress)?;
+    let _blocks = project.facts().get(&FaultBlocks, progress)?;
     let mut picks = 0;
     for (h, horizon) in files.horizons.iter().enumerate() {
         let parts = Parts::of(&truth, h);

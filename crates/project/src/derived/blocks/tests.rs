@@ -28,16 +28,17 @@ fn blocks_come_back_as_they_were_and_damaged_ones_do_not() {
     let folder = tempfile::tempdir().unwrap();
     let (root, wanted) = (folder.path(), blocks());
     assert_eq!(wanted.block_count(), 3);
-    keep_blocks(root, "aa", &wanted, &Progress::silent());
+    BLOCKS.keep(root, "aa", &Progress::silent(), |out| write(out, &wanted));
     let names = ["first", "second"].map(str::to_owned);
-    assert_eq!(load_blocks(root, "aa").map(|loaded| loaded.named(names)).as_ref(), Some(&wanted));
-    assert!(load_blocks(root, "bb").is_none());
+    let load = |key: &str| BLOCKS.load(root, key, read);
+    assert_eq!(load("aa").map(|loaded| loaded.named(names)).as_ref(), Some(&wanted));
+    assert!(load("bb").is_none());
     let path = BLOCKS.path(root, "aa");
     let mut damaged = std::fs::read(&path).unwrap();
     let middle = damaged.len() / 2;
     damaged[middle] ^= 1;
     std::fs::write(&path, &damaged).unwrap();
-    assert!(load_blocks(root, "aa").is_none());
+    assert!(BLOCKS.load(root, "aa", read).is_none());
 }
 
 /// Loads the blocks with their first surface changed, from a file whose hash is right.
@@ -48,7 +49,7 @@ fn loaded_with(change: impl Fn(&mut FaultSurface)) -> Option<FaultNetwork> {
     BLOCKS.keep(folder.path(), "aa", &Progress::silent(), |out| {
         write_parts(out, &surfaces, whole.truncation(), whole.signatures())
     });
-    load_blocks(folder.path(), "aa")
+    BLOCKS.load(folder.path(), "aa", read)
 }
 
 #[test]

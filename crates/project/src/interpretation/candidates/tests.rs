@@ -7,6 +7,7 @@ use crate::document::Polarity;
 use files::segy::{SegyOptions, WriteOptions};
 use interp::ExtractSettings;
 use interp::assembly::Fingerprint;
+use std::path::{Path, PathBuf};
 use survey::{VerticalUnit, Volume};
 
 /// A project with a small volume.
@@ -43,11 +44,11 @@ fn what_is_held_is_not_read_again_until_another_extraction_is_there() {
     let mut project = Project::open(&root).unwrap();
     let mut settings = ExtractSettings::default();
     extract(&mut project, &settings);
-    let first = Candidates::load(&root, project.document(), &quiet).unwrap();
-    assert!(Arc::ptr_eq(&first, &Candidates::load(&root, project.document(), &quiet).unwrap()));
+    let first = Candidates::load(Facts::of(&root, project.document()), &quiet).unwrap();
+    assert!(Arc::ptr_eq(&first, &Candidates::load(Facts::of(&root, project.document()), &quiet).unwrap()));
     settings.forest.min_leaf_triangles = 80;
     extract(&mut project, &settings);
-    let second = Candidates::load(&root, project.document(), &quiet).unwrap();
+    let second = Candidates::load(Facts::of(&root, project.document()), &quiet).unwrap();
     assert_ne!(first.key, second.key);
     assert!(second.forest.leaf_count() > first.forest.leaf_count());
     // Of another project nothing is taken, whatever its key.
@@ -55,7 +56,7 @@ fn what_is_held_is_not_read_again_until_another_extraction_is_there() {
     let other = imported(elsewhere.path());
     let mut elsewhere = Project::open(&other).unwrap();
     extract(&mut elsewhere, &settings);
-    assert!(!Arc::ptr_eq(&second, &Candidates::load(&other, elsewhere.document(), &quiet).unwrap()));
+    assert!(!Arc::ptr_eq(&second, &Candidates::load(Facts::of(&other, elsewhere.document()), &quiet).unwrap()));
 }
 
 #[test]
@@ -72,7 +73,7 @@ fn a_part_of_the_candidates_tells_the_same_of_picks_as_all_of_them() {
     let document = project.document();
     let geometry = document.frame().unwrap();
     let stored = extraction::open(&root, document).unwrap();
-    let whole = Candidates::load(&root, document, &quiet).unwrap();
+    let whole = Candidates::load(Facts::of(&root, document), &quiet).unwrap();
     assert!(whole.forest.surfaces.surfaces.len() > 3);
     for at in [[4.0, 5.0, 9.0], [13.3, 7.6, 61.7], [22.0, 19.0, 120.0], [1.0, 1.0, 0.0]] {
         let part = Candidates::part(&stored, document, &[at], &quiet).unwrap();

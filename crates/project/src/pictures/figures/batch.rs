@@ -70,12 +70,13 @@ fn stage(
     progress: &Progress,
 ) -> Result<Vec<WrittenFigure>, ProjectError> {
     let mut staged = Vec::new();
+    // Held, so that the next figure finds it.
     let mut rock = None;
     for &(file, format, ref figure) in meant {
         let fonts = fonts.to_vec();
-        let settings = FigureSettings { format, device, volume_bytes, fonts, picture_dpi: None, rock };
+        let settings = FigureSettings { format, device, volume_bytes, fonts, picture_dpi: None };
         let made = make(project, figure, &InterpreterView::default(), &settings, progress).map_err(of_figure(file))?;
-        rock = made.rock.or(settings.rock);
+        rock = made.rock.or(rock);
         let path = out.join(file);
         let replacement = Replacement::of(&path)?;
         write(&made.page, format, replacement.path(), figure.dpi, &title(project))?;

@@ -4,14 +4,15 @@ use crate::Project;
 use crate::content;
 use crate::document::FaultEntry;
 use crate::error::ProjectError;
-use crate::interpretation::{assembly, proposals};
+use crate::interpretation::{HorizonSheets, proposals};
 use figure::interpretation::{
     DrawnInterpretation, DrawnSelection, FaultMesh, PickedSheets, SheetHole, Stick, TraceSheet,
 };
 use glam::DVec3;
 use interp::faults::Proposal;
 use interp::holes::{Hole, find_holes};
-use interp::reassembly::{VoxelSheet, from_horizon};
+use interp::reassembly::VoxelSheet;
+use std::sync::Arc;
 use survey::{Progress, SurveyGeometry};
 use ttf::Colour;
 
@@ -44,7 +45,7 @@ impl InterpreterView {
 struct Picked {
     name: String,
     colour: Colour,
-    sheets: Vec<VoxelSheet>,
+    sheets: Arc<Vec<VoxelSheet>>,
     holes: Vec<Hole>,
 }
 
@@ -74,10 +75,9 @@ impl<'a> InterpreterPicks<'a> {
         let (root, document) = (project.root(), project.document());
         let geometry = document.frame()?;
         let [nx, ny, _] = geometry.size();
-        let blocks = assembly::blocks(root, document, progress)?;
         let mut horizons = Vec::new();
         for (entry, named) in document.horizons.iter().zip(super::horizons(document)) {
-            let sheets = from_horizon(&content::read_horizon(root, entry, progress)?, geometry, &blocks);
+            let sheets = project.facts().get(&HorizonSheets(entry), progress)?;
             let holes = find_holes(&sheets, [nx, ny]);
             horizons.push(Picked { name: named.name, colour: named.colour, sheets, holes });
         }

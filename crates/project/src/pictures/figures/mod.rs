@@ -21,7 +21,7 @@ use crate::Project;
 use crate::content;
 use crate::document::{Document, WellEntry};
 use crate::error::ProjectError;
-use crate::pictures::load::{self, Loaded, Rock, Stage};
+use crate::pictures::load::{self, Extent, Loaded, Request, Rock, Stage};
 use crate::pictures::{Device, Painter};
 use crate::styles;
 use figure::cut::{SectionKind, SectionSource};
@@ -31,7 +31,6 @@ use figure::{Annotation, FencePart, Figure, FigureInputs, Part, SectionPart};
 use glam::{Vec2, Vec3};
 use image::RgbaImage;
 use interpreter::InterpreterPicks;
-use model::StructuralModel;
 use page::FileFormat;
 use page::list::DisplayList;
 use render::touched::Places;
@@ -54,7 +53,7 @@ pub struct MadeFigure {
     pub stages: Vec<Stage>,
     /// The neighbouring layers of its blocks that cannot be told apart.
     pub confusions: Vec<NamedConfusion>,
-    /// The model and its parameterization, if they were needed: the next figure may have them.
+    /// The model and its parameterization, if they were needed: while they are held, the next figure finds them.
     pub rock: Option<Arc<Rock>>,
 }
 
@@ -72,8 +71,6 @@ pub struct FigureSettings {
     /// Coarsest resolution that pictures of blocks may have, dots an inch, where a page is looked at soon; absent: the
     /// figure's. All else is laid out as at the figure's.
     pub picture_dpi: Option<f64>,
-    /// The model and its parameterization, where they are known already.
-    pub rock: Option<Arc<Rock>>,
 }
 
 /// The page itself refuses longer sides.
@@ -107,26 +104,21 @@ fn lettered(
     let document = project.document();
     let figure = &settled(figure, document);
     memory::check("the page", &figure.size_px().map(|side| side.min(LONGEST_SIDE) as usize), PIXEL_BYTES)?;
-    let mut painter = if is_painted(figure, settings) { Some(Painter::new(settings.device, progress)?) } else { None };
-    let (page, is_whole) = page_of(project, figure, view, settings, (Extent::Seen, &mut painter), progress)?;
-    if is_whole {
-        return Ok(page);
-    }
-    Ok(page_of(project, figure, view, settings, (Extent::Whole, &mut painter), progress)?.0)
-}
-
-/// What of volumes is read for a figure of sections alone, or of one block that the processor paints.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Extent {
-    /// All of them.
-    Whole,
-    /// Of large ones the samples on the sections, or on the faces of the block.
-    Seen,
-}
-
-/// Whether a figure shows a block.
-fn has_block(figure: &Figure) -> bool {
-    figure.parts.iter().any(|part| matches!(part, Part::Block(_)))
+    let is_painted = is_painted(figure, settings);
+    let mut painter = if is_painted { Some(Painter::new(settings.device, progress)?) } else { None };
+    let scene = Scene { preset: figure.printed_in(), ..needs(figure) };
+    let has_block = figure.parts.iter().any(|part| matches!(part, Part::Block(_)));
+    let places = section_places(figure, document.frame()?);
+    let extent = if !(has_block || figure.has_rock_sections()) || figure.interpretation {
+        Extent::Data(Some(&places).filter(|_| !has_block))
+    } else if painter.as_ref().is_some_and(Painter::is_processor) {
+        Extent::Faces
+    } else {
+        Extent::Whole
+    };
+    let request = Request::new(&scene).of(extent).within(settings.volume_bytes);
+    let page = |loaded: &Loaded| page_of(project, figure, (&scene, loaded), view, settings, &mut painter, progress);
+    Ok(load::drawn(project.facts(), &request, progress, page)?.0)
 }
 
 /// Whether the rock of a figure is painted, and not traced.
@@ -134,19 +126,31 @@ fn is_painted(figure: &Figure, settings: &FigureSettings) -> bool {
     figure.is_block_alone() && settings.format.has_pixels()
 }
 
-/// The page, and whether no sample was asked for that was not read.
+/// The page of what was loaded for a scene that needs the same as the figure.
 fn page_of(
     project: &Project,
     figure: &Figure,
+    (scene, loaded): (&Scene, &Loaded),
     view: &InterpreterView,
     settings: &FigureSettings,
-    (extent, painter): (Extent, &mut Option<Painter>),
+    painter: &mut Option<Painter>,
     progress: &Progress,
-) -> Result<(MadeFigure, bool), ProjectError> {
+) -> Result<MadeFigure, ProjectError> {
     let document = project.document();
-    let is_processor = painter.as_ref().is_some_and(Painter::is_processor);
-    let FigureData { loaded, model, stages } =
-        FigureData::load(project, figure, settings, (extent, is_processor), progress)?;
+    let stages: Vec<Stage>;
+    // Sections and maps of measured data need the model without the coordinates of its layers.
+    let model = match &loaded.rock {
+        Some(rock) => {
+            stages = rock.stages.clone();
+            None
+        }
+        None => {
+            let built = if figure.interpretation { None } else { load::structural_model(project.facts(), progress)? };
+            let (model, stage) = built.unzip();
+            stages = stage.into_iter().collect();
+            model
+        }
+    };
     let picks = if figure.interpretation { Some(InterpreterPicks::read(project, view, progress)?) } else { None };
     let shown = picks.as_ref().map(|picks| {
         let mut shown = picks.borrowed();
@@ -161,11 +165,7 @@ fn page_of(
     layers.iter_mut().for_each(|style| *style = figure.printed_in().layer(style));
     let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
     let mut data = loaded.inputs(&volumes, &wells);
-    match &model {
-        Some(ModelAlone::Known(rock)) => data.model = Some(&rock.model),
-        Some(ModelAlone::Built(model)) => data.model = Some(model),
-        None => {}
-    }
+    data.model = data.model.or(model.as_deref());
     let inputs = FigureInputs {
         source: SectionSource { data, raw: loaded.raw.as_ref() },
         horizons: &horizons(document),
@@ -181,16 +181,13 @@ fn page_of(
     let preset = figure.printed_in();
     let share = settings.picture_dpi.map_or(1.0, |dpi| (dpi / figure.dpi).min(1.0));
     let is_painted = is_painted(figure, settings);
-    let mut painter =
-        FigurePainter { is_painted, painter, settings, loaded: &loaded, library, preset, share, stages, progress };
+    let mut painter = FigurePainter { is_painted, painter, settings, loaded, library, preset, share, stages, progress };
     let page = little_room::made(figure, progress, |figure| figure::make(figure, &inputs, &mut painter))?;
     warn_of_boxes(&page, progress);
     let device = painter.painter.as_ref().map(|painter| painter.device().to_owned());
     let stages = painter.stages;
-    let scene = Scene { preset, ..needs(figure) };
-    let confusions = confusions(project.root(), document, loaded.rock.as_deref(), &scene)?;
-    let made = MadeFigure { page, device, stages, confusions, rock: loaded.rock.clone() };
-    Ok((made, !loaded.has_missed()))
+    let confusions = confusions(project.root(), document, loaded.rock.as_deref(), scene)?;
+    Ok(MadeFigure { page, device, stages, confusions, rock: loaded.rock.clone() })
 }
 
 /// The figure with what its sections show: measured data where there are some, and the rock otherwise.
@@ -287,52 +284,6 @@ impl BlockPainter for FigurePainter<'_> {
         }
         self.stages.push(Stage::new("paths", start.elapsed()));
         Ok(traced)
-    }
-}
-
-/// What a figure is made of.
-struct FigureData {
-    loaded: Loaded,
-    model: Option<ModelAlone>,
-    stages: Vec<Stage>,
-}
-
-/// The model of a figure without blocks or rock on its sections, which need no parameterization.
-enum ModelAlone {
-    Known(Arc<Rock>),
-    Built(Box<StructuralModel>),
-}
-
-impl FigureData {
-    fn load(
-        project: &Project,
-        figure: &Figure,
-        settings: &FigureSettings,
-        (extent, is_processor): (Extent, bool),
-        progress: &Progress,
-    ) -> Result<Self, ProjectError> {
-        let scene = Scene { preset: figure.printed_in(), ..needs(figure) };
-        let has_block = has_block(figure);
-        let known = settings.rock.as_ref().filter(|rock| rock.is_of(project.document()));
-        if (has_block || figure.has_rock_sections()) && !figure.interpretation {
-            let is_alone = extent == Extent::Seen && is_processor && matches!(figure.parts[..], [Part::Block(_)]);
-            let extent = if is_alone { load::Extent::FACES } else { load::Extent::Whole };
-            let reading = (settings.volume_bytes, extent);
-            let loaded = load::load_scene(project, known.cloned(), &scene, reading, progress)?;
-            let made = loaded.rock.as_ref().filter(|_| known.is_none());
-            let stages = made.map(|rock| rock.stages.clone()).unwrap_or_default();
-            return Ok(Self { loaded, model: None, stages });
-        }
-        let places = section_places(figure, project.document().frame()?);
-        let places = Some(&places).filter(|_| extent == Extent::Seen && !has_block);
-        let loaded = load::load_sections(project, &scene, places, settings.volume_bytes, progress)?;
-        let (model, stages) = match known {
-            _ if figure.interpretation => (None, Vec::new()),
-            Some(rock) => (Some(ModelAlone::Known(rock.clone())), Vec::new()),
-            None => load::structural_model(project, progress)?
-                .map_or((None, Vec::new()), |(model, stage)| (Some(ModelAlone::Built(Box::new(model))), vec![stage])),
-        };
-        Ok(Self { loaded, model, stages })
     }
 }
 

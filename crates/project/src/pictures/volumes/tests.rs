@@ -4,8 +4,8 @@ use crate::Project;
 use crate::command::{AddHorizon, Age, Command, ImportVolume};
 use crate::document::Polarity;
 use crate::pictures::figures::section_places;
-use crate::pictures::load::{Extent, load_read, load_scene};
-use crate::pictures::volumes::{LoadedSamples, Reading};
+use crate::pictures::load::{Extent, Request, load};
+use crate::pictures::volumes::LoadedSamples;
 use crate::pictures::{Device, Painter, scene};
 use figure::cut::{FenceCut, SectionCut, SectionKind, SectionSource};
 use figure::{FencePart, Figure, Part, SectionPart};
@@ -82,17 +82,18 @@ fn the_samples_on_faces_make_the_picture_of_all_samples() {
     let mut painter = Painter::new(Device::Cpu, &quiet).unwrap();
     for (n, scene) in scenes(&project).into_iter().enumerate() {
         let mut draw = |bytes: u64, extent: Extent| {
-            let loaded = load_scene(&project, None, &scene, (bytes, extent), &quiet).unwrap();
+            let request = Request { small_bytes: 0, ..Request::new(&scene).of(extent).within(bytes) };
+            let loaded = load(project.facts(), &request, &quiet).unwrap();
             (painter.draw(&scene, &loaded, &quiet).unwrap().0, loaded)
         };
-        let (whole, _) = draw(1 << 30, Extent::Whole);
-        let (sparse, loaded) = draw(1 << 30, Extent::Faces { small_bytes: 0 });
+        let whole = draw(1 << 30, Extent::Whole).0;
+        let (sparse, loaded) = draw(1 << 30, Extent::Faces);
         assert!(!loaded.has_missed(), "scene {n}");
-        assert!(matches!(loaded.volumes[0].samples, LoadedSamples::Sparse(_)), "scene {n}");
+        assert!(matches!(*loaded.volumes[0].samples, LoadedSamples::Sparse(_)), "scene {n}");
         assert!(whole == sparse, "scene {n}");
         // The same of a coarser level, where the cells of the finest are too many.
-        let (coarse, _) = draw(400 << 10, Extent::Whole);
-        let (sparse, loaded) = draw(445 << 10, Extent::Faces { small_bytes: 0 });
+        let coarse = draw(400 << 10, Extent::Whole).0;
+        let (sparse, loaded) = draw(445 << 10, Extent::Faces);
         assert_eq!((loaded.volumes[0].named().volume.size(), loaded.has_missed()), ([43, 37, 50], false), "scene {n}");
         assert!(sparse == coarse, "scene {n}");
     }
@@ -125,8 +126,9 @@ fn a_section_takes_no_samples_but_those_on_its_plane() {
         let figure = Figure { parts: vec![part.clone()], ..Figure::default() };
         let places = section_places(&figure, &frame);
         let image = |places| {
-            let reading = Reading { bytes: 1 << 30, places, small_bytes: 0, whole: &[] };
-            let loaded = load_read(&project, &Scene::default(), &reading, &quiet).unwrap();
+            let scene = Scene::default();
+            let request = Request { small_bytes: 0, ..Request::new(&scene).of(Extent::Data(places)) };
+            let loaded = load(project.facts(), &request, &quiet).unwrap();
             let volumes = loaded.named_volumes();
             let source = SectionSource { data: loaded.inputs(&volumes, &[]), raw: loaded.raw.as_ref() };
             let image = match &part {
