@@ -51,7 +51,6 @@
 //!
 //! To add a format: one file with a `CODEC`, one variant of [`Format`], one line in `CODECS`.
 
-mod bounds;
 mod charisma;
 mod column;
 mod columns;
@@ -98,7 +97,6 @@ mod write;
 mod zmap;
 mod zmap_points;
 
-pub use bounds::{Bounds, InterpretationFile, bounds_of, survey_from_points};
 pub use column::Column;
 pub use describe::{FileDescription, SurfaceDescription, describe};
 pub use error::{FormatError, HorizontalExtent};
@@ -294,18 +292,6 @@ fn names(select: impl Fn(&Codec) -> bool) -> String {
     CODECS.iter().filter(|c| select(c)).map(|c| c.name).collect::<Vec<_>>().join(", ")
 }
 
-/// Opens a file, determines its format and reads the selected surfaces without conversion.
-fn read_raw(
-    path: &Path,
-    geometry: Option<&SurveyGeometry>,
-    options: &ImportOptions,
-    kind: SurfaceKind,
-) -> Result<(SourceFile, Settled<Format>, Vec<RawSurface>), FormatError> {
-    let source = SourceFile::open(path)?;
-    let (format, surfaces) = read_source(&source, geometry, options, kind)?;
-    Ok((source, format, surfaces))
-}
-
 /// Determines the format of a file in memory and reads the selected surfaces without conversion.
 fn read_source(
     source: &SourceFile,
@@ -392,6 +378,19 @@ fn name_of(raw: &RawSurface, source: &SourceFile, options: &ImportOptions) -> St
 
 /// Reads the horizons of a file and places them on nodes over the survey.
 ///
+/// ```
+/// # use files::{ImportOptions, read_horizons};
+/// # use survey::{SurveyGeometry, VerticalUnit};
+/// let geometry = SurveyGeometry::regular([2, 2, 101], 25.0, 4.0, VerticalUnit::Metres);
+/// let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("top.csv");
+/// std::fs::write(&file, "inline,crossline,z\n1,1,100\n1,2,110\n2,1,120\n2,2,130\n")?;
+/// let read = read_horizons(&file, &geometry, &ImportOptions::default())?;
+/// assert_eq!(read[0].0.name, "top");
+/// assert_eq!(read[0].0.sheets[0].depth, [100.0, 110.0, 120.0, 130.0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`FormatError`] when the file cannot be read, does not fit the survey, or is ambiguous. Its text says what
 /// to do.
@@ -404,30 +403,6 @@ pub fn read_horizons(
     options: &ImportOptions,
 ) -> Result<Vec<(Horizon, ImportReport)>, FormatError> {
     horizons_of(&SourceFile::open(path)?, geometry, options)
-}
-
-/// As [`read_horizons`], from bytes in memory; `path` gives the extension and is named in errors.
-///
-/// ```
-/// # use files::{ImportOptions, parse_horizons};
-/// # use survey::{SurveyGeometry, VerticalUnit};
-/// let geometry = SurveyGeometry::regular([2, 2, 101], 25.0, 4.0, VerticalUnit::Metres);
-/// let table = b"inline,crossline,z\n1,1,100\n1,2,110\n2,1,120\n2,2,130\n";
-/// let read = parse_horizons("top.csv".as_ref(), table, &geometry, &ImportOptions::default())?;
-/// assert_eq!(read[0].0.name, "top");
-/// assert_eq!(read[0].0.sheets[0].depth, [100.0, 110.0, 120.0, 130.0]);
-/// # Ok::<(), files::FormatError>(())
-/// ```
-///
-/// # Errors
-/// As [`read_horizons`].
-pub fn parse_horizons(
-    path: &Path,
-    bytes: &[u8],
-    geometry: &SurveyGeometry,
-    options: &ImportOptions,
-) -> Result<Vec<(Horizon, ImportReport)>, FormatError> {
-    horizons_of(&SourceFile { path: path.to_path_buf(), bytes: bytes.to_vec() }, geometry, options)
 }
 
 fn horizons_of(
@@ -505,32 +480,12 @@ pub fn read_fault(
     geometry: &SurveyGeometry,
     options: &ImportOptions,
 ) -> Result<Vec<(Fault, ImportReport)>, FormatError> {
-    faults_of(&SourceFile::open(path)?, geometry, options)
-}
-
-/// As [`read_fault`], from bytes in memory; `path` gives the extension and is named in errors.
-///
-/// # Errors
-/// As [`read_horizons`].
-pub fn parse_fault(
-    path: &Path,
-    bytes: &[u8],
-    geometry: &SurveyGeometry,
-    options: &ImportOptions,
-) -> Result<Vec<(Fault, ImportReport)>, FormatError> {
-    faults_of(&SourceFile { path: path.to_path_buf(), bytes: bytes.to_vec() }, geometry, options)
-}
-
-fn faults_of(
-    source: &SourceFile,
-    geometry: &SurveyGeometry,
-    options: &ImportOptions,
-) -> Result<Vec<(Fault, ImportReport)>, FormatError> {
-    let (format, surfaces) = read_source(source, Some(geometry), options, SurfaceKind::Fault)?;
+    let source = SourceFile::open(path)?;
+    let (format, surfaces) = read_source(&source, Some(geometry), options, SurfaceKind::Fault)?;
     surfaces
         .into_iter()
         .map(|raw| {
-            let name = name_of(&raw, source, options);
+            let name = name_of(&raw, &source, options);
             fault::build(&source.path, name, format.clone(), raw, geometry, options)
         })
         .collect()

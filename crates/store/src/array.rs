@@ -84,7 +84,7 @@ fn file_store(group: &Path, action: &'static str) -> Result<Arc<FilesystemStore>
 }
 
 /// Writes a group's metadata; `name` is empty for the folder itself.
-pub fn write_group(group: &Path, name: &str, attributes: Map<String, Value>) -> Result<(), StoreError> {
+pub(crate) fn write_group(group: &Path, name: &str, attributes: Map<String, Value>) -> Result<(), StoreError> {
     let store = file_store(group, "written")?;
     let built = GroupBuilder::new().attributes(attributes).build(store, &format!("/{name}"));
     let fail = |reason: String| StoreError::Array { path: group.to_owned(), action: "written", reason };
@@ -93,7 +93,7 @@ pub fn write_group(group: &Path, name: &str, attributes: Map<String, Value>) -> 
 }
 
 /// Reads a group's attributes.
-pub fn read_group(group: &Path) -> Result<Map<String, Value>, StoreError> {
+pub(crate) fn read_group(group: &Path) -> Result<Map<String, Value>, StoreError> {
     if !group.is_dir() {
         return Err(StoreError::Missing { path: group.to_owned() });
     }
@@ -207,7 +207,7 @@ fn plain_shards(group: &Path, name: &str, shape: &[usize]) -> Option<ShardGrid> 
 }
 
 /// An array that is being written, shard by shard, from any thread.
-pub struct ArrayWriter<T> {
+pub(crate) struct ArrayWriter<T> {
     group: PathBuf,
     name: String,
     layout: ArrayLayout,
@@ -220,7 +220,7 @@ pub struct ArrayWriter<T> {
 impl<T: StoredSample> ArrayWriter<T> {
     /// An array whose metadata are written already. Where other processes write files of it too, `apart` is a folder of
     /// this process: each file is written there, and moved to its place once it is complete.
-    pub fn of_created(
+    pub(crate) fn of_created(
         group: &Path,
         name: &str,
         layout: ArrayLayout,
@@ -236,7 +236,7 @@ impl<T: StoredSample> ArrayWriter<T> {
 
     /// Creates the array `name` (it may contain `/`) in the folder `group`; `fill` is the value of elements that were
     /// not written.
-    pub fn create(group: &Path, name: &str, layout: ArrayLayout, fill: T) -> Result<Self, StoreError> {
+    pub(crate) fn create(group: &Path, name: &str, layout: ArrayLayout, fill: T) -> Result<Self, StoreError> {
         Self::described(group, name, layout, fill, Map::new())
     }
 
@@ -254,12 +254,12 @@ impl<T: StoredSample> ArrayWriter<T> {
     }
 
     /// The division into chunks and shards.
-    pub fn layout(&self) -> &ArrayLayout {
+    pub(crate) fn layout(&self) -> &ArrayLayout {
         &self.layout
     }
 
     /// Writes the shard at `index`: `[…]` of the file's shape, padded where it reaches beyond the array.
-    pub fn write_shard(&self, index: &[usize], values: Vec<T>) -> Result<(), StoreError> {
+    pub(crate) fn write_shard(&self, index: &[usize], values: Vec<T>) -> Result<(), StoreError> {
         let place: Vec<u64> = index.iter().map(|&n| n as u64).collect();
         // On one thread: the library writes the chunks of a shard in the order in which its threads finish them, and
         // the same input must give the same bytes. Shards are written in parallel instead.
@@ -300,7 +300,7 @@ fn codec() -> Arc<dyn BytesToBytesCodecTraits> {
 
 /// Writes a whole array, one file at a time on each thread. Memory: one file's elements per thread beside
 /// `values`.
-pub fn write_array<T: StoredSample>(
+pub(crate) fn write_array<T: StoredSample>(
     group: &Path,
     name: &str,
     layout: ArrayLayout,
@@ -337,7 +337,7 @@ pub(super) fn write_described<T: StoredSample>(
 }
 
 /// An array that can be read, whole or by box.
-pub struct StoredArray {
+pub(crate) struct StoredArray {
     group: PathBuf,
     name: String,
     shape: Vec<usize>,
@@ -348,7 +348,7 @@ pub struct StoredArray {
 
 impl StoredArray {
     /// Opens the array `name` of the folder `group`.
-    pub fn open(group: &Path, name: &str) -> Result<Self, StoreError> {
+    pub(crate) fn open(group: &Path, name: &str) -> Result<Self, StoreError> {
         let opened = Self::of_metadata(group, name)?;
         let edge = opened.file_shape()?;
         let counts: Vec<usize> = opened.shape.iter().zip(&edge).map(|(&n, &edge)| n.div_ceil(edge)).collect();
@@ -402,7 +402,7 @@ impl StoredArray {
     }
 
     /// Elements along each axis.
-    pub fn shape(&self) -> &[usize] {
+    pub(crate) fn shape(&self) -> &[usize] {
         &self.shape
     }
 
@@ -418,7 +418,7 @@ impl StoredArray {
     }
 
     /// Name of the element type as Zarr spells it.
-    pub fn type_name(&self) -> String {
+    pub(crate) fn type_name(&self) -> String {
         use zarrs::plugin::{ExtensionName, ZarrVersion};
         self.array
             .data_type()
@@ -427,7 +427,7 @@ impl StoredArray {
     }
 
     /// Whether its elements are of type `T`.
-    pub fn holds<T: StoredSample>(&self) -> bool {
+    pub(crate) fn holds<T: StoredSample>(&self) -> bool {
         *self.array.data_type() == T::data_type()
     }
 
@@ -458,7 +458,7 @@ impl StoredArray {
     }
 
     /// The elements of a box, row-major. Files are decoded in parallel. Memory: the box twice.
-    pub fn read_box<T: StoredSample>(&self, start: &[usize], size: &[usize]) -> Result<Vec<T>, StoreError> {
+    pub(crate) fn read_box<T: StoredSample>(&self, start: &[usize], size: &[usize]) -> Result<Vec<T>, StoreError> {
         if !self.holds::<T>() {
             return Err(StoreError::WrongType {
                 path: self.group.clone(),
@@ -496,7 +496,7 @@ impl StoredArray {
     }
 
     /// All elements, row-major, a layer of files at a time. Memory: the array, and one layer of files.
-    pub fn read<T: StoredSample>(&self, progress: &Progress) -> Result<Vec<T>, StoreError> {
+    pub(crate) fn read<T: StoredSample>(&self, progress: &Progress) -> Result<Vec<T>, StoreError> {
         let edge = self.file_shape()?[0];
         let rows = self.shape[0];
         self.check_memory(&self.shape, size_of::<T>())?;

@@ -68,7 +68,8 @@ pub(super) fn stored(group: &Path) -> Result<Vec<StoredArray>, StoreError> {
 
 #[cfg(test)]
 mod tests {
-    use crate::{StoredArray, VolumeInfo, write_volume};
+    use crate::array::StoredArray;
+    use crate::{VolumeInfo, write_volume};
     use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 
     #[test]

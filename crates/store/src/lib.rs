@@ -68,7 +68,6 @@ mod volume;
 mod volume_info;
 mod well;
 
-pub use array::{ArrayWriter, StoredArray, read_group, write_array, write_group};
 pub use candidates::{CandidateParts, CandidateWriter, StoredCandidates, surface_batches};
 pub use error::StoreError;
 pub use fault::{read_fault, write_fault};
@@ -78,7 +77,7 @@ pub use ingest::{Ingested, MEMORY_BYTES, resume_blocks, write_blocks, write_volu
 pub use layout::{ArrayLayout, BRICK};
 pub use links::link_volume;
 pub use parameterization::{
-    NO_ID, ParameterizationVolumes, ParameterizationWriter, StoredParameterization, write_parameterization,
+    ParameterizationVolumes, ParameterizationWriter, StoredParameterization, write_parameterization,
 };
 pub use parts::VolumeParts;
 pub use ranges::IndexedRanges;

@@ -17,7 +17,7 @@ use survey::progress::Progress;
 use survey::volume::Volume;
 
 /// The id that stands for "none".
-pub const NO_ID: u16 = u16::MAX;
+pub(crate) const NO_ID: u16 = u16::MAX;
 
 /// Kind of the group.
 const KIND: &str = "parameterization";

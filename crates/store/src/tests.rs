@@ -1,5 +1,7 @@
 //! Round trips, damage, cancellation, full and read-only disks.
 
+use super::array::StoredArray;
+use super::parameterization::NO_ID;
 use super::*;
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;

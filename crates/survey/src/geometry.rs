@@ -359,12 +359,6 @@ impl SurveyGeometry {
             DVec3::new(0.0, 0.0, self.sample_m()),
         )
     }
-
-    /// Whether voxel (x, y, z up) is a right-handed frame as seen on the map: true when going from inlines to
-    /// crosslines turns anticlockwise.
-    pub fn is_right_handed(&self) -> bool {
-        self.inline_vector.perp_dot(self.crossline_vector) > 0.0
-    }
 }
 
 #[cfg(test)]
@@ -395,7 +389,7 @@ mod tests {
     fn voxel_world_round_trip_on_a_rotated_mirrored_survey() {
         let g = rotated();
         g.validate().unwrap();
-        assert!(!g.is_right_handed());
+        assert!(g.inline_vector.perp_dot(g.crossline_vector) < 0.0);
         let voxel = DVec3::new(3.25, 17.5, 11.125);
         assert!((g.voxel_from_world(g.world_from_voxel(voxel)) - voxel).length() < 1e-9);
     }

@@ -32,7 +32,7 @@ pub mod fault;
 pub mod geometry;
 pub mod height_field;
 pub mod horizon;
-pub mod level_field;
+mod level_field;
 pub mod mesh;
 pub mod progress;
 pub mod quantity;

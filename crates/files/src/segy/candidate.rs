@@ -92,7 +92,7 @@ impl Candidate {
     }
 
     /// What it gives, in a few words.
-    pub fn as_choice(&self) -> String {
+    pub(crate) fn as_choice(&self) -> String {
         let size = |lines: &Option<LineSummary>| lines.map_or_else(String::new, |l| format!("{} ({l})", l.count));
         format!(
             "bytes {} and {}{} for {} inlines and {} crosslines",

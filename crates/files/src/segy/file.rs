@@ -110,7 +110,7 @@ impl SegyFile {
     }
 
     /// Number in the file, from 0, of the trace at inline index `x`, crossline index `y`.
-    pub fn trace_at(&self, x: usize, y: usize) -> Option<usize> {
+    pub(crate) fn trace_at(&self, x: usize, y: usize) -> Option<usize> {
         let trace = self.lattice.trace_of[x * self.lattice.crosslines.count + y];
         (trace != NO_TRACE).then_some(trace as usize)
     }

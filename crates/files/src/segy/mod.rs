@@ -121,4 +121,4 @@ pub fn read(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<S
     SegyFile::open(path, options, progress)?.read(progress)
 }
 
-pub use write::{SampleSource, check_room, write, write_lines};
+pub use write::{check_room, write, write_lines};

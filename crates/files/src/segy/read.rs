@@ -133,7 +133,7 @@ impl SegyFile {
     ///
     /// # Errors
     /// [`SegyProblem::Cancelled`], and those of [`SegyFile::read_trace`].
-    pub fn read_inlines(
+    pub(crate) fn read_inlines(
         &self,
         first_inline: usize,
         out: &mut [f32],

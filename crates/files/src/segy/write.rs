@@ -111,7 +111,7 @@ pub struct WriteReport {
 }
 
 /// Supplies the samples of a range of inlines, `[inline][crossline][sample]`.
-pub type SampleSource<'s> =
+pub(crate) type SampleSource<'s> =
     dyn FnMut(Range<usize>) -> Result<Cow<'s, [f32]>, Box<dyn std::error::Error + Send + Sync>> + 's;
 
 /// Writes the live traces of a volume.

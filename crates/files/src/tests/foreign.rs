@@ -200,7 +200,8 @@ fn petromod_turns_about_its_own_pivot() {
         file.extend(value.to_be_bytes());
     }
     let read = |bytes: &[u8]| {
-        parse_horizons("a.pmd".as_ref(), bytes, &survey(VerticalUnit::Milliseconds), &ImportOptions::default())
+        let source = SourceFile { path: "a.pmd".into(), bytes: bytes.to_vec() };
+        horizons_of(&source, &survey(VerticalUnit::Milliseconds), &ImportOptions::default())
     };
     let (horizon, report) = read(&file).unwrap().remove(0);
     assert_eq!((report.format.value, report.nulls), (Format::PetroMod, 1));

@@ -1,5 +1,6 @@
 //! Whole files, in and out: the formats' own examples, round trips, bad input, and real data.
 
+mod bounds;
 mod drawings;
 mod faults;
 mod foreign;
@@ -13,6 +14,7 @@ mod tables;
 mod vectors;
 
 use super::*;
+use bounds::{InterpretationFile, survey_from_points};
 use std::path::PathBuf;
 
 /// Writes a text to a file in a folder of its own.

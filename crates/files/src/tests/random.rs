@@ -93,7 +93,7 @@ fn read_all(path: &Path, format: Format) {
         let options = ImportOptions { format, ..ImportOptions::default() };
         let _ = read_horizons(path, &survey(), &options);
         let _ = read_fault(path, &survey(), &options);
-        let _ = read_raw(path, None, &options, SurfaceKind::Horizon);
+        let _ = SourceFile::open(path).and_then(|source| read_source(&source, None, &options, SurfaceKind::Horizon));
     }
 }
 

@@ -71,7 +71,7 @@ fn value(token: &str) -> Option<f64> {
 
 impl Las {
     /// A line of section W by its mnemonic.
-    pub fn well_item(&self, mnemonic: &str) -> Option<&LasItem> {
+    pub(crate) fn well_item(&self, mnemonic: &str) -> Option<&LasItem> {
         self.well.iter().find(|i| i.mnemonic.eq_ignore_ascii_case(mnemonic))
     }
 
@@ -83,7 +83,7 @@ impl Las {
     }
 
     /// The well's name in the header.
-    pub fn well_name(&self) -> Option<&str> {
+    pub(crate) fn well_name(&self) -> Option<&str> {
         let item = self.well_item("WELL")?;
         // LAS 1.2 has text where 2.0 has its description.
         let text = if self.version < 2.0 && !item.description.is_empty() { &item.description } else { &item.value };

@@ -19,13 +19,7 @@ use survey::progress::Progress;
 use survey::source::SourceError;
 
 impl CandidateWriter {
-    /// Inlines and crosslines of a column: those of its files.
-    pub fn column_shape(&self) -> [usize; 2] {
-        let shape = self.distance.layout().file_shape();
-        [shape[0], shape[1]]
-    }
-
-    /// Writes the files of a column, whose first inline and crossline are multiples of [`CandidateWriter::column_shape`]:
+    /// Writes the files of a column, whose first inline and crossline are multiples of a file's sides:
     /// `[inline][crossline][sample]`, as far as the volume goes.
     ///
     /// # Errors

@@ -17,7 +17,7 @@ pub const MAX_PLANES: usize = 400;
 /// Largest number of convex bodies of all shapes of a scene.
 pub const MAX_BODIES: usize = 96;
 /// Largest number of points of a line.
-pub const MAX_POINTS: usize = 200;
+pub(crate) const MAX_POINTS: usize = 200;
 
 /// A cut-out that is no box. Positions are voxels: x = inline index, y = crossline index, z = sample index downwards.
 ///

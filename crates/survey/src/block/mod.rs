@@ -1,7 +1,7 @@
 //! A block of rock: a box of the volume, and what is cut out of it, as convex bodies of planes. Voxel space.
 
 pub mod body;
-pub mod cut_shape;
+pub(crate) mod cut_shape;
 mod polygon;
 pub mod voxel_box;
 

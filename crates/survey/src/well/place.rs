@@ -56,7 +56,7 @@ impl Well {
     }
 
     /// Vertical value of the survey at a TVDSS (m).
-    pub fn vertical_at_tvdss(&self, tvdss_m: f64, geometry: &SurveyGeometry) -> f64 {
+    pub(crate) fn vertical_at_tvdss(&self, tvdss_m: f64, geometry: &SurveyGeometry) -> f64 {
         match (geometry.vertical.unit, &self.checkshot) {
             (VerticalUnit::Metres, _) => tvdss_m,
             (VerticalUnit::Milliseconds, Some(checkshot)) => checkshot.twt_at_tvdss(tvdss_m),
