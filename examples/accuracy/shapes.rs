@@ -22,7 +22,7 @@ const VOXEL_M: DVec3 = DVec3::new(25.0, 25.0, 10.0);
 const PLACES: usize = 4000;
 
 /// A form with what it really is.
-pub struct Form {
+pub(crate) struct Form {
     name: &'static str,
     model: StructuralModel,
     /// The layer at a place, voxels.
@@ -239,12 +239,12 @@ fn elliptic_fault() -> Result<Form> {
 }
 
 /// Every form, with its model.
-pub fn all() -> Result<Vec<Form>> {
+pub(crate) fn all() -> Result<Vec<Form>> {
     Ok(vec![recumbent_fold()?, diapir()?, laccolith()?, thrust()?, elliptic_fault()?])
 }
 
 /// Prints the rows of every form.
-pub fn print(forms: &[Form], zoom: f64) -> Result<()> {
+pub(crate) fn print(forms: &[Form], zoom: f64) -> Result<()> {
     println!("\n## Folds of any shape, bodies, a thrust, a fault with a tip\n");
     println!(
         "Closed forms on 61 × 51 × 81 voxels of 25 × 25 × 10 m, as above: 95 % of the errors of k on the true horizons, voxels\n\

@@ -20,7 +20,7 @@ const SNR: f64 = 3.0;
 
 /// The extraction of one cube.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ExtractionRow {
+pub(crate) struct ExtractionRow {
     /// Voxels along each axis.
     pub side: usize,
     /// Triangles of all surfaces.

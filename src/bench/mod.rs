@@ -10,9 +10,9 @@
 mod dump;
 mod interp;
 mod model;
-pub mod segy;
+pub(crate) mod segy;
 
-pub use self::interp::ExtractionRow;
+pub(crate) use self::interp::ExtractionRow;
 mod store;
 
 use param::{PackedVolume, ParamSettings, Parameterization};
@@ -26,12 +26,12 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
-pub use store::StoreMeasured;
+pub(crate) use store::StoreMeasured;
 use survey::Progress;
 
 /// How large the cubes are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sizes {
+pub(crate) enum Sizes {
     /// 64³ and 128³: seconds.
     Quick,
     /// 128³, 256³ and 512³: minutes, and about 5 GB.
@@ -65,7 +65,7 @@ impl Sizes {
 
 /// One cube.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Cube {
+pub(crate) struct Cube {
     /// Voxels along each axis.
     pub side: usize,
     /// Voxels in layers with two horizons, which other programs are timed on.
@@ -80,7 +80,7 @@ pub struct Cube {
 
 /// What was measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Measured {
+pub(crate) struct Measured {
     /// Threads used.
     pub threads: usize,
     /// The cubes, small to large.
@@ -133,7 +133,7 @@ impl fmt::Display for Measured {
 ///
 /// # Errors
 /// The user cancelled, or files could not be written.
-pub fn run(sizes: Sizes, dump: Option<&Path>, progress: &Progress) -> anyhow::Result<Measured> {
+pub(crate) fn run(sizes: Sizes, dump: Option<&Path>, progress: &Progress) -> anyhow::Result<Measured> {
     let extractions = interp::measure(sizes, dump, progress)?;
     let extraction_growth = match (extractions.first(), extractions.last()) {
         (Some(first), Some(last)) => last.us_per_voxel / first.us_per_voxel,

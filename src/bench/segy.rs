@@ -18,7 +18,7 @@ const ROUNDS: usize = 5;
 
 /// One file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SegyRead {
+pub(crate) struct SegyRead {
     /// Sample format.
     pub format: &'static str,
     /// Samples along each axis.
@@ -31,7 +31,7 @@ pub struct SegyRead {
 
 /// What was measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SegyReads {
+pub(crate) struct SegyReads {
     /// Threads used.
     pub threads: usize,
     /// The files.
@@ -57,7 +57,7 @@ impl fmt::Display for SegyReads {
 ///
 /// # Errors
 /// The user cancelled, or files could not be written.
-pub fn run(side: usize, folder: &Path, progress: &Progress) -> Result<SegyReads, ProjectError> {
+pub(crate) fn run(side: usize, folder: &Path, progress: &Progress) -> Result<SegyReads, ProjectError> {
     let geometry = SurveyGeometry::regular([side; 3], 25.0, 4.0, VerticalUnit::Milliseconds);
     let mut volume = Volume::filled([side; 3], 0.0_f32);
     let mut state = 1_u32;

@@ -19,7 +19,7 @@ const REPEATS: usize = 7;
 
 /// What was measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct StoreMeasured {
+pub(crate) struct StoreMeasured {
     /// Samples along each axis.
     pub side: usize,
     /// Size of the samples, MB.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 type Module = Vec<String>;
 
 /// A crate's modules and what they import.
-pub struct Crate {
+pub(crate) struct Crate {
     files: BTreeMap<Module, PathBuf>,
     /// Names that a module takes in by `use`, with the path they stand for.
     uses: BTreeMap<Module, Vec<(String, Vec<String>)>>,
@@ -18,7 +18,7 @@ pub struct Crate {
 
 impl Crate {
     /// Reads the crate in `folder`.
-    pub fn read(folder: &Path) -> Self {
+    pub(crate) fn read(folder: &Path) -> Self {
         let mut made = Self { files: BTreeMap::new(), uses: BTreeMap::new(), paths: BTreeMap::new() };
         for source in Source::all(folder).into_iter().filter(|source| !source.is_test()) {
             let module = module_of(&source.path);
@@ -63,7 +63,7 @@ impl Crate {
     }
 
     /// Circles of files that do not all lie in one folder, each as a line.
-    pub fn circles(&self) -> Vec<String> {
+    pub(crate) fn circles(&self) -> Vec<String> {
         let mut imports: BTreeMap<&Module, BTreeSet<Module>> = BTreeMap::new();
         for (module, paths) in &self.paths {
             let found = paths.iter().filter_map(|path| self.resolve(module, path, 0));

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A source file.
-pub struct Source {
+pub(crate) struct Source {
     /// Where it is, from the crate's folder.
     pub path: PathBuf,
     /// Its text.
@@ -12,7 +12,7 @@ pub struct Source {
 }
 
 /// Names and folders of the workspace's crates.
-pub fn crates() -> Vec<(String, PathBuf)> {
+pub(crate) fn crates() -> Vec<(String, PathBuf)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut found = vec![("petroglyph".to_owned(), root.to_owned())];
     for entry in fs::read_dir(root.join("crates")).expect("the crates").flatten() {
@@ -24,7 +24,7 @@ pub fn crates() -> Vec<(String, PathBuf)> {
 
 impl Source {
     /// Every source file of the crate in `folder`.
-    pub fn all(folder: &Path) -> Vec<Self> {
+    pub(crate) fn all(folder: &Path) -> Vec<Self> {
         let (mut found, mut folders) = (Vec::new(), vec![folder.join("src")]);
         while let Some(next) = folders.pop() {
             for entry in fs::read_dir(&next).expect("a folder of sources").flatten() {
@@ -43,18 +43,18 @@ impl Source {
     }
 
     /// Its lines.
-    pub fn line_count(&self) -> usize {
+    pub(crate) fn line_count(&self) -> usize {
         self.text.lines().count()
     }
 
     /// Whether all of it is a test.
-    pub fn is_test(&self) -> bool {
+    pub(crate) fn is_test(&self) -> bool {
         let is_test = |part: &str| part == "tests" || part == "tests.rs" || part.ends_with("_tests.rs");
         self.path.iter().any(|part| part.to_str().is_some_and(is_test))
     }
 
     /// Its code without comments, texts and what follows the first test module.
-    pub fn code(&self) -> String {
+    pub(crate) fn code(&self) -> String {
         let end = self.text.find("#[cfg(test)]\nmod tests {").unwrap_or(self.text.len());
         let mut code = String::with_capacity(end);
         for line in self.text[..end].lines() {
@@ -68,7 +68,7 @@ impl Source {
     }
 
     /// Name and lines of each function, by the indentation that the formatter gives: from `fn` to the brace below it.
-    pub fn functions(&self) -> Vec<(String, usize)> {
+    pub(crate) fn functions(&self) -> Vec<(String, usize)> {
         let lines: Vec<&str> = self.text.lines().collect();
         let mut found = Vec::new();
         for (start, line) in lines.iter().enumerate() {

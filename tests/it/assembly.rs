@@ -28,7 +28,7 @@ fn project() -> TempDir {
 }
 
 /// A place on a true horizon, as typed: the middle node of the largest sheet in its file.
-pub fn place_on(at: &Path, name: &str) -> String {
+pub(crate) fn place_on(at: &Path, name: &str) -> String {
     let text = std::fs::read_to_string(at.join(format!("s/horizons/{name}.csv"))).unwrap();
     let header: Vec<&str> = text.lines().next().unwrap().split(',').map(str::trim).collect();
     let column = |wanted: &str| header.iter().position(|name| *name == wanted).unwrap();

@@ -12,7 +12,7 @@ fn subcommands(help: &str) -> Vec<String> {
 }
 
 /// Every command of the program by its words, with its help.
-pub fn commands() -> Vec<(String, String)> {
+pub(crate) fn commands() -> Vec<(String, String)> {
     let (mut asked, mut found) = (vec![Vec::new()], Vec::new());
     while let Some(words) = asked.pop() {
         let help = run(words.iter().map(String::as_str).chain(["--help"])).done().stdout;

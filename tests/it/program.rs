@@ -11,14 +11,14 @@ use tempfile::TempDir;
 
 /// What a run of the program gave.
 #[derive(Debug)]
-pub struct Run {
+pub(crate) struct Run {
     pub code: i32,
     pub stdout: String,
     pub stderr: String,
 }
 
 impl Run {
-    pub fn of(output: &Output) -> Self {
+    pub(crate) fn of(output: &Output) -> Self {
         Self {
             code: output.status.code().unwrap_or(-1),
             stdout: String::from_utf8_lossy(&output.stdout).into_owned(),
@@ -28,14 +28,14 @@ impl Run {
 
     /// The run must have succeeded.
     #[track_caller]
-    pub fn done(self) -> Self {
+    pub(crate) fn done(self) -> Self {
         assert_eq!(self.code, 0, "{}{}", self.stdout, self.stderr);
         self
     }
 
     /// The run must have failed with a reason that has all of `words`, and a hint.
     #[track_caller]
-    pub fn failed(self, words: &[&str]) -> Self {
+    pub(crate) fn failed(self, words: &[&str]) -> Self {
         assert_eq!(self.code, 1, "{}{}", self.stdout, self.stderr);
         assert!(self.stderr.contains("error: "), "{}", self.stderr);
         assert!(self.stderr.contains("hint: "), "{}", self.stderr);
@@ -48,39 +48,39 @@ impl Run {
 
     /// The one object on stdout.
     #[track_caller]
-    pub fn json(&self) -> Value {
+    pub(crate) fn json(&self) -> Value {
         serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}: {}{}", self.stdout, self.stderr))
     }
 }
 
 /// Where the program remembers projects: not where that of the user does.
-pub const STATE_HOME: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/state");
+pub(crate) const STATE_HOME: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/state");
 
-pub fn command() -> Command {
+pub(crate) fn command() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_petroglyph"));
     command.env("XDG_STATE_HOME", STATE_HOME);
     command
 }
 
 /// Runs the program.
-pub fn run<I: AsRef<OsStr>>(arguments: impl IntoIterator<Item = I>) -> Run {
+pub(crate) fn run<I: AsRef<OsStr>>(arguments: impl IntoIterator<Item = I>) -> Run {
     Run::of(&command().args(arguments).output().expect("the program runs"))
 }
 
 /// Runs the program with words separated by blanks, where `@` stands for the folder.
-pub fn run_in(folder: &Path, line: &str) -> Run {
+pub(crate) fn run_in(folder: &Path, line: &str) -> Run {
     Run::of(&command().current_dir(folder).args(words(line)).output().expect("the program runs"))
 }
 
 /// Starts the program with words separated by blanks, and does not wait for it.
-pub fn begin_in(folder: &Path, line: &str) -> Child {
+pub(crate) fn begin_in(folder: &Path, line: &str) -> Child {
     let mut command = command();
     command.current_dir(folder).args(words(line)).stdout(Stdio::piped()).stderr(Stdio::piped());
     command.spawn().expect("the program runs")
 }
 
 /// Splits at blanks, but not inside single quotes.
-pub fn words(line: &str) -> Vec<String> {
+pub(crate) fn words(line: &str) -> Vec<String> {
     let mut words = Vec::new();
     for (index, part) in line.split('\'').enumerate() {
         if index % 2 == 1 {
@@ -115,7 +115,7 @@ fn finished() -> &'static Path {
 }
 
 /// Horizons of the synthetic survey, youngest first.
-pub const HORIZONS: [(&str, &str); 5] = [
+pub(crate) const HORIZONS: [(&str, &str); 5] = [
     ("Alpha", "conformable"),
     ("Bravo", "conformable"),
     ("Unconformity", "erosional"),
@@ -123,17 +123,17 @@ pub const HORIZONS: [(&str, &str); 5] = [
     ("Delta", "conformable"),
 ];
 /// Its faults.
-pub const FAULTS: [&str; 3] = ["Normal fault", "Dying fault", "Reverse fault"];
+pub(crate) const FAULTS: [&str; 3] = ["Normal fault", "Dying fault", "Reverse fault"];
 
 /// A folder with the survey `s` and the project `p.petro` of one's own.
-pub fn project() -> TempDir {
+pub(crate) fn project() -> TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder");
     copy(finished(), folder.path());
     folder
 }
 
 /// A folder with the survey `s` alone.
-pub fn survey() -> TempDir {
+pub(crate) fn survey() -> TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder");
     fs::create_dir(folder.path().join("s")).expect("a folder");
     copy(&finished().join("s"), &folder.path().join("s"));
@@ -141,7 +141,7 @@ pub fn survey() -> TempDir {
 }
 
 /// Takes the hash of the first tile out of the state of a project, as it is in those from before it was recorded.
-pub fn forget_hash_of_tile(root: &Path) {
+pub(crate) fn forget_hash_of_tile(root: &Path) {
     let state = root.join("project.toml");
     let text = fs::read_to_string(&state).expect("a state");
     let from = text.find("[[textures]]").expect("a tile");
@@ -151,7 +151,7 @@ pub fn forget_hash_of_tile(root: &Path) {
 }
 
 /// Copies the content of a folder.
-pub fn copy(from: &Path, to: &Path) {
+pub(crate) fn copy(from: &Path, to: &Path) {
     for entry in fs::read_dir(from).expect("a folder") {
         let entry = entry.expect("an entry");
         let target = to.join(entry.file_name());
@@ -165,7 +165,7 @@ pub fn copy(from: &Path, to: &Path) {
 }
 
 /// Every file below a folder with its bytes, the lock apart.
-pub fn bytes(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+pub(crate) fn bytes(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
     while let Some(next) = folders.pop() {

@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// A project with a horizon on all traces and one on a sixth of them; with the four traces beside its border, which count
 /// as picked, that is 11 of 41.
-pub fn sparse(at: &Path) {
+pub(crate) fn sparse(at: &Path) {
     run_in(at, "create p.petro --bounds 0,1000,0,1000,0,500 --size 41x41x51").done();
     for (name, z, last) in [("Whole", 120.0, 40), ("Sparse", 300.0, 6)] {
         let rows = (0..=last).flat_map(|x| (0..=40).map(move |y| (25 * x, 25 * y)));

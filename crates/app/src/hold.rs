@@ -13,13 +13,13 @@ const NAME: &str = "window.lock";
 
 /// Marks a project as open in this window for as long as the value lives.
 #[derive(Debug)]
-pub struct Hold {
+pub(crate) struct Hold {
     _file: File,
 }
 
 /// The outcome of taking the lock.
 #[derive(Debug)]
-pub enum Taken {
+pub(crate) enum Taken {
     /// This window holds the lock, or no window can.
     Here(Option<Hold>),
     /// Another window holds the lock; with the id of its process, if known.
@@ -28,7 +28,7 @@ pub enum Taken {
 
 impl Hold {
     /// Takes the lock of the project in the folder `root`.
-    pub fn take(root: &Path) -> Taken {
+    pub(crate) fn take(root: &Path) -> Taken {
         let Ok(mut file) = open_own(root, NAME) else { return Taken::Here(None) };
         match file.try_lock() {
             Ok(()) => {
@@ -47,7 +47,7 @@ impl Hold {
     }
 
     /// Whether a window that still runs has the project open.
-    pub fn is_elsewhere(root: &Path) -> bool {
+    pub(crate) fn is_elsewhere(root: &Path) -> bool {
         let Ok(file) = File::options().read(true).write(true).open(root.join(NAME)) else { return false };
         matches!(file.try_lock(), Err(TryLockError::WouldBlock))
     }

@@ -8,13 +8,16 @@ use pyo3::prelude::*;
 use survey::Volume;
 
 /// A volume as an array `[inline][crossline][sample]`, in the same memory.
-pub fn array<T: Element + Copy + Send + Sync>(py: Python<'_>, volume: Volume<T>) -> PyResult<Bound<'_, PyArray3<T>>> {
+pub(crate) fn array<T: Element + Copy + Send + Sync>(
+    py: Python<'_>,
+    volume: Volume<T>,
+) -> PyResult<Bound<'_, PyArray3<T>>> {
     let size = volume.size();
     volume.into_samples().into_pyarray(py).reshape(size)
 }
 
 /// A volume from an array. It is copied, since a volume owns its samples.
-pub fn volume(array: &PyReadonlyArray3<'_, f32>, live: Option<Vec<bool>>) -> PyResult<Volume<f32>> {
+pub(crate) fn volume(array: &PyReadonlyArray3<'_, f32>, live: Option<Vec<bool>>) -> PyResult<Volume<f32>> {
     let shape = array.shape();
     let size = [shape[0], shape[1], shape[2]];
     let mut volume = Volume::from_samples(size, slice(array)?.to_vec()).map_err(wrong)?;
@@ -23,24 +26,24 @@ pub fn volume(array: &PyReadonlyArray3<'_, f32>, live: Option<Vec<bool>>) -> PyR
 }
 
 /// The samples of an array, where they are.
-pub fn slice<'a, T: Element>(array: &'a PyReadonlyArray3<'_, T>) -> PyResult<&'a [T]> {
+pub(crate) fn slice<'a, T: Element>(array: &'a PyReadonlyArray3<'_, T>) -> PyResult<&'a [T]> {
     let values = array.as_slice().ok().filter(|_| array.is_c_contiguous());
     values.ok_or_else(|| wrong("the array is not contiguous in C order; numpy.ascontiguousarray makes it so"))
 }
 
 /// One value for each trace, `[inline][crossline]`, from an array of any layout.
-pub fn mask(live: Option<PyReadonlyArray2<'_, bool>>) -> Option<Vec<bool>> {
+pub(crate) fn mask(live: Option<PyReadonlyArray2<'_, bool>>) -> Option<Vec<bool>> {
     live.map(|live| live.as_array().iter().copied().collect())
 }
 
 /// An error about an argument.
-pub fn wrong(error: impl ToString) -> PyErr {
+pub(crate) fn wrong(error: impl ToString) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
 /// An array of `count` floats that Rust has made, and the address at which Rust had them: the two are the same.
 #[pyfunction]
-pub fn handed_over(py: Python<'_>, count: usize) -> PyResult<(Bound<'_, PyArray3<f32>>, usize)> {
+pub(crate) fn handed_over(py: Python<'_>, count: usize) -> PyResult<(Bound<'_, PyArray3<f32>>, usize)> {
     let samples = vec![1.0f32; count];
     let address = samples.as_ptr() as usize;
     let made = Volume::from_samples([1, 1, count], samples).map_err(wrong)?;
@@ -49,6 +52,6 @@ pub fn handed_over(py: Python<'_>, count: usize) -> PyResult<(Bound<'_, PyArray3
 
 /// The address at which Rust reads an array of floats.
 #[pyfunction]
-pub fn seen_at(array: PyReadonlyArray3<'_, f32>) -> PyResult<usize> {
+pub(crate) fn seen_at(array: PyReadonlyArray3<'_, f32>) -> PyResult<usize> {
     Ok(slice(&array)?.as_ptr() as usize)
 }

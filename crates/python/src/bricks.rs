@@ -31,7 +31,7 @@ fn brick(samples: &Samples<'_>, live: Option<PyReadonlyArray2<'_, bool>>) -> PyR
 /// Lines of halo that a stage needs to all four sides.
 #[pyfunction]
 #[pyo3(signature = (kind, dip=None, semblance=None))]
-pub fn reach(kind: &str, dip: Option<&str>, semblance: Option<&str>) -> PyResult<usize> {
+pub(crate) fn reach(kind: &str, dip: Option<&str>, semblance: Option<&str>) -> PyResult<usize> {
     let steering: DipSettings = settings(dip)?;
     match kind {
         "envelope" | "extrema" | "dip-angle" => Ok(0),
@@ -44,7 +44,7 @@ pub fn reach(kind: &str, dip: Option<&str>, semblance: Option<&str>) -> PyResult
 /// The envelope.
 #[pyfunction]
 #[pyo3(signature = (samples, live=None))]
-pub fn envelope<'py>(
+pub(crate) fn envelope<'py>(
     py: Python<'py>,
     samples: Samples<'py>,
     live: Option<PyReadonlyArray2<'py, bool>>,
@@ -56,7 +56,7 @@ pub fn envelope<'py>(
 /// The dips along inlines and along crosslines, samples a line.
 #[pyfunction]
 #[pyo3(signature = (samples, live=None, dip=None))]
-pub fn dip<'py>(
+pub(crate) fn dip<'py>(
     py: Python<'py>,
     samples: Samples<'py>,
     live: Option<PyReadonlyArray2<'py, bool>>,
@@ -70,7 +70,7 @@ pub fn dip<'py>(
 /// The semblance along the brick's own dips.
 #[pyfunction]
 #[pyo3(signature = (samples, live=None, dip=None, semblance=None))]
-pub fn semblance<'py>(
+pub(crate) fn semblance<'py>(
     py: Python<'py>,
     samples: Samples<'py>,
     live: Option<PyReadonlyArray2<'py, bool>>,
@@ -89,7 +89,7 @@ pub fn semblance<'py>(
 /// The angle of the reflections from the horizontal, degrees, from two dips; `geometry` is that of the survey.
 #[pyfunction]
 #[pyo3(signature = (inline, crossline, geometry, live=None))]
-pub fn dip_angle<'py>(
+pub(crate) fn dip_angle<'py>(
     py: Python<'py>,
     inline: Samples<'py>,
     crossline: Samples<'py>,
@@ -110,7 +110,7 @@ type Extrema<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<f32>>, Bound
 /// The extrema of one kind of every live trace.
 #[pyfunction]
 #[pyo3(signature = (samples, kind, live=None))]
-pub fn extrema<'py>(
+pub(crate) fn extrema<'py>(
     py: Python<'py>,
     samples: Samples<'py>,
     kind: &str,

@@ -90,7 +90,7 @@ type Stages = Vec<(String, Option<usize>)>;
 /// [`ExtractionTasks::stages`]. Nothing is begun.
 #[pyfunction]
 #[pyo3(signature = (path, settings, memory, edge))]
-pub fn extraction_stages(
+pub(crate) fn extraction_stages(
     py: Python<'_>,
     path: PathBuf,
     settings: Option<&str>,

@@ -10,7 +10,7 @@ use std::ffi::OsString;
 /// uses `threads` threads, or as many as there are processors.
 #[pyfunction]
 #[pyo3(signature = (words, progress=None, threads=None))]
-pub fn run(
+pub(crate) fn run(
     py: Python<'_>,
     words: Vec<OsString>,
     progress: Option<Bound<'_, PyAny>>,
@@ -22,13 +22,13 @@ pub fn run(
 
 /// Every command of the program with its options, as JSON.
 #[pyfunction]
-pub fn commands() -> PyResult<String> {
+pub(crate) fn commands() -> PyResult<String> {
     serde_json::to_string(&petroglyph::commands()).map_err(wrong)
 }
 
 /// The pixels of a PNG file: `[row][column][red, green, blue, alpha]`.
 #[pyfunction]
-pub fn decode_png<'py>(py: Python<'py>, file: &[u8]) -> PyResult<Bound<'py, PyArray3<u8>>> {
+pub(crate) fn decode_png<'py>(py: Python<'py>, file: &[u8]) -> PyResult<Bound<'py, PyArray3<u8>>> {
     let image = image::load_from_memory_with_format(file, image::ImageFormat::Png).map_err(wrong)?.into_rgba8();
     let (width, height) = (image.width() as usize, image.height() as usize);
     image.into_raw().into_pyarray(py).reshape([height, width, 4])

@@ -286,7 +286,7 @@ impl Project {
 
 /// Makes sure that every file of a sampled parameterization was written.
 #[pyfunction]
-pub fn finish_parameterization(py: Python<'_>, out: PathBuf) -> PyResult<()> {
+pub(crate) fn finish_parameterization(py: Python<'_>, out: PathBuf) -> PyResult<()> {
     py.detach(|| Ok(ParameterizationWriter::open(&out)?.finish()?))
         .map_err(|error: ProjectError| refusal::of(py, error))
 }

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use std::error::Error;
 
 /// The exception of a refusal: `petroglyph.PetroglyphError`, which has `reason` and `hint`.
-pub fn exception(py: Python<'_>, refusal: &Refusal) -> PyErr {
+pub(crate) fn exception(py: Python<'_>, refusal: &Refusal) -> PyErr {
     let made = py
         .import("petroglyph._errors")
         .and_then(|module| module.getattr("PetroglyphError"))
@@ -18,11 +18,11 @@ pub fn exception(py: Python<'_>, refusal: &Refusal) -> PyErr {
 }
 
 /// The same for an error of a library.
-pub fn of(py: Python<'_>, error: impl Error + Send + Sync + 'static) -> PyErr {
+pub(crate) fn of(py: Python<'_>, error: impl Error + Send + Sync + 'static) -> PyErr {
     exception(py, &petroglyph::explain(error))
 }
 
 /// What is raised where the work was cancelled by Ctrl-C and nobody kept the signal's own exception.
-pub fn interrupted() -> PyErr {
+pub(crate) fn interrupted() -> PyErr {
     PyKeyboardInterrupt::new_err(())
 }

@@ -95,7 +95,7 @@ impl<'de> VariantAccess<'de> for Asker<'_> {
 
 /// Names of the fields of every command, by the command's name, as JSON.
 #[pyfunction]
-pub fn command_fields() -> PyResult<String> {
+pub(crate) fn command_fields() -> PyResult<String> {
     let mut names = Names::default();
     // Each of these reads gives up; what was expected is noted.
     let _ = Command::deserialize(Asker { names: &mut names, position: None });

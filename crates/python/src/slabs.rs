@@ -23,7 +23,7 @@ fn open(project: &Project, memory: u64, settings: &str) -> Result<TimeSlabs, Pro
 /// The volume that geologic time is solved from, what its own volume says of itself, as JSON, and the first inline of each
 /// slab and the one after its last.
 #[pyfunction]
-pub fn time_slabs(py: Python<'_>, project: &Project, memory: u64, settings: &str) -> PyResult<Told> {
+pub(crate) fn time_slabs(py: Python<'_>, project: &Project, memory: u64, settings: &str) -> PyResult<Told> {
     serde_json::from_str::<time::TimeSettings>(settings).map_err(wrong)?;
     let slabs = task(py, || open(project, memory, settings))?;
     let info = serde_json::to_string(&slabs.info()).map_err(wrong)?;
@@ -33,7 +33,7 @@ pub fn time_slabs(py: Python<'_>, project: &Project, memory: u64, settings: &str
 
 /// τ of a slab by its own clock, and the number of faults that were found in it.
 #[pyfunction]
-pub fn time_slab<'py>(
+pub(crate) fn time_slab<'py>(
     py: Python<'py>,
     project: &Project,
     memory: u64,
@@ -48,7 +48,7 @@ pub fn time_slab<'py>(
 /// done, and those that the next slab has too.
 #[pyfunction]
 #[pyo3(signature = (common, tau, is_last))]
-pub fn join_times<'py>(
+pub(crate) fn join_times<'py>(
     py: Python<'py>,
     common: Option<PyReadonlyArray3<'py, f32>>,
     tau: PyReadonlyArray3<'py, f32>,

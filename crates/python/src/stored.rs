@@ -26,13 +26,13 @@ fn type_named(name: &str) -> PyResult<SampleType> {
 /// What a stored volume says of itself, as JSON: geometry, quantity, unit, polarity, source, the samples' type, the sizes of
 /// its levels.
 #[pyfunction]
-pub fn volume_info(py: Python<'_>, path: PathBuf) -> PyResult<String> {
+pub(crate) fn volume_info(py: Python<'_>, path: PathBuf) -> PyResult<String> {
     let stored = StoredVolume::open(&path).map_err(|error| refusal::of(py, error))?;
     info_of(&stored)
 }
 
 /// The same of an open one.
-pub fn info_of(stored: &StoredVolume) -> PyResult<String> {
+pub(crate) fn info_of(stored: &StoredVolume) -> PyResult<String> {
     let sizes: Vec<[usize; 3]> = (0..stored.level_count()).map(|level| stored.size(level)).collect();
     let object = serde_json::json!({
         "info": stored.info(),
@@ -46,7 +46,7 @@ pub fn info_of(stored: &StoredVolume) -> PyResult<String> {
 /// A box of a level of a stored volume.
 #[pyfunction]
 #[pyo3(signature = (path, level, start, size, progress=None))]
-pub fn read_box<'py>(
+pub(crate) fn read_box<'py>(
     py: Python<'py>,
     path: PathBuf,
     level: usize,
@@ -59,7 +59,7 @@ pub fn read_box<'py>(
 }
 
 /// The same of an open one.
-pub fn box_of<'py>(
+pub(crate) fn box_of<'py>(
     py: Python<'py>,
     stored: &StoredVolume,
     level: usize,
@@ -85,12 +85,12 @@ pub fn box_of<'py>(
 
 /// The live-trace mask, one value a trace, `[inline][crossline]`.
 #[pyfunction]
-pub fn read_live(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyArray2<bool>>> {
+pub(crate) fn read_live(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyArray2<bool>>> {
     live_of(py, &StoredVolume::open(&path).map_err(|error| refusal::of(py, error))?)
 }
 
 /// The same of an open one.
-pub fn live_of<'py>(py: Python<'py>, stored: &StoredVolume) -> PyResult<Bound<'py, PyArray2<bool>>> {
+pub(crate) fn live_of<'py>(py: Python<'py>, stored: &StoredVolume) -> PyResult<Bound<'py, PyArray2<bool>>> {
     let [nx, ny, _] = stored.size(0);
     stored.live().to_vec().into_pyarray(py).reshape([nx, ny])
 }
@@ -146,7 +146,7 @@ impl BlockSource for Supplied {
 #[pyfunction]
 #[pyo3(signature = (path, info, dtype, read, live=None, memory=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "named by Python's caller")]
-pub fn write_volume(
+pub(crate) fn write_volume(
     py: Python<'_>,
     path: PathBuf,
     info: &str,

@@ -65,7 +65,7 @@ impl Sink {
 }
 
 /// Does long work, which can be cancelled by Ctrl-C or by an exception in the callback, which then is raised.
-pub fn long<T: Send>(
+pub(crate) fn long<T: Send>(
     py: Python<'_>,
     callback: Option<&Bound<'_, PyAny>>,
     work: impl FnOnce(&Progress) -> Result<T, Refusal> + Send,
@@ -113,7 +113,7 @@ pub fn long<T: Send>(
 }
 
 /// The same for work whose error is that of a library.
-pub fn long_of<T: Send, E: Error + Send + Sync + 'static>(
+pub(crate) fn long_of<T: Send, E: Error + Send + Sync + 'static>(
     py: Python<'_>,
     callback: Option<&Bound<'_, PyAny>>,
     work: impl FnOnce(&Progress) -> Result<T, E> + Send,
@@ -122,7 +122,10 @@ pub fn long_of<T: Send, E: Error + Send + Sync + 'static>(
 }
 
 /// Does work on `threads` threads, or on as many as there are processors.
-pub fn on<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T, Refusal> + Send) -> Result<T, Refusal> {
+pub(crate) fn on<T: Send>(
+    threads: Option<usize>,
+    work: impl FnOnce() -> Result<T, Refusal> + Send,
+) -> Result<T, Refusal> {
     match threads {
         None => work(),
         Some(threads) => {
@@ -133,7 +136,7 @@ pub fn on<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T, Refu
 }
 
 /// Does the work of a task: on one thread, without Python's lock.
-pub fn task<T: Send, E: Error + Send + Sync + 'static>(
+pub(crate) fn task<T: Send, E: Error + Send + Sync + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> Result<T, E> + Send,
 ) -> PyResult<T> {

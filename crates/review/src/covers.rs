@@ -41,7 +41,12 @@ pub(crate) struct CoverMaker<'a> {
 
 impl CoverMaker<'_> {
     /// The pictures of a face.
-    pub fn make(&mut self, wanted: &Wanted, scene: &Scene, ground: Option<&Heights>) -> Result<Cover, ProjectError> {
+    pub(crate) fn make(
+        &mut self,
+        wanted: &Wanted,
+        scene: &Scene,
+        ground: Option<&Heights>,
+    ) -> Result<Cover, ProjectError> {
         let rectangle = wanted.rectangle;
         let size = self.size_px(&rectangle, scene.exaggeration);
         let size = if wanted.shade.is_some() { size.map(|side| side.min(BARE_TEXELS)) } else { size };

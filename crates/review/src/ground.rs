@@ -103,7 +103,7 @@ struct Gathered {
 
 impl Heights {
     /// The heights of a scene, with at most so many cells along an axis.
-    pub fn of(
+    pub(crate) fn of(
         (style, scene): (&GroundStyle, &Scene),
         geometry: &SurveyGeometry,
         model: &StructuralModel,
@@ -125,7 +125,7 @@ impl Heights {
     }
 
     /// The ground of the model that they were made of.
-    pub fn on<'a>(&'a self, model: &'a StructuralModel) -> Ground<'a> {
+    pub(crate) fn on<'a>(&'a self, model: &'a StructuralModel) -> Ground<'a> {
         Ground { model, heights: self }
     }
 
@@ -163,7 +163,7 @@ impl Ground<'_> {
     }
 
     /// Voxel z of the ground.
-    pub fn z_at(&self, at: DVec2) -> f64 {
+    pub(crate) fn z_at(&self, at: DVec2) -> f64 {
         let place = (at - self.low.truncate()) / self.step;
         let cell = |axis: usize| (place[axis].max(0.0) as usize).min(self.cells[axis] - 1);
         let (x, y) = (cell(0), cell(1));
@@ -178,7 +178,7 @@ impl Ground<'_> {
     }
 
     /// Whether a point is not above the ground.
-    pub fn is_rock(&self, p: DVec3) -> bool {
+    pub(crate) fn is_rock(&self, p: DVec3) -> bool {
         p.z >= self.range[1] || p.z + 1e-6 >= self.z_at(p.truncate())
     }
 
@@ -280,7 +280,7 @@ impl Ground<'_> {
     }
 
     /// How bright the bare plane of a fault is beside level ground, seen from a direction in voxels.
-    pub fn shade(&self, fault: usize, towards_camera: DVec3) -> f32 {
+    pub(crate) fn shade(&self, fault: usize, towards_camera: DVec3) -> f32 {
         let Some(surface) = self.model.faults().surfaces().get(fault) else { return 1.0 };
         let normal = surface.frame_from_voxel.row(2).as_vec3();
         self.relief.shade(if normal.dot(towards_camera.as_vec3()) < 0.0 { -normal } else { normal })
@@ -339,7 +339,7 @@ impl Ground<'_> {
     }
 
     /// The ground, by the cut-outs in which it lies, each of some bodies.
-    pub fn parts(&self, cuts: &[Vec<Body>]) -> Vec<GroundPart> {
+    pub(crate) fn parts(&self, cuts: &[Vec<Body>]) -> Vec<GroundPart> {
         let many = self.cells.map(|count| count.div_ceil(PIECE));
         let flat: Vec<bool> = (0..many[0] * many[1])
             .into_par_iter()
@@ -442,7 +442,7 @@ impl Ground<'_> {
     }
 
     /// The pieces of a convex polygon on a plane with this normal that are rock, and the lines where the ground cuts it.
-    pub fn clip(&self, polygon: &[DVec3], normal: DVec3) -> (Vec<Vec<DVec3>>, Vec<[DVec3; 2]>) {
+    pub(crate) fn clip(&self, polygon: &[DVec3], normal: DVec3) -> (Vec<Vec<DVec3>>, Vec<[DVec3; 2]>) {
         if polygon.iter().all(|p| p.z >= self.range[1]) {
             return (vec![polygon.to_vec()], Vec::new());
         }

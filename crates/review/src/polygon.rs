@@ -45,7 +45,7 @@ pub(crate) struct Welder {
 
 impl Welder {
     /// Adds a convex polygon.
-    pub fn add(&mut self, polygon: &[DVec3]) {
+    pub(crate) fn add(&mut self, polygon: &[DVec3]) {
         let corners: Vec<u32> = polygon.iter().map(|p| self.corner(*p)).collect();
         for [a, b, c] in fan(corners.len()) {
             let triangle = [corners[a], corners[b], corners[c]];

@@ -16,7 +16,7 @@ use tempfile::TempDir;
 
 /// A command and where it begins.
 #[derive(Clone, Copy)]
-pub struct Scenario {
+pub(super) struct Scenario {
     /// The folder that it begins in.
     pub start: Start,
     /// What is done in it first.
@@ -29,7 +29,7 @@ pub struct Scenario {
 
 /// A folder to begin in.
 #[derive(Debug, Clone, Copy)]
-pub enum Start {
+pub(super) enum Start {
     /// Files to import alone.
     Files,
     /// The project `p.petro` with a volume, two horizons and a fault.
@@ -40,7 +40,7 @@ pub enum Start {
 
 impl Start {
     /// The folder; it is made once.
-    pub fn folder(self) -> &'static Path {
+    pub(super) fn folder(self) -> &'static Path {
         static FOLDERS: [OnceLock<TempDir>; 3] = [const { OnceLock::new() }; 3];
         let folder = FOLDERS[self as usize].get_or_init(|| {
             let folder = tempfile::tempdir().expect("a temporary folder");
@@ -123,7 +123,7 @@ const fn after(start: Start, prepare: fn(&Path), line: &'static str) -> Scenario
 use Start::{Extracted, Files, Imported};
 
 /// What makes files and projects.
-pub const MAKING: [Scenario; 5] = [
+pub(super) const MAKING: [Scenario; 5] = [
     of(Files, "synth s --size 24x24x48 --seed 3"),
     of(Files, "create p.petro --bounds 0,1000,0,1000,0,1000 --size 9x9x9"),
     of(Files, "import a.sgy p.petro"),
@@ -132,7 +132,7 @@ pub const MAKING: [Scenario; 5] = [
 ];
 
 /// What changes horizons, faults and wells.
-pub const INTERPRETING: [Scenario; 23] = [
+pub(super) const INTERPRETING: [Scenario; 23] = [
     of(Imported, "horizon add p.petro top.csv --name Another"),
     of(Imported, "volume rename p.petro seismic Stack"),
     of(Imported, "horizon rename p.petro Top Roof"),
@@ -159,7 +159,7 @@ pub const INTERPRETING: [Scenario; 23] = [
 ];
 
 /// What is done with candidates and proposals.
-pub const PICKING: [Scenario; 12] = [
+pub(super) const PICKING: [Scenario; 12] = [
     of(Imported, "extract p.petro --min-leaf-triangles 20"),
     of(Extracted, "pick p.petro --at 4,4,64 --horizon Second --highest-valid"),
     of(Extracted, "time p.petro"),
@@ -175,7 +175,7 @@ pub const PICKING: [Scenario; 12] = [
 ];
 
 /// What changes how it looks.
-pub const LOOKING: [Scenario; 12] = [
+pub(super) const LOOKING: [Scenario; 12] = [
     of(Imported, "layer set p.petro 'Top - Base' --name Chalk --pattern chalk"),
     of(Imported, "layer set p.petro 'Top - Base' --rock 'oolitic limestone' --age Campanian"),
     of(Imported, "layer reset p.petro 'Top - Base'"),
@@ -191,7 +191,7 @@ pub const LOOKING: [Scenario; 12] = [
 ];
 
 /// What is computed, drawn and exported.
-pub const COMPUTING: [Scenario; 13] = [
+pub(super) const COMPUTING: [Scenario; 13] = [
     of(Imported, "attribute p.petro --kind envelope --name strength"),
     of(Imported, "parameterize p.petro --size 6x6x6"),
     after(Imported, with_arrays, "parameterize p.petro --from own.zarr --size 6x6x6"),
@@ -208,7 +208,7 @@ pub const COMPUTING: [Scenario; 13] = [
 ];
 
 /// What leads back, and what repairs.
-pub const MENDING: [Scenario; 7] = [
+pub(super) const MENDING: [Scenario; 7] = [
     of(Imported, "undo p.petro"),
     of(Extracted, "undo p.petro"),
     after(Imported, |at| all(at, &["undo p.petro"]), "redo p.petro"),
@@ -225,7 +225,8 @@ fn proposed(at: &Path) {
 }
 
 /// A long history, of which the present step is in the middle.
-pub const LONG_PRUNE: Scenario = after(Extracted, |at| all(at, &["undo p.petro", "undo p.petro"]), "prune p.petro");
+pub(super) const LONG_PRUNE: Scenario =
+    after(Extracted, |at| all(at, &["undo p.petro", "undo p.petro"]), "prune p.petro");
 
 /// A project that lists two small figures.
 fn with_figures(at: &Path) {

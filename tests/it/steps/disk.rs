@@ -32,7 +32,7 @@ type Image = BTreeMap<Id, Node>;
 
 /// How much of what was not flushed a disk holds.
 #[derive(Debug, Clone, Copy)]
-pub enum Kept {
+pub(super) enum Kept {
     /// Nothing.
     Nothing,
     /// All names, and no content.
@@ -42,7 +42,7 @@ pub enum Kept {
 }
 
 /// What a disk holds, now and for certain, while the program runs.
-pub struct Disk {
+pub(super) struct Disk {
     folder: PathBuf,
     /// The identity of each inode that is there now: a system gives the number of a deleted one to another.
     ids: HashMap<u64, Id>,
@@ -55,7 +55,7 @@ pub struct Disk {
 
 impl Disk {
     /// What lies in a folder, all of it flushed.
-    pub fn of(folder: &Path) -> Self {
+    pub(super) fn of(folder: &Path) -> Self {
         let mut disk = Self {
             folder: folder.canonicalize().unwrap(),
             ids: HashMap::new(),
@@ -71,7 +71,7 @@ impl Disk {
 
     /// Before a call is made, or when the program has ended: what was being flushed is on the disk, and the folder is
     /// looked at. If the call flushes, that begins.
-    pub fn next(&mut self, call: Option<&Call>) {
+    pub(super) fn next(&mut self, call: Option<&Call>) {
         self.finish_flush();
         self.look();
         if let Some(path) = call.filter(|call| call.is_sync()).and_then(Call::path_of_handle) {
@@ -133,12 +133,12 @@ impl Disk {
     }
 
     /// What a kill leaves now.
-    pub fn after_a_kill(&self) -> Tree {
+    pub(super) fn after_a_kill(&self) -> Tree {
         tree(&self.live)
     }
 
     /// What a disk may hold if the power fails now.
-    pub fn after_a_cut(&self, kept: Kept) -> Tree {
+    pub(super) fn after_a_cut(&self, kept: Kept) -> Tree {
         let mut chance = Chance::new(kept);
         let nodes = self.live.iter().map(|(id, node)| {
             let left = match (self.flushed.get(id), node) {

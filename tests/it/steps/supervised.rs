@@ -16,7 +16,7 @@ use std::process::{Child, Command, Stdio};
 
 /// What becomes of a call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub(super) enum Verdict {
     /// It is carried out.
     Go,
     /// It is not carried out, and fails with this error.
@@ -27,7 +27,7 @@ pub enum Verdict {
 
 /// A call that the program is about to make.
 #[derive(Debug, Clone, Copy)]
-pub struct Call {
+pub(super) struct Call {
     /// Its number.
     number: c_long,
     /// The thread that makes it.
@@ -37,19 +37,19 @@ pub struct Call {
 
 impl Call {
     /// The name of the call.
-    pub fn name(&self) -> &'static str {
+    pub(super) fn name(&self) -> &'static str {
         let known =
             WATCHED.iter().chain(&FORMER).chain(&[OPEN]).chain(&WRITES).find(|(number, _)| *number == self.number);
         known.map_or("another call", |(_, name)| name)
     }
 
     /// Whether it flushes a file or folder.
-    pub fn is_sync(&self) -> bool {
+    pub(super) fn is_sync(&self) -> bool {
         [libc::SYS_fsync, libc::SYS_fdatasync].contains(&self.number)
     }
 
     /// The file or folder behind its first argument, a handle.
-    pub fn path_of_handle(&self) -> Option<PathBuf> {
+    pub(super) fn path_of_handle(&self) -> Option<PathBuf> {
         std::fs::read_link(format!("/proc/{}/fd/{}", self.thread, self.arguments[0])).ok()
     }
 }
@@ -97,7 +97,7 @@ const WRITES: [(c_long, &str); 4] = [
 
 /// Runs the program; `decide` is asked before each watched call, with its number from 0. `None` where the system does
 /// not allow such filters, said loudly.
-pub fn run(command: Command, mut decide: impl FnMut(usize, &Call) -> Verdict) -> Option<Run> {
+pub(super) fn run(command: Command, mut decide: impl FnMut(usize, &Call) -> Verdict) -> Option<Run> {
     let (child, listener) = match start(command) {
         Ok(started) => started,
         Err(error) => {

@@ -10,18 +10,18 @@ use std::time::{Duration, SystemTime};
 use tempfile::TempDir;
 
 /// The bytes of a file; the same bytes are kept once.
-pub type Content = Arc<Vec<u8>>;
+pub(super) type Content = Arc<Vec<u8>>;
 
 /// Files by their paths below a folder.
-pub type Files = BTreeMap<PathBuf, Content>;
+pub(super) type Files = BTreeMap<PathBuf, Content>;
 
 /// Every file and every folder below a folder; folders have no content.
 #[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Tree(BTreeMap<PathBuf, Option<Content>>);
+pub(super) struct Tree(BTreeMap<PathBuf, Option<Content>>);
 
 impl Tree {
     /// What lies in a folder now. Files that are as in `known` share their content with it.
-    pub fn of(folder: &Path, known: &Self) -> Self {
+    pub(super) fn of(folder: &Path, known: &Self) -> Self {
         let mut found = Self::default();
         found.add(folder, Path::new(""), known);
         found
@@ -43,12 +43,12 @@ impl Tree {
     }
 
     /// Puts a file or folder at a path.
-    pub fn insert(&mut self, path: PathBuf, content: Option<Content>) {
+    pub(super) fn insert(&mut self, path: PathBuf, content: Option<Content>) {
         self.0.insert(path, content);
     }
 
     /// The same in a folder of its own. Every file has the same time, so that a source is the same one in each copy.
-    pub fn written(&self) -> TempDir {
+    pub(super) fn written(&self) -> TempDir {
         let folder = empty_folder();
         let time = SystemTime::UNIX_EPOCH + Duration::from_secs(1_000_000_000);
         // A folder comes before what lies in it.
@@ -66,7 +66,7 @@ impl Tree {
     }
 
     /// What lies below a path; nothing where it does not exist.
-    pub fn below(&self, folder: &str) -> Option<Self> {
+    pub(super) fn below(&self, folder: &str) -> Option<Self> {
         let inside = |(path, content): (&PathBuf, &Option<Content>)| {
             let below = path.strip_prefix(folder).ok().filter(|below| *below != Path::new(""))?;
             Some((below.to_owned(), content.clone()))
@@ -75,14 +75,14 @@ impl Tree {
     }
 
     /// The same without locks, which tell nothing of what was lost.
-    pub fn without_locks(&self) -> Self {
+    pub(super) fn without_locks(&self) -> Self {
         let is_lock = |path: &PathBuf| path.file_name() == Some(OsStr::new("lock"));
         let rest = self.0.iter().filter(|(path, _)| !is_lock(path));
         Self(rest.map(|(path, content)| (path.clone(), content.clone())).collect())
     }
 
     /// The files that are not left out.
-    pub fn files(&self, is_left_out: impl Fn(&Path) -> bool) -> Files {
+    pub(super) fn files(&self, is_left_out: impl Fn(&Path) -> bool) -> Files {
         let file = |(path, content): (&PathBuf, &Option<Content>)| {
             let content = content.clone().filter(|_| path.file_name() != Some(OsStr::new("lock")))?;
             (!is_left_out(path)).then(|| (path.clone(), content))
@@ -93,14 +93,14 @@ impl Tree {
 
 /// What a killed writer left: beside its target as `.NAME.partial-PROCESS-COUNT` or `NAME.PROCESS.part`, and in
 /// `derived/unfinished`, which the next writer there removes.
-pub fn is_beside(path: &Path) -> bool {
+pub(super) fn is_beside(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let is_derived = path.ancestors().any(|folder| folder.ends_with("derived/unfinished"));
     is_derived || name.ends_with(".part") || name.starts_with('.') && name.contains(".partial-")
 }
 
 /// Where two folders differ, for the message of a failed test.
-pub fn difference(found: &Files, wanted: &Files) -> Vec<String> {
+pub(super) fn difference(found: &Files, wanted: &Files) -> Vec<String> {
     let names = found.keys().chain(wanted.keys()).collect::<BTreeSet<_>>();
     let word = |path: &PathBuf| match (found.get(path), wanted.get(path)) {
         (Some(a), Some(b)) if a == b => None,

@@ -11,13 +11,13 @@ use project::interpretation::proposals::{self, Proposals};
 use state::{Action, Dialogue, FileContent, Panel, PickingStep};
 use survey::{Contact, Progress, TriangleMesh};
 
-pub fn act(harness: &mut Driven, action: Action) {
+pub(crate) fn act(harness: &mut Driven, action: Action) {
     harness.state_mut().as_mut().unwrap().act(action);
     harness.run_steps(3);
 }
 
 /// Applies a command as another process would, and has the window read the project again.
-pub fn applied(harness: &mut Driven, command: &Command) {
+pub(crate) fn applied(harness: &mut Driven, command: &Command) {
     let root = state(harness).session.as_ref().unwrap().root.clone();
     Project::open(&root).unwrap().apply(command, &Progress::silent()).unwrap();
     act(harness, Action::Open(root));
@@ -28,13 +28,13 @@ pub fn applied(harness: &mut Driven, command: &Command) {
 }
 
 /// Chooses an entry of a list that opens under a label.
-pub fn choose(harness: &mut Driven, list: &str, entry: &str) {
+pub(crate) fn choose(harness: &mut Driven, list: &str, entry: &str) {
     click_last(harness, list);
     click(harness, entry);
 }
 
 /// Clicks the last of the buttons with a label.
-pub fn click_last(harness: &mut Driven, label: &str) {
+pub(crate) fn click_last(harness: &mut Driven, label: &str) {
     // As a screen reader does, whether it is scrolled into view or not.
     harness.query_all_by_label(label).last().unwrap().click_accesskit();
     harness.run_steps(3);

@@ -17,10 +17,10 @@ use survey::{Contact, Progress, SurveyGeometry, VerticalUnit, Volume};
 /// Longest wait for a worker before a test gives up; far beyond what any needs.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-pub type Driven = Harness<'static, Option<Window>>;
+pub(crate) type Driven = Harness<'static, Option<Window>>;
 
 /// A window that keeps its settings in `folder`, with a project open if one is named.
-pub fn driven(folder: &Path, project: Option<PathBuf>) -> Driven {
+pub(crate) fn driven(folder: &Path, project: Option<PathBuf>) -> Driven {
     let settings = folder.join("settings/window.toml");
     let show = move |ui: &mut eframe::egui::Ui, window: &mut Option<Window>| {
         let make = || Window::new(ui.ctx(), Some(settings.clone()), project.clone());
@@ -29,7 +29,7 @@ pub fn driven(folder: &Path, project: Option<PathBuf>) -> Driven {
     Harness::builder().with_size([1280.0, 800.0]).build_ui_state(show, None)
 }
 
-pub fn state(harness: &Driven) -> &State {
+pub(crate) fn state(harness: &Driven) -> &State {
     harness.state().as_ref().unwrap().state()
 }
 
@@ -43,7 +43,7 @@ fn has_caught_up(harness: &Driven) -> bool {
 }
 
 /// Draws frames until something is so and the window shows it.
-pub fn wait(harness: &mut Driven, what: &str, is_so: impl Fn(&Driven) -> bool) {
+pub(crate) fn wait(harness: &mut Driven, what: &str, is_so: impl Fn(&Driven) -> bool) {
     let start = Instant::now();
     loop {
         harness.step();
@@ -57,17 +57,17 @@ pub fn wait(harness: &mut Driven, what: &str, is_so: impl Fn(&Driven) -> bool) {
     }
 }
 
-pub fn click(harness: &mut Driven, label: &str) {
+pub(crate) fn click(harness: &mut Driven, label: &str) {
     harness.get_by_label(label).click();
     // A dialogue is laid out unseen in its first frame.
     harness.run_steps(3);
 }
 
-pub fn geometry() -> SurveyGeometry {
+pub(crate) fn geometry() -> SurveyGeometry {
     SurveyGeometry::regular([24, 20, 32], 25.0, 4.0, VerticalUnit::Milliseconds)
 }
 
-pub fn survey(folder: &Path) -> PathBuf {
+pub(crate) fn survey(folder: &Path) -> PathBuf {
     let path = folder.join("north.sgy");
     let samples = (0..24 * 20 * 32).map(|n| ((n % 32) as f32 * 0.7).sin()).collect();
     let volume = Volume::from_samples([24, 20, 32], samples).unwrap();
@@ -89,7 +89,7 @@ fn horizon(folder: &Path, name: &str, z: f32) -> PathBuf {
 }
 
 /// A project with a volume and two horizons.
-pub fn project(folder: &Path) -> PathBuf {
+pub(crate) fn project(folder: &Path) -> PathBuf {
     let root = folder.join("north.petro");
     let mut new = Project::create(&root, None).unwrap();
     let import = project::command::ImportVolume {
@@ -117,7 +117,7 @@ pub fn project(folder: &Path) -> PathBuf {
     new.publish().unwrap().root().to_owned()
 }
 
-pub fn open(folder: &Path) -> Driven {
+pub(crate) fn open(folder: &Path) -> Driven {
     let root = project(folder);
     let mut harness = driven(folder, Some(root));
     wait(&mut harness, "the picture is drawn", |harness| {
@@ -126,7 +126,7 @@ pub fn open(folder: &Path) -> Driven {
     harness
 }
 
-pub fn document(harness: &Driven) -> project::document::Document {
+pub(crate) fn document(harness: &Driven) -> project::document::Document {
     Project::open(&state(harness).session.as_ref().unwrap().root).unwrap().document().clone()
 }
 

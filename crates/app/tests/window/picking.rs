@@ -22,7 +22,7 @@ fn extract(project: &mut Project, settings: &ExtractSettings) {
 }
 
 /// A window on a project with candidates, its interpretation read.
-pub fn interpreting(folder: &Path) -> Driven {
+pub(crate) fn interpreting(folder: &Path) -> Driven {
     let root = project(folder);
     let mut settings = ExtractSettings::default();
     settings.forest.min_leaf_triangles = LEAF;
@@ -36,17 +36,17 @@ pub fn interpreting(folder: &Path) -> Driven {
     harness
 }
 
-pub fn act(harness: &mut Driven, step: PickingStep) {
+pub(crate) fn act(harness: &mut Driven, step: PickingStep) {
     harness.state_mut().as_mut().unwrap().act(Action::Picking(step));
     harness.run_steps(2);
 }
 
-pub fn picking(harness: &Driven) -> &state::Picking {
+pub(crate) fn picking(harness: &Driven) -> &state::Picking {
     &state(harness).session.as_ref().unwrap().view.picking
 }
 
 /// A click into the middle of what has a label, moved by points.
-pub fn click_in(harness: &mut Driven, label: &str, off: [f32; 2], modifiers: Modifiers) {
+pub(crate) fn click_in(harness: &mut Driven, label: &str, off: [f32; 2], modifiers: Modifiers) {
     let at = harness.get_by_label(label).rect().center() + vec2(off[0], off[1]);
     press(harness, at, modifiers);
 }
@@ -65,7 +65,7 @@ fn press(harness: &mut Driven, at: Pos2, modifiers: Modifiers) {
 }
 
 /// A voxel on a strong reflection of the test survey, sin(0.7 z): its first trough is at z = 3π/2/0.7.
-pub fn on_a_trough() -> DVec3 {
+pub(crate) fn on_a_trough() -> DVec3 {
     DVec3::new(12.0, 10.0, 1.5 * std::f64::consts::PI / 0.7)
 }
 

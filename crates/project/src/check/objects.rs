@@ -20,7 +20,7 @@ pub(super) enum Entry<'a> {
 }
 
 impl<'a> Entry<'a> {
-    pub fn file(&self) -> &'a str {
+    pub(super) fn file(&self) -> &'a str {
         match self {
             Self::Volume(entry) => &entry.file,
             Self::Horizon(entry) => &entry.file,
@@ -31,7 +31,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    pub fn name(&self) -> &'a str {
+    pub(super) fn name(&self) -> &'a str {
         match self {
             Self::Volume(entry) => &entry.name,
             Self::Horizon(entry) => &entry.name,
@@ -42,7 +42,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    pub fn noun(&self) -> Noun {
+    pub(super) fn noun(&self) -> Noun {
         match self {
             Self::Volume(_) => Noun::Volume,
             Self::Horizon(_) => Noun::Horizon,
@@ -77,7 +77,7 @@ impl<'a> Entry<'a> {
     }
 
     /// How the data can be had again: from the file they came from, or the way they were made in the project.
-    pub fn way_back(&self) -> Cure {
+    pub(super) fn way_back(&self) -> Cure {
         let (noun, name, origin) = (self.noun(), self.name().to_owned(), self.origin());
         match origin.file() {
             Some(path) => Cure::Import { noun, name, path: path.to_owned() },
@@ -101,7 +101,7 @@ pub(super) struct Object<'a> {
 
 impl Object<'_> {
     /// Whether it is a folder, else a file.
-    pub fn is_folder(&self) -> bool {
+    pub(super) fn is_folder(&self) -> bool {
         matches!(self.entry, Entry::Volume(_) | Entry::Horizon(_) | Entry::Parameterization(_))
     }
 }

@@ -45,7 +45,7 @@ impl States {
     ///
     /// # Errors
     /// There is no project, or a newer version wrote it.
-    pub fn read(root: &Path) -> Result<Self, ProjectError> {
+    pub(super) fn read(root: &Path) -> Result<Self, ProjectError> {
         let not_a_project = |fact| Err(ProjectError::NotAProject { path: root.to_owned(), fact });
         if !root.exists() {
             return Err(ProjectError::NotFound { path: root.to_owned() });
@@ -131,38 +131,38 @@ impl States {
     }
 
     /// The present state, if it can be read.
-    pub fn present(&self) -> Option<&Document> {
+    pub(super) fn present(&self) -> Option<&Document> {
         self.present.as_ref().map(|(_, document)| document)
     }
 
     /// The text of `project.toml`, if it can be read.
-    pub fn present_text(&self) -> Option<&str> {
+    pub(super) fn present_text(&self) -> Option<&str> {
         self.present.as_ref().map(|(text, _)| text.as_str())
     }
 
     /// Numbers of the steps that can be read, ascending.
-    pub fn numbers(&self) -> impl Iterator<Item = u32> {
+    pub(super) fn numbers(&self) -> impl Iterator<Item = u32> {
         self.steps.keys().copied()
     }
 
     /// The steps that can be read, ascending.
-    pub fn documents(&self) -> impl DoubleEndedIterator<Item = (u32, &Document)> {
+    pub(super) fn documents(&self) -> impl DoubleEndedIterator<Item = (u32, &Document)> {
         self.steps.iter().map(|(number, (_, document))| (*number, document))
     }
 
     /// A step that can be read.
-    pub fn step(&self, number: u32) -> Option<&Step> {
+    pub(super) fn step(&self, number: u32) -> Option<&Step> {
         self.steps.get(&number).map(|(step, _)| step)
     }
 
     /// The state after a step that can be read.
-    pub fn document(&self, number: u32) -> Option<&Document> {
+    pub(super) fn document(&self, number: u32) -> Option<&Document> {
         self.steps.get(&number).map(|(_, document)| document)
     }
 
     /// The step from which a damaged `project.toml` can be restored: the one that it says it is, where its text still
     /// shows that, otherwise the newest.
-    pub fn restorable(&self) -> Option<u32> {
+    pub(super) fn restorable(&self) -> Option<u32> {
         let damaged = self.unreadable.iter().find(|unreadable| unreadable.number.is_none())?;
         let said = damaged
             .text
@@ -174,7 +174,7 @@ impl States {
 
     /// The newest step that undo leads to from `present` and that is not among `without`: all steps on the way must be
     /// readable.
-    pub fn undo_without(&self, present: &Document, without: &[u32]) -> Option<u32> {
+    pub(super) fn undo_without(&self, present: &Document, without: &[u32]) -> Option<u32> {
         self.way_back(present).skip(1).find(|number| !without.contains(number))
     }
 
@@ -184,13 +184,13 @@ impl States {
     }
 
     /// Whether a file that cannot be read may name `text`. One whose bytes cannot be read at all may name anything.
-    pub fn may_be_named(&self, text: &str) -> bool {
+    pub(super) fn may_be_named(&self, text: &str) -> bool {
         let doubtful = self.unreadable.iter().chain(&self.set_aside);
         doubtful.into_iter().any(|unreadable| unreadable.text.as_ref().is_none_or(|all| all.contains(text)))
     }
 
     /// Whether another process has changed the project since it was read.
-    pub fn has_changed(&self, root: &Path) -> bool {
+    pub(super) fn has_changed(&self, root: &Path) -> bool {
         self.present.as_ref().is_some_and(|(text, _)| raw(&root.join(storage::STATE)).as_ref() != Some(text))
     }
 }

@@ -35,7 +35,7 @@ mod system {
 
     const FOLDER: OFlags = OFlags::RDONLY.union(OFlags::DIRECTORY).union(OFlags::CLOEXEC);
 
-    pub fn remove(root: &Path, file: &str) -> io::Result<()> {
+    pub(super) fn remove(root: &Path, file: &str) -> io::Result<()> {
         let mut folder = openat(CWD, root, FOLDER, Mode::empty())?;
         let mut parts = file.split('/').peekable();
         while let Some(part) = parts.next() {
@@ -64,7 +64,7 @@ mod system {
         Ok(unlinkat(folder, name, AtFlags::REMOVEDIR)?)
     }
 
-    pub fn open(root: &Path, name: &str) -> io::Result<File> {
+    pub(super) fn open(root: &Path, name: &str) -> io::Result<File> {
         let folder = openat(CWD, root, FOLDER, Mode::empty())?;
         let flags = OFlags::RDWR | OFlags::CREATE | OFlags::NOFOLLOW | OFlags::CLOEXEC;
         Ok(openat(&folder, name, flags, Mode::from_raw_mode(0o666))?.into())

@@ -12,7 +12,7 @@ use survey::candidates::{BEYOND, CandidateBox};
 use survey::{Cancelled, Progress};
 
 /// Largest distance that is stored if nothing else determines it, voxels.
-pub const FARTHEST: f32 = 10.0;
+pub(super) const FARTHEST: f32 = 10.0;
 /// The code of the largest distance.
 const STEPS: f32 = (BEYOND - 1) as f32;
 /// Distance within which a horizon takes precedence over candidates, since it may run along one of them.
@@ -22,7 +22,7 @@ const OWN: f32 = 2.0;
 const BESIDE: f32 = 0.5;
 
 /// A lattice whose voxels are all far from everything.
-pub fn nothing_near(size: [usize; 3]) -> CandidateBox {
+pub(super) fn nothing_near(size: [usize; 3]) -> CandidateBox {
     let count = size.iter().product();
     CandidateBox { size, distance: vec![BEYOND; count], leaf: vec![0; count] }
 }
@@ -32,7 +32,7 @@ pub fn nothing_near(size: [usize; 3]) -> CandidateBox {
 ///
 /// # Errors
 /// The user cancelled.
-pub fn add_horizons(
+pub(super) fn add_horizons(
     model: &StructuralModel,
     which: &[usize],
     first_id: u32,

@@ -63,7 +63,7 @@ pub struct LeafFacts {
 }
 
 /// Whether a scene shows any of this.
-pub fn is_shown(scene: &Scene) -> bool {
+pub(super) fn is_shown(scene: &Scene) -> bool {
     !scene.media.horizons.is_empty() || scene.face_data.shows_candidates()
 }
 

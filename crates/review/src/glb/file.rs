@@ -62,7 +62,7 @@ impl GlbFile {
     }
 
     /// Adds a picture in a file of its own kind and gives the index of its texture.
-    pub fn picture(&mut self, name: &str, mime: &str, bytes: &[u8]) -> usize {
+    pub(super) fn picture(&mut self, name: &str, mime: &str, bytes: &[u8]) -> usize {
         let view = self.view(bytes, None);
         self.images.push(json!({ "name": name, "mimeType": mime, "bufferView": view }));
         self.textures.push(json!({ "source": self.images.len() - 1, "sampler": 0 }));
@@ -70,7 +70,7 @@ impl GlbFile {
     }
 
     /// Adds a material of a colour, or of a texture where there is one. Covered faces are drawn as they are, without light.
-    pub fn material(&mut self, name: &str, colour: [f32; 4], texture: Option<usize>) -> usize {
+    pub(super) fn material(&mut self, name: &str, colour: [f32; 4], texture: Option<usize>) -> usize {
         let mut surface = json!({ "baseColorFactor": colour, "metallicFactor": 0.0, "roughnessFactor": 1.0 });
         if let Some(texture) = texture {
             surface["baseColorTexture"] = json!({ "index": texture });
@@ -87,7 +87,7 @@ impl GlbFile {
     }
 
     /// Adds a mesh under a node of its own and gives the node's index; `None` of no triangles.
-    pub fn mesh(&mut self, name: &str, covered: &Covered, extras: &Value) -> Option<usize> {
+    pub(super) fn mesh(&mut self, name: &str, covered: &Covered, extras: &Value) -> Option<usize> {
         if covered.triangles.is_empty() {
             return None;
         }
@@ -139,7 +139,7 @@ impl GlbFile {
     }
 
     /// Adds a node over others and gives its index; `None` over none.
-    pub fn group(&mut self, name: &str, children: &[usize]) -> Option<usize> {
+    pub(super) fn group(&mut self, name: &str, children: &[usize]) -> Option<usize> {
         if children.is_empty() {
             return None;
         }
@@ -148,12 +148,12 @@ impl GlbFile {
     }
 
     /// Nodes so far.
-    pub fn node_count(&self) -> usize {
+    pub(super) fn node_count(&self) -> usize {
         self.nodes.len()
     }
 
     /// The whole file. The root is scaled along Y.
-    pub fn finish(
+    pub(super) fn finish(
         mut self,
         root: &str,
         children: &[usize],

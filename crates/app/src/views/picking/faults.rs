@@ -14,14 +14,14 @@ use survey::SurveyGeometry;
 
 /// The texts being typed.
 #[derive(Default)]
-pub struct FaultsPanel {
+pub(super) struct FaultsPanel {
     /// Names for proposals, by the proposal's number.
     names: HashMap<u32, String>,
 }
 
 impl FaultsPanel {
     /// Shows the panel.
-    pub fn show(
+    pub(super) fn show(
         &mut self,
         ui: &mut Ui,
         session: &Session,

@@ -242,7 +242,7 @@ impl HorizonList {
 }
 
 /// The colour of a horizon, which can be changed.
-pub fn swatch(ui: &mut Ui, entry: &HorizonEntry, index: usize, actions: &mut Vec<Action>) {
+pub(crate) fn swatch(ui: &mut Ui, entry: &HorizonEntry, index: usize, actions: &mut Vec<Action>) {
     let present = figure::style::horizon_colour(entry.own_colour(), index);
     if let Some(chosen) = palette(ui, present, &format!("Colour of {}", entry.name)) {
         actions.push(colour(Noun::Horizon, &entry.name, chosen));
