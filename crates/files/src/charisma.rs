@@ -3,22 +3,17 @@
 //! Horizon: `INLINE : il XLINE : xl x y z`. Sticks: `INLINE- il xl x y z name stick` (or `CROSSLINE-`); il and xl may
 //! be 0 if they are not known: the point is then placed by X, Y. The format states neither unit nor sign.
 
-use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
+use super::raw::{RawPoint, RawShape, RawSurface, ReadContext};
 use super::table::UNDEFINED;
 use super::text::{self, Line, SourceFile};
 use super::{Codec, Format, FormatError};
 use glam::DVec2;
-use std::collections::HashMap;
+use indexmap::IndexMap;
 
 pub(super) const CODEC: Codec = Codec {
-    format: Format::Charisma,
-    name: "charisma",
-    extension: "dat",
-    detect,
     read_horizon: Some(read),
     read_fault: Some(read),
-    write_horizon: None,
-    write_fault: None,
+    ..Codec::of(Format::Charisma, "charisma", "dat", detect)
 };
 
 fn detect(source: &SourceFile) -> Option<String> {
@@ -32,24 +27,13 @@ fn detect(source: &SourceFile) -> Option<String> {
 
 fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
     let text = source.text();
-    let mut order: Vec<(Option<String>, Vec<RawPoint>)> = Vec::new();
-    let mut by_name = HashMap::new();
+    let mut by_name: IndexMap<Option<String>, Vec<RawPoint>> = IndexMap::new();
     for line in text::lines(&text).filter(|l| !l.text.starts_with(['#', '!'])) {
         let (name, point) = point_of(source, line)?;
-        let slot = *by_name.entry(name.clone()).or_insert_with(|| {
-            order.push((name, Vec::new()));
-            order.len() - 1
-        });
-        order[slot].1.push(point);
+        by_name.entry(name).or_default().push(point);
     }
-    let surface = |(name, points)| RawSurface {
-        name,
-        shape: RawShape::Points(points),
-        vertical: VerticalFacts::default(),
-        notes: Vec::new(),
-        warnings: Vec::new(),
-    };
-    Ok(order.into_iter().map(surface).collect())
+    let surface = |(name, points)| RawSurface::new(name, RawShape::Points(points));
+    Ok(by_name.into_iter().map(surface).collect())
 }
 
 fn point_of(source: &SourceFile, line: Line<'_>) -> Result<(Option<String>, RawPoint), FormatError> {

@@ -10,7 +10,7 @@
 //! Written in columns from the north, five values per line.
 
 use super::options::ValueOrder;
-use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
+use super::raw::{RawShape, RawSurface, ReadContext};
 use super::text::{self, SourceFile};
 use super::write::WriteFailure;
 use super::zmap::{from_columns, in_columns, unrotated};
@@ -21,14 +21,9 @@ use survey::horizon::{Horizon, NodeGrid};
 use survey::remedy::{Note, Setting};
 
 pub(super) const CODEC: Codec = Codec {
-    format: Format::Cps3,
-    name: "cps3",
-    extension: "cps3",
-    detect,
     read_horizon: Some(read),
-    read_fault: None,
     write_horizon: Some(HorizonWriter { is_unrotated: true, ..HorizonWriter::of(write_horizon) }),
-    write_fault: None,
+    ..Codec::of(Format::Cps3, "cps3", "cps3", detect)
 };
 
 fn detect(source: &SourceFile) -> Option<String> {
@@ -73,10 +68,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         return Err(source.bad_grid("there is no FSLIMI or no FSNROW line"));
     };
     let grid = unrotated(source, counts, x, y)?;
-    let expected = grid.count[0] * grid.count[1];
-    if values.len() != expected {
-        return Err(source.length("grid values", expected, values.len()));
-    }
+    source.check_values(grid.count, values.len())?;
     let is_null =
         |v: f64| v.abs() >= super::table::UNDEFINED || null.is_some_and(|n| (v - n).abs() <= 1e-6 * n.abs().max(1.0));
     let file: Vec<f64> = values.into_iter().map(|v| if is_null(v) { f64::NAN } else { v }).collect();
@@ -108,7 +100,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         )),
     }
     let shape = RawShape::Grid { grid, z };
-    Ok(vec![RawSurface { name, shape, vertical: VerticalFacts::default(), notes, warnings }])
+    Ok(vec![RawSurface { notes, warnings, ..RawSurface::new(name, shape) }])
 }
 
 /// An order is accepted if it is this many times smoother than the other.

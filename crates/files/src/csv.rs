@@ -19,10 +19,6 @@ use survey::geometry::{SurveyGeometry, VerticalUnit};
 use survey::horizon::Horizon;
 
 pub(super) const CODEC: Codec = Codec {
-    format: Format::Csv,
-    name: "csv",
-    extension: "csv",
-    detect,
     read_horizon: Some(read),
     read_fault: Some(read),
     write_horizon: Some(HorizonWriter {
@@ -30,7 +26,7 @@ pub(super) const CODEC: Codec = Codec {
         tells_quality: true,
         ..HorizonWriter::of(write_horizon)
     }),
-    write_fault: None,
+    ..Codec::of(Format::Csv, "csv", "csv", detect)
 };
 
 fn detect(source: &SourceFile) -> Option<String> {
@@ -81,11 +77,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     let all: Vec<_> = text::lines(&text).collect();
     let mut rows: Vec<_> = all.iter().copied().filter(|l| !table::is_comment(l.text)).collect();
     let Some(first) = rows.first() else {
-        return Err(FormatError::Empty {
-            file: source.path.clone(),
-            kind: context.kind,
-            why: "there are no rows".into(),
-        });
+        return Err(source.empty(context.kind, "there are no rows"));
     };
     let cut = cut_of(first.text, rows.get(1).map_or("", |l| l.text));
     let header = header_of(&all, &rows, cut, context);
@@ -93,11 +85,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         rows.remove(0);
     }
     if rows.is_empty() {
-        return Err(FormatError::Empty {
-            file: source.path.clone(),
-            kind: context.kind,
-            why: "there is a header but no rows".into(),
-        });
+        return Err(source.empty(context.kind, "there is a header but no rows"));
     }
     let layout = table::settle_columns(source, context, header, &rows, cut)?;
     table::surfaces(source, &rows, cut, layout, context)

@@ -13,16 +13,7 @@ use super::text::{self, Line, SourceFile};
 use super::unit::Domain;
 use super::{Codec, Format, FormatError};
 
-pub(super) const CODEC: Codec = Codec {
-    format: Format::Dug,
-    name: "dug",
-    extension: "ilclt",
-    detect,
-    read_horizon: Some(read),
-    read_fault: None,
-    write_horizon: None,
-    write_fault: None,
-};
+pub(super) const CODEC: Codec = Codec { read_horizon: Some(read), ..Codec::of(Format::Dug, "dug", "ilclt", detect) };
 
 /// The columns and the domain that an extension names.
 fn of_extension(source: &SourceFile) -> Option<([Column; 3], Domain)> {

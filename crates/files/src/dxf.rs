@@ -7,23 +7,16 @@
 //! layer is one surface: its faces a mesh, or its lines sticks. Drawings hold elevations as a rule,
 //! but nothing in the file says so.
 
-use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
+use super::raw::{RawPoint, RawShape, RawSurface, ReadContext};
 use super::text::{self, SourceFile};
 use super::{Codec, Format, FormatError};
 use glam::DVec3;
+use indexmap::IndexMap;
 use std::collections::HashMap;
 use survey::mesh::TriangleMesh;
 
-pub(super) const CODEC: Codec = Codec {
-    format: Format::Dxf,
-    name: "dxf",
-    extension: "dxf",
-    detect,
-    read_horizon: Some(read),
-    read_fault: Some(read),
-    write_horizon: None,
-    write_fault: None,
-};
+pub(super) const CODEC: Codec =
+    Codec { read_horizon: Some(read), read_fault: Some(read), ..Codec::of(Format::Dxf, "dxf", "dxf", detect) };
 
 /// The flag of a POLYLINE that is a mesh of rows and columns, and those of one that is closed along them.
 const GRID: u32 = 16;
@@ -93,8 +86,7 @@ impl DxfLayer {
 /// The layers in order of appearance, and the lines so far.
 #[derive(Default)]
 struct DxfDrawing {
-    names: Vec<String>,
-    layers: Vec<DxfLayer>,
+    layers: IndexMap<String, DxfLayer>,
     /// Number of the line that places belong to.
     line: f64,
     /// The POLYLINE that is open.
@@ -141,12 +133,7 @@ impl DxfPolyline {
 
 impl DxfDrawing {
     fn layer(&mut self, name: &str) -> &mut DxfLayer {
-        let index = self.names.iter().position(|known| known == name).unwrap_or_else(|| {
-            self.names.push(name.to_owned());
-            self.layers.push(DxfLayer::default());
-            self.layers.len() - 1
-        });
-        &mut self.layers[index]
+        self.layers.entry(name.to_owned()).or_default()
     }
 
     fn place(&mut self, layer: &str, at: DVec3) {
@@ -266,16 +253,14 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     }
     drawing.add(source, &entity)?;
     let mut surfaces = Vec::new();
-    for (name, layer) in drawing.names.into_iter().zip(drawing.layers) {
+    for (name, layer) in drawing.layers {
         let is_surface = !layer.mesh.triangles.is_empty();
         let shape = if is_surface { RawShape::Mesh(layer.mesh) } else { RawShape::Points(layer.points) };
         let name = Some(name).filter(|name| !name.is_empty());
-        let vertical = VerticalFacts::default();
-        surfaces.push(RawSurface { name, shape, vertical, notes: Vec::new(), warnings: Vec::new() });
+        surfaces.push(RawSurface::new(name, shape));
     }
     if surfaces.is_empty() {
-        let why = "the drawing has no 3DFACE, POLYLINE, LWPOLYLINE, LINE or POINT".into();
-        return Err(FormatError::Empty { file: source.path.clone(), kind: context.kind, why });
+        return Err(source.empty(context.kind, "the drawing has no 3DFACE, POLYLINE, LWPOLYLINE, LINE or POINT"));
     }
     Ok(surfaces)
 }

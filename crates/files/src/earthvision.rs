@@ -12,14 +12,9 @@ use super::unit::ZUnit;
 use super::{Codec, Format, FormatError};
 
 pub(super) const CODEC: Codec = Codec {
-    format: Format::EarthVision,
-    name: "earthvision",
-    extension: "dat",
-    detect,
     read_horizon: Some(read),
     read_fault: Some(read),
-    write_horizon: None,
-    write_fault: None,
+    ..Codec::of(Format::EarthVision, "earthvision", "dat", detect)
 };
 
 fn detect(source: &SourceFile) -> Option<String> {

@@ -12,7 +12,7 @@ use super::report::{Gridding, ImportReport, Settled};
 use super::vertical::VerticalRule;
 use super::{Format, FormatError, SurfaceKind, plane_fit, sticks};
 use glam::{DVec2, DVec3};
-use std::collections::HashMap;
+use indexmap::IndexMap;
 use std::path::Path;
 use survey::fault::Fault;
 use survey::geometry::SurveyGeometry;
@@ -155,16 +155,11 @@ fn stick_groups(points: &[RawPoint]) -> Option<Vec<Vec<usize>>> {
 
 /// Points of equal key, in order of first appearance.
 fn grouped(points: &[RawPoint], key: impl Fn(&RawPoint) -> Option<f64>) -> Vec<Vec<usize>> {
-    let mut slots = HashMap::new();
-    let mut groups: Vec<Vec<usize>> = Vec::new();
+    let mut groups: IndexMap<u64, Vec<usize>> = IndexMap::new();
     for (n, p) in points.iter().enumerate() {
-        let slot = *slots.entry(key(p).unwrap_or(f64::NAN).to_bits()).or_insert_with(|| {
-            groups.push(Vec::new());
-            groups.len() - 1
-        });
-        groups[slot].push(n);
+        groups.entry(key(p).unwrap_or(f64::NAN).to_bits()).or_default().push(n);
     }
-    groups
+    groups.into_values().collect()
 }
 
 /// The nodes of a stick in order, without repeated places.

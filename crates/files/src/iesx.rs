@@ -14,16 +14,7 @@ use super::unit::ZUnit;
 use super::{Codec, Format, FormatError};
 use glam::DVec2;
 
-pub(super) const CODEC: Codec = Codec {
-    format: Format::Iesx,
-    name: "iesx",
-    extension: "iesx",
-    detect,
-    read_horizon: Some(read),
-    read_fault: None,
-    write_horizon: None,
-    write_fault: None,
-};
+pub(super) const CODEC: Codec = Codec { read_horizon: Some(read), ..Codec::of(Format::Iesx, "iesx", "iesx", detect) };
 
 /// Widths of the columns before the mark of the inline.
 const WIDTHS: [usize; 9] = [16, 16, 3, 3, 9, 10, 10, 5, 14];
@@ -70,13 +61,9 @@ fn begin(rest: &str) -> RawSurface {
     // The last word is the unit of Z.
     let unit = tail.split_whitespace().last().and_then(|w| Some((ZUnit::parse(w)?, format!("PROFILE … {w}"))));
     let name = name.trim();
-    RawSurface {
-        name: (!name.is_empty()).then(|| name.to_string()),
-        shape: RawShape::Points(Vec::new()),
-        vertical: VerticalFacts { unit, ..VerticalFacts::default() },
-        notes: Vec::new(),
-        warnings: Vec::new(),
-    }
+    let name = (!name.is_empty()).then(|| name.to_string());
+    let vertical = VerticalFacts { unit, ..VerticalFacts::default() };
+    RawSurface { vertical, ..RawSurface::new(name, RawShape::Points(Vec::new())) }
 }
 
 fn point(source: &SourceFile, line: Line<'_>, indent: usize) -> Result<RawPoint, FormatError> {

@@ -11,16 +11,7 @@ use super::text::{self, SourceFile};
 use super::unit::ZUnit;
 use super::{Codec, Format, FormatError};
 
-pub(super) const CODEC: Codec = Codec {
-    format: Format::Ijxyz,
-    name: "ijxyz",
-    extension: "dat",
-    detect,
-    read_horizon: Some(read),
-    read_fault: None,
-    write_horizon: None,
-    write_fault: None,
-};
+pub(super) const CODEC: Codec = Codec { read_horizon: Some(read), ..Codec::of(Format::Ijxyz, "ijxyz", "dat", detect) };
 
 fn detect(source: &SourceFile) -> Option<String> {
     let text = source.text();

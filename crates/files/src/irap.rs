@@ -5,7 +5,7 @@
 //! the rotation in degrees anticlockwise; a negative YINC mirrors. XMAX and YMAX are those of the unrotated grid and
 //! not used. Values from 9999900 on are undefined. The format states neither unit nor sign.
 
-use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
+use super::raw::{RawShape, RawSurface, ReadContext};
 use super::text::{self, SourceFile};
 use super::write::WriteFailure;
 use super::{Codec, Format, FormatError, HorizonWriter};
@@ -16,14 +16,9 @@ use survey::geometry::SurveyGeometry;
 use survey::horizon::{Horizon, NodeGrid, Sheet};
 
 pub(super) const CODEC: Codec = Codec {
-    format: Format::Irap,
-    name: "irap",
-    extension: "irap",
-    detect,
     read_horizon: Some(read),
-    read_fault: None,
     write_horizon: Some(HorizonWriter::of(write_horizon)),
-    write_fault: None,
+    ..Codec::of(Format::Irap, "irap", "irap", detect)
 };
 
 /// Values from here on are undefined.
@@ -99,18 +94,10 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
         let value = text::number(token).ok_or_else(|| source.syntax(line, "a grid value", token))?;
         values.push(if value.abs() >= UNDEFINED { f64::NAN } else { value });
     }
-    if values.len() != expected {
-        return Err(source.length("grid values", expected, values.len()));
-    }
+    source.check_values(grid.count, values.len())?;
     let z = transposed(&values, grid.count);
     let shape = RawShape::Grid { grid, z };
-    Ok(vec![RawSurface {
-        name: None,
-        shape,
-        vertical: VerticalFacts::default(),
-        notes: Vec::new(),
-        warnings: Vec::new(),
-    }])
+    Ok(vec![RawSurface::new(None, shape)])
 }
 
 /// All sheets as one, which is possible if they lie on one grid and no node has two depths.

@@ -5,22 +5,14 @@
 //! length. Undefined from 1e30 on.
 
 use super::irap::{IrapHeader, transposed};
-use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
+use super::raw::{RawShape, RawSurface, ReadContext};
 use super::table::UNDEFINED;
 use super::text::SourceFile;
 use super::{Codec, Format, FormatError};
 use glam::DVec2;
 
-pub(super) const CODEC: Codec = Codec {
-    format: Format::IrapBinary,
-    name: "irapbin",
-    extension: "gri",
-    detect,
-    read_horizon: Some(read),
-    read_fault: None,
-    write_horizon: None,
-    write_fault: None,
-};
+pub(super) const CODEC: Codec =
+    Codec { read_horizon: Some(read), ..Codec::of(Format::IrapBinary, "irapbin", "gri", detect) };
 
 /// A record of 32 bytes that begins with −996.
 const SIGNATURE: [u8; 8] = [0, 0, 0, 32, 0xff, 0xff, 0xfc, 0x1c];
@@ -81,16 +73,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
             if value.abs() >= UNDEFINED { f64::NAN } else { value }
         }));
     }
-    let expected = grid.count[0] * grid.count[1];
-    if values.len() != expected {
-        return Err(source.length("grid values", expected, values.len()));
-    }
+    source.check_values(grid.count, values.len())?;
     let shape = RawShape::Grid { grid, z: transposed(&values, grid.count) };
-    Ok(vec![RawSurface {
-        name: None,
-        shape,
-        vertical: VerticalFacts::default(),
-        notes: Vec::new(),
-        warnings: Vec::new(),
-    }])
+    Ok(vec![RawSurface::new(None, shape)])
 }

@@ -11,8 +11,9 @@
 //! Points thinned at random lie on a lattice too, but as isolated nodes between holes they would be of no use: they
 //! count as scattered.
 
+use super::neighbours::PointGrid;
 use glam::{DMat2, DVec2};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use survey::geometry::SurveyGeometry;
 use survey::horizon::NodeGrid;
 
@@ -59,7 +60,8 @@ pub(super) fn of_survey(voxels: &[DVec2], geometry: &SurveyGeometry) -> Option<(
     Some((FittedLattice { grid, nodes }, step.map(|s| s as usize)))
 }
 
-fn gcd(a: i64, b: i64) -> i64 {
+/// The greatest common divisor, never negative.
+pub(crate) fn gcd(a: i64, b: i64) -> i64 {
     if b == 0 { a.abs() } else { gcd(b, a % b) }
 }
 
@@ -124,67 +126,9 @@ fn distinct(points: &[DVec2]) -> Vec<DVec2> {
         .collect()
 }
 
-/// Points in square cells, for neighbours.
-struct PointCells<'a> {
-    points: &'a [DVec2],
-    side: f64,
-    cells: HashMap<(i64, i64), Vec<u32>>,
-}
-
-impl<'a> PointCells<'a> {
-    fn of(points: &'a [DVec2]) -> Option<Self> {
-        let low = points.iter().copied().reduce(DVec2::min)?;
-        let high = points.iter().copied().reduce(DVec2::max)?;
-        let size = high - low;
-        let side = ((size.x * size.y / points.len() as f64).sqrt()).max(size.max_element() / points.len() as f64) * 1.5;
-        if !(side > 0.0 && side.is_finite()) {
-            return None;
-        }
-        let mut cells: HashMap<_, Vec<u32>> = HashMap::new();
-        for (n, p) in points.iter().enumerate() {
-            cells.entry(Self::key(*p, side)).or_default().push(n as u32);
-        }
-        Some(Self { points, side, cells })
-    }
-
-    fn key(p: DVec2, side: f64) -> (i64, i64) {
-        ((p.x / side).floor() as i64, (p.y / side).floor() as i64)
-    }
-
-    /// The vector to the nearest other point that `wanted` accepts, within eight cells.
-    fn nearest(&self, from: usize, wanted: impl Fn(DVec2) -> bool) -> Option<DVec2> {
-        let p = self.points[from];
-        let (x, y) = Self::key(p, self.side);
-        let mut best: Option<DVec2> = None;
-        for ring in 0..8i64 {
-            for i in x - ring..=x + ring {
-                for j in y - ring..=y + ring {
-                    if (i - x).abs().max((j - y).abs()) != ring {
-                        continue;
-                    }
-                    for &n in self.cells.get(&(i, j)).map_or(&[][..], Vec::as_slice) {
-                        let d = self.points[n as usize] - p;
-                        if n as usize != from
-                            && wanted(d)
-                            && best.is_none_or(|b| d.length_squared() < b.length_squared())
-                        {
-                            best = Some(d);
-                        }
-                    }
-                }
-            }
-            // Nothing in a further ring can be nearer than this.
-            if best.is_some_and(|b| b.length() <= ring as f64 * self.side) {
-                break;
-            }
-        }
-        best
-    }
-}
-
 /// The two shortest vectors that most points have to a neighbour.
 fn basis(points: &[DVec2]) -> Option<(DVec2, DVec2)> {
-    let cells = PointCells::of(points)?;
+    let cells = PointGrid::of(points);
     let stride = (points.len() / 1000).max(1);
     let sample: Vec<usize> = (0..points.len()).step_by(stride).collect();
     let first: Vec<DVec2> = sample.iter().filter_map(|&n| cells.nearest(n, |_| true)).collect();

@@ -70,6 +70,7 @@ mod irap;
 mod irap_binary;
 mod lattice;
 mod mesh_sticks;
+mod neighbours;
 mod opendtect;
 mod options;
 mod outline;
@@ -220,6 +221,19 @@ struct Codec {
     read_fault: Option<Reader>,
     write_horizon: Option<HorizonWriter>,
     write_fault: Option<FaultWriter>,
+}
+
+impl Codec {
+    /// A format that is only recognised.
+    const fn of(
+        format: Format,
+        name: &'static str,
+        extension: &'static str,
+        detect: fn(&SourceFile) -> Option<String>,
+    ) -> Self {
+        let (read_horizon, read_fault, write_horizon, write_fault) = (None, None, None, None);
+        Self { format, name, extension, detect, read_horizon, read_fault, write_horizon, write_fault }
+    }
 }
 
 /// Every format, in the order in which signatures are tried: those that cannot be mistaken first.
@@ -402,22 +416,30 @@ pub fn read_horizons(
     geometry: &SurveyGeometry,
     options: &ImportOptions,
 ) -> Result<Vec<(Horizon, ImportReport)>, FormatError> {
-    horizons_of(&SourceFile::open(path)?, geometry, options)
+    built(path, geometry, options, SurfaceKind::Horizon, horizon::build)
 }
 
-fn horizons_of(
-    source: &SourceFile,
+/// Makes a horizon or a fault of a surface as read.
+type Build<T> = fn(
+    &Path,
+    String,
+    Settled<Format>,
+    RawSurface,
+    &SurveyGeometry,
+    &ImportOptions,
+) -> Result<(T, ImportReport), FormatError>;
+
+/// The selected surfaces of a file, made and placed.
+fn built<T>(
+    path: &Path,
     geometry: &SurveyGeometry,
     options: &ImportOptions,
-) -> Result<Vec<(Horizon, ImportReport)>, FormatError> {
-    let (format, surfaces) = read_source(source, Some(geometry), options, SurfaceKind::Horizon)?;
-    surfaces
-        .into_iter()
-        .map(|raw| {
-            let name = name_of(&raw, source, options);
-            horizon::build(&source.path, name, format.clone(), raw, geometry, options)
-        })
-        .collect()
+    kind: SurfaceKind,
+    build: Build<T>,
+) -> Result<Vec<(T, ImportReport)>, FormatError> {
+    let (source, format, surfaces) = read_raw(path, Some(geometry), options, kind)?;
+    let name = |raw: &RawSurface| name_of(raw, &source, options);
+    surfaces.into_iter().map(|raw| build(path, name(&raw), format.clone(), raw, geometry, options)).collect()
 }
 
 /// Writes a horizon under a temporary name, then renames the file. A rotated grid is resampled for formats
@@ -480,15 +502,7 @@ pub fn read_fault(
     geometry: &SurveyGeometry,
     options: &ImportOptions,
 ) -> Result<Vec<(Fault, ImportReport)>, FormatError> {
-    let source = SourceFile::open(path)?;
-    let (format, surfaces) = read_source(&source, Some(geometry), options, SurfaceKind::Fault)?;
-    surfaces
-        .into_iter()
-        .map(|raw| {
-            let name = name_of(&raw, &source, options);
-            fault::build(&source.path, name, format.clone(), raw, geometry, options)
-        })
-        .collect()
+    built(path, geometry, options, SurfaceKind::Fault, fault::build)
 }
 
 /// The fault surface through sticks (world X, Y and vertical value). It needs two sticks of at least two

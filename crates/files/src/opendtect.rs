@@ -19,14 +19,11 @@ use survey::geometry::SurveyGeometry;
 use survey::horizon::Horizon;
 
 pub(super) const CODEC: Codec = Codec {
-    format: Format::OpendTect,
-    name: "opendtect",
-    extension: "dat",
-    detect,
     read_horizon: Some(read),
     read_fault: Some(read),
     write_horizon: Some(HorizonWriter::of(write_horizon)),
     write_fault: Some(write_fault),
+    ..Codec::of(Format::OpendTect, "opendtect", "dat", detect)
 };
 
 fn detect(source: &SourceFile) -> Option<String> {
@@ -70,11 +67,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     let text = source.text();
     let rows: Vec<_> = text::lines(&text).filter(|l| !table::is_comment(l.text)).collect();
     let Some(first) = rows.first() else {
-        return Err(FormatError::Empty {
-            file: source.path.clone(),
-            kind: context.kind,
-            why: "there are no rows".into(),
-        });
+        return Err(source.empty(context.kind, "there are no rows"));
     };
     let cut = LineCut::of(first.text);
     let layout = table::settle_columns(source, context, header_of(&text, context), &rows, cut)?;

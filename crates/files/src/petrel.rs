@@ -11,16 +11,8 @@ use super::text::{self, SourceFile};
 use super::unit::ZUnit;
 use super::{Codec, Format, FormatError};
 
-pub(super) const CODEC: Codec = Codec {
-    format: Format::Petrel,
-    name: "petrel",
-    extension: "txt",
-    detect,
-    read_horizon: Some(read),
-    read_fault: Some(read),
-    write_horizon: None,
-    write_fault: None,
-};
+pub(super) const CODEC: Codec =
+    Codec { read_horizon: Some(read), read_fault: Some(read), ..Codec::of(Format::Petrel, "petrel", "txt", detect) };
 
 fn detect(source: &SourceFile) -> Option<String> {
     let text = source.text();

@@ -6,22 +6,14 @@
 //! anticlockwise. `DataUnitZ` is a code of the program's own and not interpreted.
 
 use super::irap::IrapHeader;
-use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
+use super::raw::{RawShape, RawSurface, ReadContext};
 use super::text::{self, SourceFile};
 use super::{Codec, Format, FormatError};
 use glam::DVec2;
 use std::collections::HashMap;
 
-pub(super) const CODEC: Codec = Codec {
-    format: Format::PetroMod,
-    name: "petromod",
-    extension: "pmd",
-    detect,
-    read_horizon: Some(read),
-    read_fault: None,
-    write_horizon: None,
-    write_fault: None,
-};
+pub(super) const CODEC: Codec =
+    Codec { read_horizon: Some(read), ..Codec::of(Format::PetroMod, "petromod", "pmd", detect) };
 
 const SIGNATURE: [u8; 4] = [0x23, 0x03, 0x19, 0x64];
 
@@ -51,20 +43,11 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     };
     let grid = header.grid(source)?;
     let values = body[end + 1..].as_chunks::<4>().0;
-    let expected = grid.count[0] * grid.count[1];
-    if values.len() != expected {
-        return Err(source.length("grid values", expected, values.len()));
-    }
+    source.check_values(grid.count, values.len())?;
     let undefined = or("Undefined", 99_999.0);
     let z = values.iter().map(|w| f64::from(f32::from_be_bytes(*w)));
     let z = z.map(|v| if (v - undefined).abs() <= 1e-6 * undefined.abs() { f64::NAN } else { v }).collect();
     let notes = facts.get("DataUnitZ").map(|code| format!("the file's DataUnitZ={code} is not interpreted"));
     let shape = RawShape::Grid { grid, z };
-    Ok(vec![RawSurface {
-        name: None,
-        shape,
-        vertical: VerticalFacts::default(),
-        notes: notes.into_iter().collect(),
-        warnings: Vec::new(),
-    }])
+    Ok(vec![RawSurface { notes: notes.into_iter().collect(), ..RawSurface::new(None, shape) }])
 }

@@ -97,3 +97,10 @@ pub(super) struct RawSurface {
     /// What the user should check.
     pub warnings: Vec<Note>,
 }
+
+impl RawSurface {
+    /// A surface of which the file says nothing more.
+    pub(crate) fn new(name: Option<String>, shape: RawShape) -> Self {
+        Self { name, shape, vertical: VerticalFacts::default(), notes: Vec::new(), warnings: Vec::new() }
+    }
+}

@@ -155,13 +155,7 @@ pub(super) fn grid(
     let pairs: Vec<(usize, f32)> = places.node.iter().zip(points).map(|(&n, p)| (n, p.1)).collect();
     let (values, _) = NodeValues::group(places.voxels.len(), &pairs, tolerance)?;
     let repeated = pairs.len() - values.z.len();
-    let mut neighbours: Vec<Vec<usize>> = vec![Vec::new(); places.voxels.len()];
-    for t in &triangles {
-        for n in 0..3 {
-            neighbours[t[n]].push(t[(n + 1) % 3]);
-            neighbours[t[n]].push(t[(n + 2) % 3]);
-        }
-    }
+    let neighbours = neighbours(places.voxels.len(), &triangles);
     let outliers = outliers(&world, &values, &neighbours, tolerance);
     let sheet = sheets::split(&values, &|n| neighbours[n].clone());
     let count = sheet.iter().max().map_or(1, |&s| usize::from(s) + 1);
@@ -178,17 +172,19 @@ pub(super) fn grid(
     Ok(Gridded { sheets, gap_m, multivalued: values.multivalued(), repeated, outliers })
 }
 
+/// The other corners of the triangles around each point, one that two triangles share twice.
+fn neighbours(points: usize, triangles: &[[usize; 3]]) -> Vec<Vec<usize>> {
+    let mut neighbours = vec![Vec::new(); points];
+    for t in triangles {
+        (0..3).for_each(|n| neighbours[t[n]].extend([t[(n + 1) % 3], t[(n + 2) % 3]]));
+    }
+    neighbours
+}
+
 /// A gradient per point, m⁻¹, from its neighbours along triangle sides no longer than `gap_m`; 0 without
 /// neighbours.
 fn gradients(world: &[DVec2], z: &[f32], triangles: &[[usize; 3]], gap_m: f64) -> Vec<DVec2> {
-    let mut neighbours: Vec<Vec<usize>> = vec![Vec::new(); world.len()];
-    for t in triangles {
-        for n in 0..3 {
-            // An inner side belongs to two triangles, which have it in opposite directions.
-            neighbours[t[n]].push(t[(n + 1) % 3]);
-            neighbours[t[n]].push(t[(n + 2) % 3]);
-        }
-    }
+    let neighbours = neighbours(world.len(), triangles);
     let gradient = |n: usize| {
         let mut near = neighbours[n].clone();
         near.sort_unstable();

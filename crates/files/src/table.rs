@@ -6,6 +6,7 @@ use super::columns::{self, ColumnLayout};
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Field, Line, SourceFile};
 use glam::{DVec2, DVec3};
+use indexmap::IndexMap;
 use std::collections::HashMap;
 
 /// From here on a magnitude means "undefined" in the formats that write 1e30 for it.
@@ -115,8 +116,7 @@ pub(super) fn surfaces(
         });
     }
     let last = layout.columns.iter().rposition(|&c| c != Column::Other).unwrap_or(0);
-    let mut order: Vec<(Option<String>, Vec<RawPoint>)> = Vec::new();
-    let mut by_name: HashMap<Option<String>, usize> = HashMap::new();
+    let mut by_name: IndexMap<Option<String>, Vec<RawPoint>> = IndexMap::new();
     let mut separators = 0usize;
     let mut breaks = 0.0;
     let mut polygons = HashMap::new();
@@ -135,27 +135,19 @@ pub(super) fn surfaces(
         if separators > 0 || context.kind == super::SurfaceKind::Fault {
             point.stick = point.stick.or((separators > 0).then_some(breaks));
         }
-        let slot = *by_name.entry(name.clone()).or_insert_with(|| {
-            order.push((name, Vec::new()));
-            order.len() - 1
-        });
-        order[slot].1.push(point);
+        by_name.entry(name).or_default().push(point);
     }
     if separators > 0 {
         // Points before the first separator belong to the first part.
-        for (_, points) in &mut order {
-            points.iter_mut().for_each(|p| p.stick = p.stick.or(Some(0.0)));
-        }
+        by_name.values_mut().flatten().for_each(|p| p.stick = p.stick.or(Some(0.0)));
     }
     let vertical = VerticalFacts { unit: layout.unit, domain: layout.domain, positive: layout.positive };
-    Ok(order
+    Ok(by_name
         .into_iter()
         .map(|(name, points)| RawSurface {
-            name,
-            shape: RawShape::Points(points),
             vertical: vertical.clone(),
             notes: layout.notes.clone(),
-            warnings: Vec::new(),
+            ..RawSurface::new(name, RawShape::Points(points))
         })
         .collect())
 }

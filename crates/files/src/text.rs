@@ -3,7 +3,7 @@
 //! Lines may end in LF, CRLF or CR and in blanks; text that is not UTF-8 is read with replacement characters,
 //! so that a stray byte in a comment does no harm and one in a number is reported with its line.
 
-use super::FormatError;
+use super::{FormatError, SurfaceKind};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use system::file;
@@ -54,6 +54,17 @@ impl SourceFile {
     /// An error of counts.
     pub(crate) fn length(&self, what: &'static str, expected: usize, found: usize) -> FormatError {
         FormatError::Length { file: self.path.clone(), what, expected, found }
+    }
+
+    /// An error unless a grid has a value for each node.
+    pub(crate) fn check_values(&self, count: [usize; 2], found: usize) -> Result<(), FormatError> {
+        let expected = count[0] * count[1];
+        if found == expected { Ok(()) } else { Err(self.length("grid values", expected, found)) }
+    }
+
+    /// An error where nothing of the kind is in the file.
+    pub(crate) fn empty(&self, kind: SurfaceKind, why: impl Into<String>) -> FormatError {
+        FormatError::Empty { file: self.path.clone(), kind, why: why.into() }
     }
 
     /// An error in a grid header.

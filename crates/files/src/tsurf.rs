@@ -23,14 +23,11 @@ use survey::horizon::{Horizon, Sheet};
 use survey::mesh::TriangleMesh;
 
 pub(super) const CODEC: Codec = Codec {
-    format: Format::Tsurf,
-    name: "tsurf",
-    extension: "ts",
-    detect,
     read_horizon: Some(read),
     read_fault: Some(read),
     write_horizon: Some(HorizonWriter { holds_any_shape: true, ..HorizonWriter::of(write_horizon) }),
     write_fault: Some(write_fault),
+    ..Codec::of(Format::Tsurf, "tsurf", "ts", detect)
 };
 
 fn detect(source: &SourceFile) -> Option<String> {
@@ -86,7 +83,7 @@ impl GocadObject {
             };
             RawShape::Points(self.mesh.vertices.iter().enumerate().map(point).collect())
         };
-        RawSurface { name: self.name, shape, vertical: self.vertical, notes: Vec::new(), warnings: Vec::new() }
+        RawSurface { vertical: self.vertical, ..RawSurface::new(self.name, shape) }
     }
 
     /// The name in a `HEADER {` block or line: `name: F5`, `name:F5`, `HEADER { name: F5 }`.
@@ -200,7 +197,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         }
     }
     surfaces.extend(object.take().map(GocadObject::surface));
-    let empty = |why: String| FormatError::Empty { file: source.path.clone(), kind: context.kind, why };
+    let empty = |why: String| source.empty(context.kind, why);
     if surfaces.is_empty() {
         return Err(empty(other.map_or_else(
             || "there is no GOCAD TSurf, VSet or PLine".into(),

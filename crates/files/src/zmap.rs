@@ -7,7 +7,7 @@
 //! Written with fields of 20 characters and 7 decimals, null −99999 (or, where depths come near it,
 //! −9.99e+29).
 
-use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
+use super::raw::{RawShape, RawSurface, ReadContext};
 use super::text::{self, Line, SourceFile};
 use super::write::{self, WriteFailure};
 use super::{Codec, Format, FormatError, HorizonWriter, SurfaceKind, irap};
@@ -17,14 +17,9 @@ use survey::geometry::SurveyGeometry;
 use survey::horizon::{Horizon, NodeGrid};
 
 pub(super) const CODEC: Codec = Codec {
-    format: Format::Zmap,
-    name: "zmap",
-    extension: "zmap",
-    detect,
     read_horizon: Some(read),
-    read_fault: None,
     write_horizon: Some(HorizonWriter { is_unrotated: true, ..HorizonWriter::of(write_horizon) }),
-    write_fault: None,
+    ..Codec::of(Format::Zmap, "zmap", "zmap", detect)
 };
 
 fn is_comment(line: &str) -> bool {
@@ -119,7 +114,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     let title = header("@ NAME, GRID, n")?;
     if !title.text.to_ascii_uppercase().contains("GRID") {
         let why = format!("its header is {}, which is no grid", text::excerpt(title.text));
-        return Err(FormatError::Empty { file: source.path.clone(), kind: SurfaceKind::Horizon, why });
+        return Err(source.empty(SurfaceKind::Horizon, why));
     }
     let line = header("width, null, null text, decimals, start column")?;
     // The second null is text and may be anything.
@@ -150,13 +145,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     let notes = null.map(|n| format!("the file's null is {n}")).into_iter().collect();
     let shape = RawShape::Grid { grid, z: from_columns(&file, grid.count) };
     let generic = name.is_empty() || name.eq_ignore_ascii_case("GRIDFILE");
-    Ok(vec![RawSurface {
-        name: (!generic).then(|| name.into()),
-        shape,
-        vertical: VerticalFacts::default(),
-        notes,
-        warnings: Vec::new(),
-    }])
+    Ok(vec![RawSurface { notes, ..RawSurface::new((!generic).then(|| name.into()), shape) }])
 }
 
 /// The values of all lines, cut by blanks or into fields of `width`.

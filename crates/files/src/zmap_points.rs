@@ -4,21 +4,16 @@
 //! four numbers (`X (EASTING) , 1, 1, 1, 1, 20,, 1.0E+30,,, 4, 0`), `@`, then rows. A new `SEG I.D.` begins a
 //! new polygon. Lines beginning with `!` or `+` are comments.
 
-use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
+use super::raw::{RawPoint, RawShape, RawSurface, ReadContext};
 use super::table::UNDEFINED;
 use super::text::{self, Line, SourceFile};
 use super::{Codec, Format, FormatError};
 use glam::DVec2;
 
 pub(super) const CODEC: Codec = Codec {
-    format: Format::ZmapPoints,
-    name: "zmappoints",
-    extension: "zmap",
-    detect,
     read_horizon: Some(read),
     read_fault: Some(read),
-    write_horizon: None,
-    write_fault: None,
+    ..Codec::of(Format::ZmapPoints, "zmappoints", "zmap", detect)
 };
 
 fn is_comment(line: &str) -> bool {
@@ -84,14 +79,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         });
     }
     if points.is_empty() {
-        let why = "there are no rows after the header".into();
-        return Err(FormatError::Empty { file: source.path.clone(), kind: context.kind, why });
+        return Err(source.empty(context.kind, "there are no rows after the header"));
     }
-    Ok(vec![RawSurface {
-        name: None,
-        shape: RawShape::Points(points),
-        vertical: VerticalFacts::default(),
-        notes: Vec::new(),
-        warnings: Vec::new(),
-    }])
+    Ok(vec![RawSurface::new(None, RawShape::Points(points))])
 }

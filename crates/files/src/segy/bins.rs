@@ -20,8 +20,9 @@ use super::SegyOptions;
 use super::columns::{Columns, HeaderColumn};
 use super::coordinates::{Coordinates, varying};
 use super::header::NO_INTEGER;
-use super::neighbours::PointGrid;
 use super::place::Affine;
+use crate::lattice::gcd;
+use crate::neighbours::PointGrid;
 
 /// Least share of filled bins when the user asks for this lattice.
 pub(super) const MIN_FILL_STATED: f64 = 0.05;
@@ -263,10 +264,6 @@ impl Axes {
         let [across, along] = self.rows;
         I64Vec2::new(across.x * index.x + across.y * index.y, along.x * index.x + along.y * index.y)
     }
-}
-
-fn gcd(a: i64, b: i64) -> i64 {
-    if b == 0 { a.abs() } else { gcd(b, a % b) }
 }
 
 /// `(x, y)` with a·x + b·y = gcd(a, b).

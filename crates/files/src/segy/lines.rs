@@ -9,6 +9,7 @@ use glam::DVec2;
 use super::columns::HeaderColumn;
 use super::header::NO_INTEGER;
 use super::options::KeptDuplicate;
+use crate::lattice::gcd;
 use survey::geometry::LineAxis;
 
 /// Marks a lattice position without a trace.
@@ -280,8 +281,4 @@ impl Numbers {
             }
         }
     }
-}
-
-fn gcd(a: i64, b: i64) -> i64 {
-    if b == 0 { a } else { gcd(b, a % b) }
 }

@@ -53,7 +53,6 @@ mod header;
 mod info;
 mod lines;
 mod map;
-mod neighbours;
 mod number_type;
 mod options;
 mod page;

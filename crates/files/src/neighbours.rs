@@ -7,7 +7,7 @@ use glam::{DVec2, IVec2};
 const MAX_RINGS: i32 = 24;
 
 /// Points sorted into cells. Memory: 4 bytes per point and 4 bytes per cell.
-pub(super) struct PointGrid<'a> {
+pub(crate) struct PointGrid<'a> {
     points: &'a [DVec2],
     low: DVec2,
     cell: f64,
@@ -18,7 +18,7 @@ pub(super) struct PointGrid<'a> {
 }
 
 impl<'a> PointGrid<'a> {
-    pub(super) fn of(points: &'a [DVec2]) -> Self {
+    pub(crate) fn of(points: &'a [DVec2]) -> Self {
         let low = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
         let high = points.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
         let extent = (high - low).max(DVec2::ZERO);
@@ -53,7 +53,7 @@ impl<'a> PointGrid<'a> {
     }
 
     /// The step from a point to the nearest one elsewhere whose step is accepted; none within the rings.
-    pub(super) fn nearest(&self, point: usize, accept: impl Fn(DVec2) -> bool) -> Option<DVec2> {
+    pub(crate) fn nearest(&self, point: usize, accept: impl Fn(DVec2) -> bool) -> Option<DVec2> {
         let from = self.points[point];
         let centre = self.place_of(from);
         let mut best: Option<DVec2> = None;
