@@ -89,6 +89,44 @@ impl Gpu {
         self.lost.lock().ok().and_then(|lost| lost.clone())
     }
 
+    /// A 3D texture that shaders can read.
+    pub(crate) fn texture(
+        &self,
+        label: &str,
+        size: wgpu::Extent3d,
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+    ) -> wgpu::Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D3,
+            format,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | usage,
+            view_formats: &[],
+        })
+    }
+
+    /// A texture to be filled with a volume: texel (x, y, z) is sample (z, y, x). `subject`: what has too many samples, for
+    /// the error.
+    pub(crate) fn volume_texture(
+        &self,
+        label: &str,
+        [nx, ny, nz]: [usize; 3],
+        format: wgpu::TextureFormat,
+        subject: &str,
+    ) -> Result<wgpu::Texture, RenderError> {
+        let limit = self.device.limits().max_texture_dimension_3d as usize;
+        if [nx, ny, nz].into_iter().any(|n| n > limit) {
+            let reason = format!("{subject} {nx} x {ny} x {nz} samples, but its limit is {limit} along each axis");
+            return Err(RenderError::Unsuitable { adapter: self.adapter_name.clone(), reason });
+        }
+        let size = wgpu::Extent3d { width: nz as u32, height: ny as u32, depth_or_array_layers: nx as u32 };
+        Ok(self.texture(label, size, format, wgpu::TextureUsages::COPY_DST))
+    }
+
     /// Writes the texels of the plane at depth `plane` of a 3D texture, row by row.
     pub(crate) fn write_plane(&self, texture: &wgpu::Texture, plane: u32, bytes: &[u8]) {
         let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };

@@ -15,7 +15,6 @@
 //!
 //! Deliberately absent: any shading, any change of a project.
 
-mod base64;
 mod block;
 mod covers;
 pub mod glb;

@@ -3,9 +3,10 @@
 //! Corners and ends of lines are 16-bit shares of the box that they fill; paths of wells are 32-bit floats. Voxels
 //! everywhere.
 
-use crate::base64::encode;
 use crate::model::{Block, Cover, LineKind, Mesh, Model, SceneModel, Surface};
 use crate::picture::{drawing, jpeg, png, shrunk};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
 use project::error::ProjectError;
 use rayon::prelude::*;
@@ -16,7 +17,7 @@ use ttf::RgbaFunction;
 
 /// A picture that is a part of the page.
 pub(crate) fn data_uri(kind: &str, bytes: &[u8]) -> String {
-    format!("data:image/{kind};base64,{}", encode(bytes))
+    format!("data:image/{kind};base64,{}", STANDARD.encode(bytes))
 }
 
 /// The model without the pictures of its faces, which come as files of PNG: those of the illustration, then the data.
@@ -75,7 +76,7 @@ pub(crate) fn page(model: &Model, illustrated: &[Option<String>], data: &[Vec<u8
         "unpicked": model.has_unpicked(),
         "geometry": geometry(&model.geometry),
         "raw": model.raw.as_ref().map(|raw| json!({
-            "volume": raw.volume, "domain": raw.function.domain, "map": encode(&map(&raw.function)),
+            "volume": raw.volume, "domain": raw.function.domain, "map": STANDARD.encode(&map(&raw.function)),
             "noData": raw.no_data.map(|colour| colour.to_unit()),
         })),
         "layers": layers,
@@ -239,14 +240,14 @@ fn surface(surface: &Surface) -> Value {
     let unsure: Vec<u8> = surface.is_picked.iter().map(|picked| if *picked { 0 } else { 255 }).collect();
     json!({
         "name": surface.name, "colour": surface.colour.to_string(), "mesh": mesh(&surface.mesh),
-        "unsure": unsure.contains(&255).then(|| encode(&unsure)),
+        "unsure": unsure.contains(&255).then(|| STANDARD.encode(&unsure)),
         "below": surface.below, "picked": surface.picked_share, "deviation": surface.deviation_m,
     })
 }
 
 fn floats<'a>(points: impl Iterator<Item = &'a DVec3>) -> String {
     let bytes: Vec<u8> = points.flat_map(|p| p.as_vec3().to_array()).flat_map(f32::to_le_bytes).collect();
-    encode(&bytes)
+    STANDARD.encode(&bytes)
 }
 
 /// Points as 16-bit shares of their box.
@@ -257,7 +258,7 @@ fn shares(points: &[DVec3]) -> Value {
     let share = |p: &DVec3| ((*p - low) / size * 65535.0).round().to_array().map(|c| c as u16);
     let bytes: Vec<u8> = points.iter().flat_map(share).flat_map(u16::to_le_bytes).collect();
     let [low, size] = if points.is_empty() { [DVec3::ZERO, DVec3::ONE] } else { [low, size] };
-    json!({ "low": low.to_array(), "size": size.to_array(), "points": encode(&bytes) })
+    json!({ "low": low.to_array(), "size": size.to_array(), "points": STANDARD.encode(&bytes) })
 }
 
 /// Corners as shares of their box, and indices of 16 or 32 bits.
@@ -268,7 +269,7 @@ fn mesh(mesh: &Mesh) -> Value {
         false => mesh.triangles.iter().flatten().flat_map(|n| n.to_le_bytes()).collect(),
     };
     let mut value = shares(&mesh.points);
-    value["indices"] = encode(&indices).into();
+    value["indices"] = STANDARD.encode(&indices).into();
     value["bits"] = if is_small { 16 } else { 32 }.into();
     value
 }

@@ -38,10 +38,10 @@ fn explain(error: &ArrayError, action: &'static str, group: &Path, array: &str) 
         ArrayError::StorageError(storage) | ArrayError::CodecError(CodecError::StorageError(storage)) => storage,
         ArrayError::CodecError(CodecError::IOError(source)) => return io_error(source, action, group, array),
         ArrayError::CodecError(codec) if action == "read" => {
-            return StoreError::Damaged { path: group.to_owned(), array: array.to_owned(), reason: codec.to_string() };
+            return StoreError::damaged(group, array, codec.to_string());
         }
         other => {
-            return StoreError::Array { path: group.to_owned(), action, reason: other.to_string() };
+            return StoreError::array(group, action, other.to_string());
         }
     };
     explain_storage(storage, action, group, array)
@@ -54,10 +54,8 @@ fn explain_storage(error: &StorageError, action: &'static str, group: &Path, arr
         StorageError::MissingMetadata(_) => {
             StoreError::MissingArray { path: group.to_owned(), array: array.to_owned() }
         }
-        other if action == "read" => {
-            StoreError::Damaged { path: group.to_owned(), array: array.to_owned(), reason: other.to_string() }
-        }
-        other => StoreError::Array { path: group.to_owned(), action, reason: other.to_string() },
+        other if action == "read" => StoreError::damaged(group, array, other.to_string()),
+        other => StoreError::array(group, action, other.to_string()),
     }
 }
 
@@ -69,25 +67,21 @@ fn io_error(source: &std::io::Error, action: &'static str, path: &Path, array: &
     }
     if action == "read" {
         let reason = source.to_string();
-        return StoreError::Damaged { path: path.to_owned(), array: array.to_owned(), reason };
+        return StoreError::damaged(path, array, reason);
     }
     StoreError::io(action, path, std::io::Error::new(source.kind(), source.to_string()))
 }
 
 /// The library's view of a folder.
 fn file_store(group: &Path, action: &'static str) -> Result<Arc<FilesystemStore>, StoreError> {
-    FilesystemStore::new(group).map(Arc::new).map_err(|error| StoreError::Array {
-        path: group.to_owned(),
-        action,
-        reason: error.to_string(),
-    })
+    FilesystemStore::new(group).map(Arc::new).map_err(|error| StoreError::array(group, action, error.to_string()))
 }
 
 /// Writes a group's metadata; `name` is empty for the folder itself.
 pub(crate) fn write_group(group: &Path, name: &str, attributes: Map<String, Value>) -> Result<(), StoreError> {
     let store = file_store(group, "written")?;
     let built = GroupBuilder::new().attributes(attributes).build(store, &format!("/{name}"));
-    let fail = |reason: String| StoreError::Array { path: group.to_owned(), action: "written", reason };
+    let fail = |reason: String| StoreError::array(group, "written", reason);
     let built = built.map_err(|error| fail(error.to_string()))?;
     built.store_metadata().map_err(|error| explain_storage(&error, "written", group, name))
 }
@@ -102,11 +96,7 @@ pub(crate) fn read_group(group: &Path) -> Result<Map<String, Value>, StoreError>
     match opened {
         Ok(opened) => Ok(opened.attributes().clone()),
         Err(GroupCreateError::StorageError(StorageError::IOError(source))) => Err(io_error(&source, "read", group, "")),
-        Err(error) => Err(StoreError::WrongKind {
-            path: group.to_owned(),
-            expected: "a Zarr v3 group",
-            reason: error.to_string(),
-        }),
+        Err(error) => Err(StoreError::wrong_kind(group, "a Zarr v3 group", error.to_string())),
     }
 }
 
@@ -128,11 +118,9 @@ fn build<T: StoredSample>(
     builder.dimension_names(Some(layout.axes.iter().map(String::as_str)));
     attributes.insert(COMPLETE.to_owned(), Value::Bool(true));
     builder.attributes(attributes);
-    builder.build(file_store(group, "written")?, &format!("/{name}")).map_err(|error| StoreError::Array {
-        path: group.to_owned(),
-        action: "written",
-        reason: error.to_string(),
-    })
+    builder
+        .build(file_store(group, "written")?, &format!("/{name}"))
+        .map_err(|error| StoreError::array(group, "written", error.to_string()))
 }
 
 /// Writes the metadata of an array whose chunks are coded by `codec`.
@@ -375,11 +363,7 @@ impl StoredArray {
             Err(ArrayCreateError::MissingMetadata) => return Err(missing()),
             Err(ArrayCreateError::StorageError(error)) => return Err(explain_storage(&error, "read", group, name)),
             Err(error) => {
-                return Err(StoreError::Damaged {
-                    path: group.to_owned(),
-                    array: name.to_owned(),
-                    reason: error.to_string(),
-                });
+                return Err(StoreError::damaged(group, name, error.to_string()));
             }
         };
         let shape: Vec<usize> = array.shape().iter().map(|&n| n as usize).collect();
@@ -451,7 +435,7 @@ impl StoredArray {
             let whole = facts.ok_or_else(|| "it is missing".to_owned());
             whole.and_then(|facts| capacity::check_content(facts.len(), &edge, bytes_each)).map_err(|fact| {
                 let reason = format!("the file c/{key}: {fact}");
-                StoreError::Damaged { path: self.group.clone(), array: self.name.clone(), reason }
+                StoreError::damaged(&self.group, &self.name, reason)
             })?;
         }
         Ok(())

@@ -325,7 +325,7 @@ impl StoredCandidates {
                 let array = StoredArray::open(path, &name)?;
                 if array.shape() != size {
                     let reason = format!("it has {:?}, not {size:?}", array.shape());
-                    return Err(StoreError::Damaged { path: path.to_owned(), array: name, reason });
+                    return Err(StoreError::damaged(path, &name, reason));
                 }
                 Ok(array)
             };

@@ -21,7 +21,7 @@ const ALWAYS: u64 = 1 << 16;
 
 /// Checks that about as many files lie in the folder `c` of the array `name` as `counts` along its axes say.
 pub(super) fn check_count(group: &Path, name: &str, shape: &[usize], counts: &[usize]) -> Result<(), StoreError> {
-    let damaged = |reason| StoreError::Damaged { path: group.to_owned(), array: name.to_owned(), reason };
+    let damaged = |reason| StoreError::damaged(group, name, reason);
     let needed = counts.iter().try_fold(1u64, |product, &count| product.checked_mul(count as u64));
     let elements = shape.iter().try_fold(1usize, |product, &count| product.checked_mul(count));
     let (Some(needed), Some(_)) = (needed, elements) else {

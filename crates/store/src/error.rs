@@ -196,6 +196,21 @@ pub enum StoreError {
 }
 
 impl StoreError {
+    /// Something that is not what was expected.
+    pub(crate) fn wrong_kind(path: &Path, expected: &'static str, reason: impl Into<String>) -> Self {
+        Self::WrongKind { path: path.to_owned(), expected, reason: reason.into() }
+    }
+
+    /// An array or a group that the library refused.
+    pub(crate) fn array(group: &Path, action: &'static str, reason: impl Into<String>) -> Self {
+        Self::Array { path: group.to_owned(), action, reason: reason.into() }
+    }
+
+    /// An array of a group whose content does not fit.
+    pub(crate) fn damaged(group: &Path, array: &str, reason: impl Into<String>) -> Self {
+        Self::Damaged { path: group.to_owned(), array: array.to_owned(), reason: reason.into() }
+    }
+
     /// A failure of the file system while `path` was being `action` ("read", "written", …).
     pub fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();

@@ -2,7 +2,7 @@
 //! the vertical value) and each triangle (indices of vertices from 0) has a line of its own.
 
 use super::error::StoreError;
-use super::header::VERSION;
+use super::header::{VERSION, check_kind};
 use super::replacement::{replace_file, settle};
 use glam::DVec3;
 use serde::Deserialize;
@@ -50,11 +50,7 @@ struct FaultDocument {
 pub fn write_fault(path: &Path, fault: &Fault) -> Result<(), StoreError> {
     let is_place = |vertex: &&DVec3| vertex.abs().max_element() <= MAX_COORDINATE && vertex.is_finite();
     if let Some(vertex) = fault.mesh.vertices.iter().find(|vertex| !is_place(vertex)) {
-        return Err(StoreError::WrongKind {
-            path: path.to_owned(),
-            expected: "a fault",
-            reason: format!("the vertex {vertex} is not a place"),
-        });
+        return Err(StoreError::wrong_kind(path, "a fault", format!("the vertex {vertex} is not a place")));
     }
     let quoted = |text: &str| serde_json::Value::from(text).to_string();
     let mut text = format!("{{\n\"kind\": \"{KIND}\",\n\"version\": {VERSION},\n\"name\": {},\n", quoted(&fault.name));
@@ -87,14 +83,9 @@ pub fn read_fault(path: &Path) -> Result<Fault, StoreError> {
     settle(path);
     let text =
         file::read_text(path, file::MAX_INTERPRETATION_BYTES).map_err(|source| StoreError::io("read", path, source))?;
-    let wrong = |reason| StoreError::WrongKind { path: path.to_owned(), expected: "a fault", reason };
+    let wrong = |reason| StoreError::wrong_kind(path, "a fault", reason);
     let document: FaultDocument = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-    if document.kind != KIND {
-        return Err(wrong(format!("it says that it is {:?}", document.kind)));
-    }
-    if document.version > VERSION {
-        return Err(StoreError::NewerVersion { path: path.to_owned(), found: document.version, known: VERSION });
-    }
+    check_kind(path, "a fault", [KIND, &document.kind], document.version)?;
     let is_place = |vertex: &&[f64; 3]| vertex.iter().all(|at| at.abs() <= MAX_COORDINATE);
     if let Some(vertex) = document.vertices.iter().find(|vertex| !is_place(vertex)) {
         return Err(wrong(format!("the vertex {vertex:?} lies beyond any survey")));

@@ -16,11 +16,7 @@ pub const VERSION: u64 = 1;
 
 /// Writes the group's own metadata.
 pub(super) fn write_header(group: &Path, kind: &str, facts: &impl Serialize) -> Result<(), StoreError> {
-    let facts = serde_json::to_value(facts).map_err(|error| StoreError::Array {
-        path: group.to_owned(),
-        action: "written",
-        reason: error.to_string(),
-    })?;
+    let facts = serde_json::to_value(facts).map_err(|error| StoreError::array(group, "written", error.to_string()))?;
     let header = json!({ "kind": kind, "version": VERSION, "facts": facts });
     write_group(group, "", Map::from_iter([(KEY.to_owned(), header)]))
 }
@@ -33,16 +29,27 @@ pub(super) fn read_header<F: DeserializeOwned>(
 ) -> Result<F, StoreError> {
     settle(group);
     let mut attributes = read_group(group)?;
-    let wrong = |reason: String| StoreError::WrongKind { path: group.to_owned(), expected, reason };
+    let wrong = |reason: String| StoreError::wrong_kind(group, expected, reason);
     let header = attributes.remove(KEY).ok_or_else(|| wrong(format!("it has no attribute {KEY:?}")))?;
     let found = header.get("kind").and_then(Value::as_str).unwrap_or("nothing");
-    if found != kind {
-        return Err(wrong(format!("it says that it is {found:?}")));
-    }
     let version = header.get("version").and_then(Value::as_u64).unwrap_or(0);
-    if version > VERSION {
-        return Err(StoreError::NewerVersion { path: group.to_owned(), found: version, known: VERSION });
-    }
+    check_kind(group, expected, [kind, found], version)?;
     let facts = header.get("facts").cloned().unwrap_or_default();
     serde_json::from_value(facts).map_err(|error| wrong(error.to_string()))
+}
+
+/// Refuses what says that it is of another kind than the first of the two, and a version that is not known yet.
+pub(super) fn check_kind(
+    path: &Path,
+    expected: &'static str,
+    [kind, found]: [&str; 2],
+    version: u64,
+) -> Result<(), StoreError> {
+    if found != kind {
+        return Err(StoreError::wrong_kind(path, expected, format!("it says that it is {found:?}")));
+    }
+    if version > VERSION {
+        return Err(StoreError::NewerVersion { path: path.to_owned(), found: version, known: VERSION });
+    }
+    Ok(())
 }

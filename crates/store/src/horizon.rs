@@ -94,8 +94,7 @@ fn read_surface(
     [vertices, triangles]: [usize; 2],
     progress: &Progress,
 ) -> Result<TriangleMesh, StoreError> {
-    let damaged =
-        |array: &str, reason: String| StoreError::Damaged { path: path.to_owned(), array: array.to_owned(), reason };
+    let damaged = |array: &str, reason: String| StoreError::damaged(path, array, reason);
     let open = |array: &str, count: usize| {
         let found = StoredArray::open(path, array)?;
         if found.shape() == [count, 3] {
@@ -125,7 +124,7 @@ fn check_vertices(path: &Path, mesh: &TriangleMesh) -> Result<(), StoreError> {
     let is_place = |v: &DVec3| v.is_finite() && v.abs().max_element() <= MAX_COORDINATE;
     let Some(beyond) = mesh.vertices.iter().find(|v| !is_place(v)) else { return Ok(()) };
     let reason = format!("the corner {beyond} lies beyond any survey, which reaches at most {MAX_COORDINATE:e}");
-    Err(StoreError::Damaged { path: path.to_owned(), array: "vertices".to_owned(), reason })
+    Err(StoreError::damaged(path, "vertices", reason))
 }
 
 /// Reads a horizon back.
@@ -139,7 +138,7 @@ pub fn read_horizon(path: &Path, progress: &Progress) -> Result<Horizon, StoreEr
         let open = |what: &str| {
             let name = format!("{n}/{what}");
             let array = StoredArray::open(path, &name)?;
-            let damaged = |reason| StoreError::Damaged { path: path.to_owned(), array: name.clone(), reason };
+            let damaged = |reason| StoreError::damaged(path, &name, reason);
             if array.shape() != grid.count {
                 return Err(damaged(format!("it has {:?}, its grid {:?}", array.shape(), grid.count)));
             }
@@ -149,11 +148,8 @@ pub fn read_horizon(path: &Path, progress: &Progress) -> Result<Horizon, StoreEr
         check_depths(path, n, &depth)?;
         let numbers = open("quality")?.read::<u8>(progress)?;
         let quality = numbers.iter().map(|&number| quality_of(number)).collect::<Option<Vec<Quality>>>();
-        let quality = quality.ok_or_else(|| StoreError::Damaged {
-            path: path.to_owned(),
-            array: format!("{n}/quality"),
-            reason: "a number stands for no quality".to_owned(),
-        })?;
+        let quality = quality
+            .ok_or_else(|| StoreError::damaged(path, &format!("{n}/quality"), "a number stands for no quality"))?;
         sheets.push(Sheet { block, grid, depth, quality });
     }
     let surface = header.surface.map(|counts| read_surface(path, counts, progress)).transpose()?;
@@ -165,7 +161,7 @@ fn check_depths(path: &Path, sheet: usize, depths: &[f32]) -> Result<(), StoreEr
     let is_beyond = |depth: &&f32| depth.is_finite() && f64::from(depth.abs()) > MAX_COORDINATE;
     let Some(beyond) = depths.iter().find(is_beyond) else { return Ok(()) };
     let reason = format!("a depth of {beyond:e} lies beyond any survey, which reaches at most {MAX_COORDINATE:e}");
-    Err(StoreError::Damaged { path: path.to_owned(), array: format!("{sheet}/depth"), reason })
+    Err(StoreError::damaged(path, &format!("{sheet}/depth"), reason))
 }
 
 /// The quality that a number stands for.

@@ -60,11 +60,8 @@ impl Link {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(source) => return Err(StoreError::io("read", &file, source)),
         };
-        let record: Record = serde_json::from_str(&text).map_err(|error| StoreError::WrongKind {
-            path: file,
-            expected: "a link to a volume",
-            reason: error.to_string(),
-        })?;
+        let record: Record = serde_json::from_str(&text)
+            .map_err(|error| StoreError::wrong_kind(&file, "a link to a volume", error.to_string()))?;
         Self::of(record).map(Some)
     }
 

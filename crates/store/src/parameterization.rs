@@ -245,11 +245,11 @@ impl StoredParameterization {
         let open = |name: &str| {
             let array = StoredArray::open(path, name)?;
             if array.shape() != header.size {
-                return Err(StoreError::Damaged {
-                    path: path.to_owned(),
-                    array: name.to_owned(),
-                    reason: format!("it has {:?}, not {:?}", array.shape(), header.size),
-                });
+                return Err(StoreError::damaged(
+                    path,
+                    name,
+                    format!("it has {:?}, not {:?}", array.shape(), header.size),
+                ));
             }
             Ok(array)
         };
@@ -262,10 +262,8 @@ impl StoredParameterization {
     /// # Errors
     /// [`StoreError`] when an array is missing, damaged, or of another size than `i`.
     pub fn open_foreign(path: &Path) -> Result<Self, StoreError> {
-        let wrong = |reason: String| StoreError::WrongKind {
-            path: path.to_owned(),
-            expected: "a Zarr v3 group with arrays i, j, k, layer and block",
-            reason,
+        let wrong = |reason: String| {
+            StoreError::wrong_kind(path, "a Zarr v3 group with arrays i, j, k, layer and block", reason)
         };
         if !path.is_dir() {
             return Err(StoreError::Missing { path: path.to_owned() });

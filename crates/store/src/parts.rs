@@ -83,11 +83,7 @@ impl VolumeParts {
         let info = VolumeInfo::read(path)?;
         info.geometry.validate().map_err(|source| StoreError::Geometry { path: path.to_owned(), source })?;
         if !is_unfinished(path) {
-            return Err(StoreError::WrongKind {
-                path: path.to_owned(),
-                expected: "a volume that is being written",
-                reason: "it is complete".to_owned(),
-            });
+            return Err(StoreError::wrong_kind(path, "a volume that is being written", "it is complete"));
         }
         let size = info.geometry.size();
         // Its files are still to be written, so none of them may be there.
@@ -96,11 +92,7 @@ impl VolumeParts {
         let live = StoredArray::open(path, "live")?.read::<u8>(&Progress::silent())?;
         let parts = Self::of(path, &info, live.into_iter().map(|live| live != 0).collect(), sample_type);
         if full.shape() != size || parts.levels[0].1.len() != size[0] * size[1] {
-            return Err(StoreError::Damaged {
-                path: path.to_owned(),
-                array: "0".to_owned(),
-                reason: format!("it has {:?}, the lattice {size:?}", full.shape()),
-            });
+            return Err(StoreError::damaged(path, "0", format!("it has {:?}, the lattice {size:?}", full.shape())));
         }
         Ok(parts)
     }

@@ -155,7 +155,7 @@ impl FolderArrays {
     fn fail(&self, action: &'static str, array: &str, part: usize, source: io::Error) -> SourceError {
         if source.kind() == ErrorKind::UnexpectedEof || source.kind() == ErrorKind::NotFound {
             let reason = format!("its part {part} is missing or was cut off");
-            return Box::new(StoreError::Damaged { path: self.folder.clone(), array: array.to_owned(), reason });
+            return Box::new(StoreError::damaged(&self.folder, array, reason));
         }
         Box::new(StoreError::io(action, &self.path(array, part), source))
     }

@@ -49,7 +49,7 @@ impl DamageFindings {
             let rest = if more == 0 { String::new() } else { format!("; and {more} more") };
             format!("{} bricks or files are damaged: {}{rest}", self.0.len(), told.collect::<Vec<_>>().join("; "))
         };
-        Err(StoreError::Damaged { path: group.to_owned(), array: first.clone(), reason })
+        Err(StoreError::damaged(group, first, reason))
     }
 }
 

@@ -62,11 +62,7 @@ impl StoredVolume {
             None => StoredArray::open(path, name),
         };
         let mut levels = vec![array("0")?];
-        let damaged = |array: &str, reason: String| StoreError::Damaged {
-            path: path.to_owned(),
-            array: array.to_owned(),
-            reason,
-        };
+        let damaged = |array: &str, reason: String| StoreError::damaged(path, array, reason);
         let full = info.geometry.size();
         if levels[0].shape() != full {
             return Err(damaged("0", format!("it has {:?}, the lattice {full:?}", levels[0].shape())));
@@ -236,11 +232,11 @@ impl StoredVolume {
         let values = array.read::<f32>(&Progress::silent())?;
         let ranges: Vec<[f32; 2]> = values.as_chunks::<2>().0.to_vec();
         if ranges.len() != counts.iter().product::<usize>() {
-            return Err(StoreError::Damaged {
-                path: self.path.clone(),
-                array: format!("minmax/{level}"),
-                reason: format!("it has {:?}", array.shape()),
-            });
+            return Err(StoreError::damaged(
+                &self.path,
+                &format!("minmax/{level}"),
+                format!("it has {:?}", array.shape()),
+            ));
         }
         Ok((counts, ranges))
     }

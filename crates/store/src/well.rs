@@ -2,7 +2,7 @@
 //! curve has a line of its own.
 
 use super::error::StoreError;
-use super::header::VERSION;
+use super::header::{VERSION, check_kind};
 use super::replacement::{replace_file, settle};
 use serde::Deserialize;
 use serde_json::Value;
@@ -30,11 +30,8 @@ const OPEN: usize = 3;
 /// # Errors
 /// [`StoreError`]; `path` is then what it was before.
 pub fn write_well(path: &Path, well: &Well) -> Result<(), StoreError> {
-    let value = serde_json::to_value(well).map_err(|error| StoreError::WrongKind {
-        path: path.to_owned(),
-        expected: "a well",
-        reason: error.to_string(),
-    })?;
+    let value =
+        serde_json::to_value(well).map_err(|error| StoreError::wrong_kind(path, "a well", error.to_string()))?;
     let mut text = format!("{{\n\"kind\": \"{KIND}\",\n\"version\": {VERSION},\n\"well\": ");
     lay_out(&mut text, &value, 0);
     text += "\n}\n";
@@ -80,14 +77,9 @@ pub fn read_well(path: &Path) -> Result<Well, StoreError> {
     settle(path);
     let text =
         file::read_text(path, file::MAX_INTERPRETATION_BYTES).map_err(|source| StoreError::io("read", path, source))?;
-    let wrong = |reason| StoreError::WrongKind { path: path.to_owned(), expected: "a well", reason };
+    let wrong = |reason| StoreError::wrong_kind(path, "a well", reason);
     let document: WellDocument = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-    if document.kind != KIND {
-        return Err(wrong(format!("it says that it is {:?}", document.kind)));
-    }
-    if document.version > VERSION {
-        return Err(StoreError::NewerVersion { path: path.to_owned(), found: document.version, known: VERSION });
-    }
+    check_kind(path, "a well", [KIND, &document.kind], document.version)?;
     if document.well.logs.iter().any(|set| set.curves.iter().any(|c| c.values.len() != set.md_m.len())) {
         return Err(wrong("a curve has not a value for each measured depth".into()));
     }

@@ -2,6 +2,7 @@
 
 use super::pairs::Pair;
 use super::{ProposeSettings, metres};
+use crate::UnionFind;
 use glam::{DMat3, DVec2, Vec2};
 
 /// Largest distance between successive pairs of one trace, traces.
@@ -25,7 +26,7 @@ fn alike(a: &Pair, b: &Pair) -> bool {
 
 /// Groups the pairs of one horizon into traces, and drops those below the smallest length.
 pub(super) fn along_strike(pairs: Vec<Pair>, settings: &ProposeSettings) -> Vec<Vec<Pair>> {
-    let mut parent: Vec<usize> = (0..pairs.len()).collect();
+    let mut sets = UnionFind::new(pairs.len());
     let mut order: Vec<usize> = (0..pairs.len()).collect();
     order.sort_by(|&a, &b| pairs[a].at[0].total_cmp(&pairs[b].at[0]).then(a.cmp(&b)));
     for (k, &a) in order.iter().enumerate() {
@@ -36,7 +37,7 @@ pub(super) fn along_strike(pairs: Vec<Pair>, settings: &ProposeSettings) -> Vec<
             }
             let parallel = pairs[a].across.dot(pairs[b].across).abs() >= PARALLEL;
             if way.length() <= STEP && parallel && alike(&pairs[a], &pairs[b]) {
-                unite(&mut parent, a, b);
+                sets.union(a as u32, b as u32);
             }
         }
     }
@@ -46,7 +47,7 @@ pub(super) fn along_strike(pairs: Vec<Pair>, settings: &ProposeSettings) -> Vec<
         let (low, high) = along.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), &s| (l.min(s), h.max(s)));
         high - low >= settings.min_length
     };
-    groups(parent, pairs).into_iter().filter(long).collect()
+    groups(sets, pairs).into_iter().filter(long).collect()
 }
 
 /// Groups the traces of all horizons that lie on one steep surface. Returns the pairs of each fault, all with
@@ -62,19 +63,19 @@ pub(super) fn across_horizons(traces: Vec<Vec<Pair>>, metric: DMat3, settings: &
         }
     }
     links.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let mut parent: Vec<usize> = (0..traces.len()).collect();
+    let mut sets = UnionFind::new(traces.len());
     for (_, a, b) in links {
-        let (a, b) = (root_of(&mut parent, a), root_of(&mut parent, b));
-        let of = |root: usize, parent: &mut Vec<usize>| -> Vec<usize> {
-            (0..traces.len()).filter(|&n| root_of(parent, n) == root).collect()
+        let mut of = |trace: usize| -> (u32, Vec<usize>) {
+            let root = sets.find(trace as u32);
+            (root, (0..traces.len()).filter(|&n| sets.find(n as u32) == root).collect())
         };
-        let (left, right) = (of(a, &mut parent), of(b, &mut parent));
+        let ((a, left), (b, right)) = (of(a), of(b));
         let apart = left.iter().any(|&l| right.iter().any(|&r| side_by_side(&traces[l], &traces[r])));
         if a != b && !apart {
-            unite(&mut parent, a, b);
+            sets.union(a, b);
         }
     }
-    groups(parent, traces)
+    groups(sets, traces)
         .into_iter()
         .map(|traces| {
             let mut pairs: Vec<Pair> = traces.concat();
@@ -150,25 +151,11 @@ pub(super) fn across_m(pairs: &[Pair], metric: DMat3) -> DVec2 {
     if across.dot(towards) < 0.0 { -across } else { across }
 }
 
-fn root_of(parent: &mut [usize], mut n: usize) -> usize {
-    while parent[n] != n {
-        parent[n] = parent[parent[n]];
-        n = parent[n];
-    }
-    n
-}
-
-fn unite(parent: &mut [usize], a: usize, b: usize) {
-    let (a, b) = (root_of(parent, a), root_of(parent, b));
-    parent[a.max(b)] = a.min(b);
-}
-
 /// The members of each set; sets are ordered by their first member.
-fn groups<T>(mut parent: Vec<usize>, members: Vec<T>) -> Vec<Vec<T>> {
-    let roots: Vec<usize> = (0..parent.len()).map(|n| root_of(&mut parent, n)).collect();
-    let mut groups: Vec<Vec<T>> = (0..roots.len()).map(|_| Vec::new()).collect();
-    for (root, member) in roots.into_iter().zip(members) {
-        groups[root].push(member);
+fn groups<T>(mut sets: UnionFind, members: Vec<T>) -> Vec<Vec<T>> {
+    let mut groups: Vec<Vec<T>> = members.iter().map(|_| Vec::new()).collect();
+    for (n, member) in members.into_iter().enumerate() {
+        groups[sets.find(n as u32) as usize].push(member);
     }
     groups.into_iter().filter(|group| !group.is_empty()).collect()
 }

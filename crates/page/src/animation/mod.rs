@@ -120,15 +120,20 @@ mod tests {
     #[test]
     fn a_gif_gives_its_frames_back_but_for_small_differences_of_colour() {
         let file = written(&GIF);
-        let read = gif::tests::decoded(&file);
-        assert_eq!((read.size, read.frames.len(), read.delays.as_slice()), ([37, 23], 3, &[8, 8, 8][..]));
-        for (index, pixels) in read.frames.iter().enumerate() {
-            for (found, drawn) in pixels.iter().zip(frame(index as u32).pixels()) {
-                assert_eq!(found.is_none(), drawn.0[3] == 0);
-                let far = |found: &[u8; 3]| (0..3).any(|c| found[c].abs_diff(drawn.0[c]) > 24);
-                assert!(!found.as_ref().is_some_and(far), "frame {index}: {found:?} for {drawn:?}");
+        let mut options = ::gif::DecodeOptions::new();
+        options.set_color_output(::gif::ColorOutput::RGBA);
+        let mut reader = options.read_info(file.as_slice()).unwrap();
+        assert_eq!((reader.width(), reader.height(), reader.repeat()), (37, 23, ::gif::Repeat::Infinite));
+        for index in 0..3 {
+            let read = reader.read_next_frame().unwrap().unwrap();
+            assert_eq!((read.delay, read.dispose), (8, ::gif::DisposalMethod::Background));
+            for (found, drawn) in read.buffer.as_chunks::<4>().0.iter().zip(frame(index).pixels()) {
+                assert_eq!(found[3] == 0, drawn.0[3] == 0);
+                let far = found[3] > 0 && (0..3).any(|c| found[c].abs_diff(drawn.0[c]) > 24);
+                assert!(!far, "frame {index}: {found:?} for {drawn:?}");
             }
         }
+        assert!(reader.read_next_frame().unwrap().is_none());
     }
 
     #[test]

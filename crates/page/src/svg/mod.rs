@@ -15,6 +15,8 @@ use crate::list::{
     Cap, DisplayList, Group, GroupKind, Ink, KnownPictures, PathItem, Picture, Rule, Sampling, Stroke, Text,
     VectorWriter, png, write_vectors,
 };
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use image::RgbaImage;
 use numbers::{decimals, number, steps};
 use std::collections::HashMap;
@@ -136,7 +138,7 @@ impl VectorWriter for Writer {
         let (known, is_new) = self.pictures.number(picture);
         let number = known + 1;
         if is_new {
-            let png = base64(&png(&RgbaImage::clone(&picture.pixels).into())?);
+            let png = STANDARD.encode(png(&RgbaImage::clone(&picture.pixels).into())?);
             let rendering = match picture.sampling {
                 Sampling::Smooth => "",
                 Sampling::Nearest => " image-rendering=\"optimizeSpeed\" style=\"image-rendering:pixelated\"",
@@ -198,20 +200,6 @@ fn attribute(into: &mut String, what: &str, ink: Ink) {
     if ink.opacity < 1.0 {
         let _ = write!(into, " {what}-opacity=\"{}\"", decimals(f64::from(ink.opacity), 3));
     }
-}
-
-/// Base64 with padding (RFC 4648).
-fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for three in bytes.chunks(3) {
-        let bits = three.iter().enumerate().fold(0u32, |bits, (n, byte)| bits | u32::from(*byte) << (16 - 8 * n));
-        for n in 0..4 {
-            let letter = LETTERS[(bits >> (18 - 6 * n) & 63) as usize];
-            text.push(if n <= three.len() { char::from(letter) } else { '=' });
-        }
-    }
-    text
 }
 
 #[cfg(test)]

@@ -145,7 +145,7 @@ fn letters_come_with_the_page() {
     let style = document.descendants().find(|node| node.has_tag_name("style")).unwrap().text().unwrap();
     let file = style.split("base64,").nth(1).unwrap().split('\'').next().unwrap();
     // A TrueType font with the box and five letters: version 1.0, ten tables.
-    assert!(file.starts_with(&base64(&[0, 1, 0, 0, 0, 10])) && file.len() < 6000, "{}", file.len());
+    assert!(file.starts_with(&STANDARD.encode([0, 1, 0, 0, 0, 10])) && file.len() < 6000, "{}", file.len());
 }
 
 #[test]
@@ -159,11 +159,4 @@ fn a_picture_is_written_once_and_laid_on_its_corners() {
     assert_eq!((svg.matches("<image").count(), svg.matches("<use").count()), (1, 3));
     // A square of one unit over the whole page.
     assert!(svg.contains(r#"transform="matrix(50.0000 0.0000 0.0000 50.0000 0.0000 0.0000)""#), "{svg}");
-}
-
-#[test]
-fn base64_is_that_of_the_standard() {
-    for (bytes, text) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
-        assert_eq!(base64(bytes.as_bytes()), text);
-    }
 }

@@ -1,8 +1,10 @@
 //! Lines of text, which stay text.
 
+use super::attribute;
 use super::numbers::number;
-use super::{attribute, base64};
 use crate::list::{DisplayList, Text};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use glam::DVec2;
 use std::fmt::Write;
 use ttf::subset::used;
@@ -32,7 +34,7 @@ pub(super) fn faces(into: &mut String, list: &DisplayList) -> String {
             }
             _ => (used.face.family().to_owned(), "100 900"),
         };
-        let file = base64(&subset.file);
+        let file = STANDARD.encode(&subset.file);
         let _ = writeln!(
             into,
             "<style>@font-face {{ font-family: '{name}'; font-weight: {weight}; \

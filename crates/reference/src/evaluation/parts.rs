@@ -6,6 +6,7 @@
 //! parts.
 
 use glam::DVec3;
+use interp::UnionFind;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::VecDeque;
@@ -53,7 +54,7 @@ impl Parts {
                 truth.exists(horizon, block as u16, (trace / ny) as f64, (trace % ny) as f64)
             })
             .collect();
-        let mut parent: Vec<u32> = (0..(blocks * traces) as u32).collect();
+        let mut sets = UnionFind::new(blocks * traces);
         let open = |fault: usize, y: usize| !truth.fault_is_real(fault, DVec3::new(0.0, y as f64, 0.0));
         for (node, _) in exists.iter().enumerate().filter(|(_, exists)| **exists) {
             let (block, trace) = (node / traces, node % traces);
@@ -65,7 +66,7 @@ impl Parts {
                 let below = (block > 0 && open(block - 1, y) && open(block - 1, next_y)).then(|| block - 1);
                 for other in [Some(block), above, below].into_iter().flatten() {
                     if exists[other * traces + next] {
-                        unite(&mut parent, node as u32, (other * traces + next) as u32);
+                        sets.union(node as u32, (other * traces + next) as u32);
                     }
                 }
             }
@@ -76,7 +77,7 @@ impl Parts {
             if !exists[node] {
                 continue;
             }
-            let root = root_of(&mut parent, node as u32) as usize;
+            let root = sets.find(node as u32) as usize;
             if part[root] == NONE {
                 part[root] = found.len() as u32;
                 found.push(Vec::new());
@@ -153,18 +154,4 @@ impl Parts {
         let part = self.part[usize::from(block) * self.traces + trace];
         (part != NONE).then_some(part as usize)
     }
-}
-
-fn root_of(parent: &mut [u32], mut node: u32) -> u32 {
-    while parent[node as usize] != node {
-        parent[node as usize] = parent[parent[node as usize] as usize];
-        node = parent[node as usize];
-    }
-    node
-}
-
-fn unite(parent: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (root_of(parent, a), root_of(parent, b));
-    // The smaller number wins, so that roots come first in the order of nodes.
-    parent[a.max(b) as usize] = a.min(b);
 }

@@ -182,22 +182,14 @@ impl FaceParams {
             box_high: plain(resolved.solid.roaming_box[1]),
             background: resolved.background,
             voxel_m: plain(resolved.voxel_m),
-            light: [0.0; 4],
-            display_normal_x: [0.0; 4],
-            display_normal_y: [0.0; 4],
-            display_normal_z: [0.0; 4],
-            relief: [0.0; 4],
             reference_px: reference.as_vec2().to_array(),
             samples: resolved.scene.samples,
             cut_count: resolved.solid.cut_outs.len() as u32,
-            map_low: [0.0; 2],
             map_cells: [1; 2],
-            ground_horizons: 0,
             ground_opacity: 1.0,
-            padding: [0; 2],
-            tile: [0; 4],
             bodies,
             planes,
+            ..Self::zeroed()
         };
         if let Some(relief) = &resolved.relief {
             params.light = relief.light.extend(relief.hill_shade).to_array();

@@ -2,7 +2,6 @@
 //! the light volume.
 
 use super::layout::WORKGROUP;
-use super::media::texture;
 use crate::error::RenderError;
 use crate::gpu::Gpu;
 use crate::media::light_grid::LightGrid;
@@ -56,7 +55,7 @@ impl LightBuffers {
         };
         Ok(Self {
             size,
-            volume: texture(gpu, "light", extent, FORMAT, wgpu::TextureUsages::STORAGE_BINDING),
+            volume: gpu.texture("light", extent, FORMAT, wgpu::TextureUsages::STORAGE_BINDING),
             carried: buffer("carried light", (nu * nv * 32) as u64, wgpu::BufferUsages::STORAGE),
             slices: buffer(
                 "slices",

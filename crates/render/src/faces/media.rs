@@ -72,69 +72,36 @@ const SHADE_WORDS: u32 = 5;
 /// Number of words in the record of a horizon.
 pub(super) const HORIZON_WORDS: usize = 12;
 
-/// The constants of a pipeline that depend on media.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
-pub(super) struct MediaVariant {
-    with_media: u32,
-    shading: u32,
-    faces_shown: u32,
-    media_count: u32,
-    with_leaves: u32,
-    with_layers: u32,
-    face_data: u32,
-    with_wells: u32,
-    isosurfaces: u32,
-}
-
-impl MediaVariant {
-    /// The constants for a scene.
-    pub(super) fn of(resolved: &ResolvedScene) -> Self {
-        let faces_shown = match resolved.scene.media.faces {
-            Faces::All => 0,
-            Faces::CutOuts => 1,
-            Faces::None => 2,
-        };
-        let face_data = match (resolved.scene.face_data, resolved.candidates.is_some()) {
-            (FaceData::Leaves, true) => 1,
-            (FaceData::Distance, true) => 2,
-            _ => 0,
-        };
-        let with_wells = u32::from(resolved.tubes.is_some());
-        let Some(field) = &resolved.field else {
-            return Self { faces_shown, face_data, with_wells, ..Self::default() };
-        };
-        Self {
-            face_data,
-            with_wells,
-            isosurfaces: field.isosurfaces.len() as u32,
-            with_media: 1,
-            shading: match field.shading {
-                Shading::Unshaded => 0,
-                // The two shadings are drawn as separate scenes.
-                Shading::Phong(_) | Shading::Interleaved(_) => 1,
-                Shading::Occlusion(_) => 2,
-            },
-            faces_shown,
-            media_count: field.media.len() as u32,
-            with_leaves: u32::from(field.horizons.is_some()),
-            with_layers: u32::from(field.media.iter().any(|m| m.layers.is_some())),
-        }
-    }
-
-    /// Names and values of the override constants.
-    pub(super) fn constants(&self) -> [(&'static str, f64); 9] {
-        [
-            ("face_data", f64::from(self.face_data)),
-            ("with_wells", f64::from(self.with_wells)),
-            ("isosurfaces", f64::from(self.isosurfaces)),
-            ("with_media", f64::from(self.with_media)),
-            ("shading", f64::from(self.shading)),
-            ("faces_shown", f64::from(self.faces_shown)),
-            ("media_count", f64::from(self.media_count)),
-            ("with_leaves", f64::from(self.with_leaves)),
-            ("with_layers", f64::from(self.with_layers)),
-        ]
-    }
+/// The constants of a pipeline that depend on media: their names in the shader, and their values.
+pub(super) fn constants(resolved: &ResolvedScene) -> [(&'static str, u32); 9] {
+    let faces_shown = match resolved.scene.media.faces {
+        Faces::All => 0,
+        Faces::CutOuts => 1,
+        Faces::None => 2,
+    };
+    let face_data = match (resolved.scene.face_data, resolved.candidates.is_some()) {
+        (FaceData::Leaves, true) => 1,
+        (FaceData::Distance, true) => 2,
+        _ => 0,
+    };
+    let field = resolved.field.as_ref();
+    let shading = field.map_or(0, |field| match field.shading {
+        Shading::Unshaded => 0,
+        // The two shadings are drawn as separate scenes.
+        Shading::Phong(_) | Shading::Interleaved(_) => 1,
+        Shading::Occlusion(_) => 2,
+    });
+    [
+        ("face_data", face_data),
+        ("faces_shown", faces_shown),
+        ("with_wells", u32::from(resolved.tubes.is_some())),
+        ("with_media", u32::from(field.is_some())),
+        ("shading", shading),
+        ("isosurfaces", field.map_or(0, |field| field.isosurfaces.len() as u32)),
+        ("media_count", field.map_or(0, |field| field.media.len() as u32)),
+        ("with_leaves", u32::from(field.is_some_and(|field| field.horizons.is_some()))),
+        ("with_layers", u32::from(field.is_some_and(|field| field.media.iter().any(|m| m.layers.is_some())))),
+    ]
 }
 
 /// The horizon candidates that a picture shows.
@@ -321,22 +288,13 @@ pub(super) struct CandidateTextures {
 impl CandidateTextures {
     /// Uploads candidates. `None` creates textures of one texel, which are bound if nothing is read.
     pub(super) fn new(gpu: &Gpu, candidates: Option<&CandidateVolume>) -> Result<Self, RenderError> {
-        let [nx, ny, nz] = candidates.map_or([1; 3], |c| c.size);
-        let limit = gpu.device.limits().max_texture_dimension_3d as usize;
-        if [nx, ny, nz].into_iter().any(|n| n > limit) {
-            return Err(RenderError::Unsuitable {
-                adapter: gpu.adapter_name.clone(),
-                reason: format!(
-                    "the candidates have {nx} x {ny} x {nz} samples, but its limit is {limit} along each axis"
-                ),
-            });
-        }
-        let size = wgpu::Extent3d { width: nz as u32, height: ny as u32, depth_or_array_layers: nx as u32 };
-        let distances = texture(gpu, "distances", size, wgpu::TextureFormat::R8Unorm, wgpu::TextureUsages::COPY_DST);
-        let leaves = texture(gpu, "leaves", size, wgpu::TextureFormat::R32Uint, wgpu::TextureUsages::COPY_DST);
+        let size = candidates.map_or([1; 3], |c| c.size);
+        let texture = |label, format| gpu.volume_texture(label, size, format, "the candidates have");
+        let distances = texture("distances", wgpu::TextureFormat::R8Unorm)?;
+        let leaves = texture("leaves", wgpu::TextureFormat::R32Uint)?;
         if let Some(candidates) = candidates {
-            let plane = ny * nz;
-            for x in 0..nx {
+            let plane = size[1] * size[2];
+            for x in 0..size[0] {
                 let range = x * plane..(x + 1) * plane;
                 gpu.write_plane(&distances, x as u32, &candidates.distance[range.clone()]);
                 gpu.write_plane(&leaves, x as u32, bytemuck::cast_slice(&candidates.leaf[range]));
@@ -344,26 +302,6 @@ impl CandidateTextures {
         }
         Ok(Self { distances, leaves })
     }
-}
-
-/// A 3D texture that shaders can read.
-pub(super) fn texture(
-    gpu: &Gpu,
-    label: &str,
-    size: wgpu::Extent3d,
-    format: wgpu::TextureFormat,
-    usage: wgpu::TextureUsages,
-) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D3,
-        format,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | usage,
-        view_formats: &[],
-    })
 }
 
 /// The sampler of all volumes that the hardware interpolates.

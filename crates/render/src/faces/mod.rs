@@ -27,18 +27,19 @@ use crate::media::interleaved::{halves, interleave};
 use crate::outline::draw::draw as draw_outlines;
 use crate::resolved::{Flat, MAX_VOLUMES, ResolvedScene};
 use crate::scene::{Lookup, Scene};
+use ::model::StructuralModel;
 use grids::{GridBuffers, VisibleParts};
 use image::RgbaImage;
 use layout::FaceParams;
 use light::LightBuffers;
-use media::{CandidateTextures, MediaVariant};
+use media::CandidateTextures;
 use model::{ModelBuffers, POOL_BUFFERS, PackedTexture, floats_of_any_shape};
 use std::collections::HashMap;
 use survey::Progress;
 use textures::TextureBuffers;
 use tile::{TileTarget, tile_side};
 use ttf::tables::NONE;
-use volumes::{VolumePlacement, no_volume, upload_volume};
+use volumes::{VolumePlacement, upload_volume};
 
 /// The shader: the file of the pass first, so that line numbers in its errors are right, then the others.
 pub(crate) const SHADER: &str = concat!(
@@ -71,7 +72,7 @@ pub struct Renderer {
     module: wgpu::ShaderModule,
     layouts: [wgpu::BindGroupLayout; 4],
     pipeline_layout: wgpu::PipelineLayout,
-    pipelines: HashMap<(Variant, EntryPoint), wgpu::ComputePipeline>,
+    pipelines: [HashMap<Variant, wgpu::ComputePipeline>; 2],
     data_key: Option<u64>,
     model: Option<ModelBuffers>,
     grids: Option<GridBuffers>,
@@ -90,24 +91,11 @@ pub struct Renderer {
     filtering: wgpu::Sampler,
 }
 
-/// The constants of a pipeline.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-struct Variant {
-    lookup: u32,
-    with_ground: u32,
-    with_raw: u32,
-    with_scalars: u32,
-    volume_count: u32,
-    has_faults: u32,
-    has_horizons: u32,
-    has_levels: u32,
-    pool_chunk: u32,
-    pool_chunks: u32,
-    media: MediaVariant,
-}
+/// The constants of a pipeline: their names in the shader, and their values.
+type Variant = Vec<(&'static str, u32)>;
 
 /// The entry points of the shader.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy)]
 enum EntryPoint {
     Draw,
     Carry,
@@ -143,9 +131,11 @@ impl Renderer {
         let of_light = [&light_layout, &layouts[1], &layouts[2], &layouts[3]].map(Some);
         let light_pipeline_layout = pipeline_layout("light", &of_light);
         let pipeline_layout = pipeline_layout("faces", &layouts.each_ref().map(Some));
-        let (no_packed, no_volume) = (PackedTexture::new(gpu, None)?, no_volume(gpu));
+        let no_packed = PackedTexture::new(gpu, None)?;
         let one = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 };
-        let no_light = media::texture(gpu, "no light", one, light::FORMAT, wgpu::TextureUsages::empty());
+        let empty = |label, format, usage| gpu.texture(label, one, format, usage);
+        let no_volume = empty("no volume", wgpu::TextureFormat::R32Float, wgpu::TextureUsages::COPY_DST);
+        let no_light = empty("no light", light::FORMAT, wgpu::TextureUsages::empty());
         let no_candidates = CandidateTextures::new(gpu, None)?;
         let filtering = media::filtering(gpu);
         Ok(move |gpu| Self {
@@ -153,7 +143,7 @@ impl Renderer {
             module,
             layouts,
             pipeline_layout,
-            pipelines: HashMap::new(),
+            pipelines: Default::default(),
             data_key: None,
             model: None,
             grids: None,
@@ -276,45 +266,42 @@ impl Renderer {
     }
 
     fn variant(&self, resolved: &ResolvedScene) -> Variant {
-        Variant {
-            lookup: match resolved
-                .interpretation
-                .filter(|_| resolved.illustrated)
-                .map(|interpretation| interpretation.flat)
-            {
-                None => 0,
-                Some(Flat::Exact(_)) => 1,
-                Some(Flat::Packed(_)) => 2,
-            },
-            with_ground: resolved.relief.as_ref().map_or(0, |relief| if relief.opacity < 1.0 { 2 } else { 1 }),
-            with_raw: u32::from(resolved.tables.globals.raw_volume != NONE),
-            with_scalars: u32::from(resolved.illustrated && !resolved.tables.scalars.is_empty()),
-            volume_count: resolved.volumes.len() as u32,
-            has_faults: resolved
-                .interpretation
-                .map_or(0, |interpretation| u32::from(!interpretation.model.faults().surfaces().is_empty())),
-            has_horizons: resolved
-                .interpretation
-                .map_or(0, |interpretation| u32::from(!interpretation.model.stratigraphy().horizons.is_empty())),
-            has_levels: resolved.interpretation.map_or(0, |found| u32::from(found.model.has_levels())),
-            pool_chunk: self.model.as_ref().map_or(1, |m| m.pool_chunk),
-            pool_chunks: self.model.as_ref().map_or(1, |m| m.pool_chunks() as u32),
-            media: MediaVariant::of(resolved),
-        }
+        let lookup = match resolved.interpretation.filter(|_| resolved.illustrated).map(|found| found.flat) {
+            None => 0,
+            Some(Flat::Exact(_)) => 1,
+            Some(Flat::Packed(_)) => 2,
+        };
+        let with_ground = resolved.relief.as_ref().map_or(0, |relief| if relief.opacity < 1.0 { 2 } else { 1 });
+        let model = resolved.interpretation.map(|found| found.model);
+        let has = |what: fn(&StructuralModel) -> bool| u32::from(model.is_some_and(what));
+        let mut variant = vec![
+            ("lookup", lookup),
+            ("with_ground", with_ground),
+            ("with_raw", u32::from(resolved.tables.globals.raw_volume != NONE)),
+            ("with_scalars", u32::from(resolved.illustrated && !resolved.tables.scalars.is_empty())),
+            ("volume_count", resolved.volumes.len() as u32),
+            ("has_faults", has(|model| !model.faults().surfaces().is_empty())),
+            ("has_horizons", has(|model| !model.stratigraphy().horizons.is_empty())),
+            ("has_levels", has(StructuralModel::has_levels)),
+            ("pool_chunk", self.model.as_ref().map_or(1, |m| m.pool_chunk)),
+            ("pool_chunks", self.model.as_ref().map_or(1, |m| m.pool_chunks() as u32)),
+        ];
+        variant.extend(media::constants(resolved));
+        variant
     }
 
     fn draw(&mut self, resolved: &ResolvedScene, progress: &Progress) -> Result<RgbaImage, RenderError> {
         let variant = self.variant(resolved);
         let grid = media::light_grid(resolved);
-        self.make_pipeline(variant, EntryPoint::Draw)?;
+        self.make_pipeline(&variant, EntryPoint::Draw)?;
         if let Some(grid) = &grid {
-            self.make_pipeline(variant, EntryPoint::Carry)?;
+            self.make_pipeline(&variant, EntryPoint::Carry)?;
             if !self.light.as_ref().is_some_and(|held| held.fits(grid.size)) {
                 self.light = None;
                 self.light = Some(self.gpu.guarded(|| LightBuffers::new(&self.gpu, grid.size))?);
             }
         }
-        let pipeline = &self.pipelines[&(variant, EntryPoint::Draw)];
+        let pipeline = &self.pipelines[EntryPoint::Draw as usize][&variant];
         let [width, height] = resolved.scene.size_px;
         let side = tile_side(resolved.scene.samples);
         let mut image = RgbaImage::new(width, height);
@@ -333,7 +320,7 @@ impl Renderer {
             let buffers = [&params_buffer, &target.pixels, &words, &media];
             if let (Some(grid), Some(light)) = (&grid, &self.light) {
                 let groups = self.bind_groups(resolved, buffers, &self.no_light);
-                let pipeline = &self.pipelines[&(variant, EntryPoint::Carry)];
+                let pipeline = &self.pipelines[EntryPoint::Carry as usize][&variant];
                 let own = (&self.light_layout, &params_buffer, &words);
                 light.carry(&self.gpu, pipeline, own, &groups[1..], grid, progress)?;
             }
@@ -351,28 +338,16 @@ impl Renderer {
         Ok(image)
     }
 
-    fn make_pipeline(&mut self, variant: Variant, pass: EntryPoint) -> Result<(), RenderError> {
-        if !self.pipelines.contains_key(&(variant, pass)) {
+    fn make_pipeline(&mut self, variant: &Variant, pass: EntryPoint) -> Result<(), RenderError> {
+        if !self.pipelines[pass as usize].contains_key(variant) {
             let pipeline = self.gpu.guarded(|| Ok(on_a_large_stack(|| self.pipeline(variant, pass))))?;
-            self.pipelines.insert((variant, pass), pipeline);
+            self.pipelines[pass as usize].insert(variant.clone(), pipeline);
         }
         Ok(())
     }
 
-    fn pipeline(&self, variant: Variant, pass: EntryPoint) -> wgpu::ComputePipeline {
-        let mut constants = vec![
-            ("lookup", f64::from(variant.lookup)),
-            ("with_ground", f64::from(variant.with_ground)),
-            ("with_raw", f64::from(variant.with_raw)),
-            ("with_scalars", f64::from(variant.with_scalars)),
-            ("volume_count", f64::from(variant.volume_count)),
-            ("has_faults", f64::from(variant.has_faults)),
-            ("has_horizons", f64::from(variant.has_horizons)),
-            ("has_levels", f64::from(variant.has_levels)),
-            ("pool_chunk", f64::from(variant.pool_chunk)),
-            ("pool_chunks", f64::from(variant.pool_chunks)),
-        ];
-        constants.extend(variant.media.constants());
+    fn pipeline(&self, variant: &Variant, pass: EntryPoint) -> wgpu::ComputePipeline {
+        let constants: Vec<_> = variant.iter().map(|&(name, value)| (name, f64::from(value))).collect();
         let (label, layout) = match pass {
             EntryPoint::Draw => ("draw", &self.pipeline_layout),
             EntryPoint::Carry => ("carry", &self.light_pipeline_layout),

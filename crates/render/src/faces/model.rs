@@ -237,31 +237,13 @@ impl PackedTexture {
     /// Uploads a packed volume: texel (x, y, z) is sample (z, y, x). `None` creates one texel, which is bound
     /// if nothing is read.
     pub(super) fn new(gpu: &Gpu, packed: Option<&PackedVolume>) -> Result<Self, RenderError> {
-        let [nx, ny, nz] = packed.map_or([1; 3], |p| p.size);
-        let limit = gpu.device.limits().max_texture_dimension_3d as usize;
-        if [nx, ny, nz].into_iter().any(|n| n > limit) {
-            return Err(RenderError::Unsuitable {
-                adapter: gpu.adapter_name.clone(),
-                reason: format!(
-                    "the packed volume has {nx} x {ny} x {nz} samples, but its limit is {limit} along each axis"
-                ),
-            });
-        }
-        let size = wgpu::Extent3d { width: nz as u32, height: ny as u32, depth_or_array_layers: nx as u32 };
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("packed volume"),
-            size,
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D3,
-            format: wgpu::TextureFormat::Rgba32Float,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
+        let size = packed.map_or([1; 3], |p| p.size);
+        let format = wgpu::TextureFormat::Rgba32Float;
+        let texture = gpu.volume_texture("packed volume", size, format, "the packed volume has")?;
         let mut info = PackedInfo { size: [1, 1, 1, 0], layers: 1, blocks: 1, ..PackedInfo::default() };
         if let Some(packed) = packed {
             info = packed_info(packed);
-            for (x, plane) in packed.values.chunks(ny * nz).enumerate() {
+            for (x, plane) in packed.values.chunks(size[1] * size[2]).enumerate() {
                 let texels: Vec<[f32; 4]> = plane.iter().map(|&[i, j, k]| [i, j, k, 0.0]).collect();
                 gpu.write_plane(&texture, x as u32, bytemuck::cast_slice(&texels));
             }

@@ -39,18 +39,8 @@ pub(super) fn upload_volume(gpu: &Gpu, volume: &NamedVolume) -> Result<wgpu::Tex
         return Err(RenderError::Unsuitable { adapter: gpu.adapter_name.clone(), reason });
     };
     let [nx, ny, nz] = samples.size();
-    let limit = gpu.device.limits().max_texture_dimension_3d as usize;
-    if [nx, ny, nz].into_iter().any(|n| n > limit) {
-        return Err(RenderError::Unsuitable {
-            adapter: gpu.adapter_name.clone(),
-            reason: format!(
-                "the volume `{}` has {nx} x {ny} x {nz} samples, but its limit is {limit} along each axis",
-                volume.name
-            ),
-        });
-    }
-    let size = wgpu::Extent3d { width: nz as u32, height: ny as u32, depth_or_array_layers: nx as u32 };
-    let texture = float_texture(gpu, volume.name, size);
+    let subject = format!("the volume `{}` has", volume.name);
+    let texture = gpu.volume_texture(volume.name, [nx, ny, nz], wgpu::TextureFormat::R32Float, &subject)?;
     let mut plane = vec![0.0f32; ny * nz];
     for x in 0..nx {
         for y in 0..ny {
@@ -66,22 +56,4 @@ pub(super) fn upload_volume(gpu: &Gpu, volume: &NamedVolume) -> Result<wgpu::Tex
         gpu.write_plane(&texture, x as u32, bytemuck::cast_slice(&plane));
     }
     Ok(texture)
-}
-
-/// A texture of one voxel, for slots without a volume.
-pub(super) fn no_volume(gpu: &Gpu) -> wgpu::Texture {
-    float_texture(gpu, "no volume", wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 })
-}
-
-fn float_texture(gpu: &Gpu, label: &str, size: wgpu::Extent3d) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D3,
-        format: wgpu::TextureFormat::R32Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    })
 }

@@ -91,11 +91,7 @@ impl StoredCandidates {
             nodes: self.read_nodes(progress)?,
             ..ForestTables::default()
         };
-        let damaged = || StoreError::Damaged {
-            path: self.path().to_owned(),
-            array: "forest/surfaces".to_owned(),
-            reason: "a surface ends before it begins".to_owned(),
-        };
+        let damaged = || StoreError::damaged(self.path(), "forest/surfaces", "a surface ends before it begins");
         // By surface: the first triangle in the file, and here; and whether it is wanted.
         let mut moved = Vec::with_capacity(tables.surfaces.len());
         progress.begin("reading surfaces", wanted.len() as u64);
@@ -161,7 +157,7 @@ impl StoredCandidates {
         if columns.unwrap_or(1) != N {
             let reason = format!("it has {:?}, not {N} columns", array.shape());
             let array = array.name().to_owned();
-            return Err(StoreError::Damaged { path: self.path().to_owned(), array, reason });
+            return Err(StoreError::damaged(self.path(), &array, reason));
         }
         let values = match columns {
             None => array.read_box::<T>(&[rows.start], &[rows.len()])?,

@@ -71,7 +71,7 @@ impl Shards {
                 )
             }
         };
-        StoreError::Damaged { path: self.group.clone(), array: self.name.clone(), reason }
+        StoreError::damaged(&self.group, &self.name, reason)
     }
 
     /// Whether the shard is there and all its checksums fit.
