@@ -76,7 +76,7 @@ pub(crate) fn page(model: &Model, illustrated: &[Option<String>], data: &[Vec<u8
         "unpicked": model.has_unpicked(),
         "geometry": geometry(&model.geometry),
         "raw": model.raw.as_ref().map(|raw| json!({
-            "volume": raw.volume, "domain": raw.function.domain, "map": STANDARD.encode(&map(&raw.function)),
+            "volume": raw.volume, "domain": raw.function.domain, "map": STANDARD.encode(map(&raw.function)),
             "noData": raw.no_data.map(|colour| colour.to_unit()),
         })),
         "layers": layers,
