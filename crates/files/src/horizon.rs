@@ -54,18 +54,17 @@ struct GriddedSheets {
 }
 
 impl GriddedSheets {
+    /// Sheets of which there is nothing more to say.
+    fn of(sheets: Vec<Sheet>, gridding: Gridding, outside: usize) -> Self {
+        let (notes, warnings) = (Vec::new(), Vec::new());
+        Self { sheets, gridding, outside, multivalued: 0, notes, warnings, surface: None, off_map: None }
+    }
+
     /// A surface that is no height field, as it was given.
     fn any_shape(surface: TriangleMesh, outside: usize, note: Option<&str>) -> Self {
-        Self {
-            sheets: Vec::new(),
-            gridding: Gridding::AnyShape { corners: surface.vertices.len(), triangles: surface.triangles.len() },
-            outside,
-            multivalued: 0,
-            notes: note.map(str::to_owned).into_iter().collect(),
-            warnings: Vec::new(),
-            surface: Some(surface),
-            off_map: None,
-        }
+        let gridding = Gridding::AnyShape { corners: surface.vertices.len(), triangles: surface.triangles.len() };
+        let notes = note.map(str::to_owned).into_iter().collect();
+        Self { notes, surface: Some(surface), ..Self::of(Vec::new(), gridding, outside) }
     }
 }
 
@@ -142,16 +141,8 @@ fn from_grid(
         return Err(placement::outside_by_world(file, name, worlds.into_iter(), geometry));
     }
     let depth = z.iter().map(|&z| z as f32).collect();
-    Ok(GriddedSheets {
-        sheets: vec![Sheet::new(grid, depth, Quality::Picked)],
-        gridding: Gridding::NativeGrid { count: grid.count },
-        outside,
-        multivalued: 0,
-        notes: Vec::new(),
-        warnings: Vec::new(),
-        surface: None,
-        off_map: None,
-    })
+    let sheets = vec![Sheet::new(grid, depth, Quality::Picked)];
+    Ok(GriddedSheets::of(sheets, Gridding::NativeGrid { count: grid.count }, outside))
 }
 
 fn from_points(
@@ -212,15 +203,14 @@ fn from_points(
             }
             let count = |q| gridded.sheets.iter().flat_map(|s| &s.quality).filter(|k| **k == q).count();
             let (picked, filled) = (count(Quality::Picked), count(Quality::Filled));
+            let gridding = Gridding::Interpolated { gap_m: gridded.gap_m, picked, filled };
             return Ok(GriddedSheets {
-                gridding: Gridding::Interpolated { gap_m: gridded.gap_m, picked, filled },
                 multivalued: gridded.multivalued,
-                sheets: gridded.sheets,
-                outside: placed.outside,
                 notes,
                 warnings,
                 surface: any_shape(Vec::new(), None).surface,
                 off_map,
+                ..GriddedSheets::of(gridded.sheets, gridding, placed.outside)
             });
         };
         let (u, v) = (lattice.grid.u_step, lattice.grid.v_step);
@@ -239,16 +229,7 @@ fn from_points(
     if twice > 0 {
         notes.push(format!("{twice} points repeat the depth of another at the same node and were averaged with it"));
     }
-    Ok(GriddedSheets {
-        sheets,
-        gridding,
-        outside: placed.outside,
-        multivalued,
-        notes,
-        warnings: Vec::new(),
-        surface: None,
-        off_map: None,
-    })
+    Ok(GriddedSheets { multivalued, notes, ..GriddedSheets::of(sheets, gridding, placed.outside) })
 }
 
 /// The surface through points and their normals; `None` where it is a map and no other shape is stated.
@@ -354,14 +335,7 @@ fn from_mesh(
     for (node, e) in (0..nodes).flat_map(|node| values_of(node).map(move |e| (node, e))) {
         depths[usize::from(sheet_of[e])][node] = values.z[e];
     }
-    Ok(GriddedSheets {
-        sheets: depths.into_iter().map(|d| Sheet::new(grid, d, Quality::Picked)).collect(),
-        gridding: Gridding::Rasterised { triangles: mesh.triangles.len() },
-        outside,
-        multivalued: values.multivalued(),
-        notes: Vec::new(),
-        warnings: Vec::new(),
-        surface: None,
-        off_map: None,
-    })
+    let sheets = depths.into_iter().map(|d| Sheet::new(grid, d, Quality::Picked)).collect();
+    let gridding = Gridding::Rasterised { triangles: mesh.triangles.len() };
+    Ok(GriddedSheets { multivalued: values.multivalued(), ..GriddedSheets::of(sheets, gridding, outside) })
 }

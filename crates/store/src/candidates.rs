@@ -59,7 +59,7 @@ struct StoredLevel {
     leaf: Vec<u32>,
 }
 
-/// Writes candidates slab by slab. If it is dropped without [`CandidateWriter::finish`], nothing is kept.
+/// Writes candidates slab by slab. If it is dropped without [`CandidateSink::finish`], nothing is kept.
 pub struct CandidateWriter {
     replacement: Replacement,
     size: [usize; 3],
@@ -84,30 +84,27 @@ impl CandidateWriter {
         let leaf = LeafWriter::create(group, "leaf", layout, leaves)?;
         Ok(Self { replacement, size, distance, leaf, half: None })
     }
+}
 
-    /// Number of inlines of each slab but the last: as many as fill the files.
-    pub fn slab_inlines(&self) -> usize {
+impl CandidateSink for CandidateWriter {
+    // As many as fill the files.
+    fn slab_inlines(&self) -> usize {
         self.distance.layout().file_shape()[0]
     }
 
-    /// Writes the inlines from `first`, a multiple of [`CandidateWriter::slab_inlines`],
-    /// `[inline][crossline][sample]`.
-    ///
-    /// # Errors
-    /// [`StoreError`], [`StoreError::SizeMismatch`] if the samples are not a slab.
-    pub fn write_slab(
+    fn write_slab(
         &mut self,
         first: usize,
         distance: &[u8],
         leaf: &[u32],
         progress: &Progress,
-    ) -> Result<(), StoreError> {
+    ) -> Result<(), SourceError> {
         let [nx, ny, nz] = self.size;
         let lines = self.slab_inlines().min(nx.saturating_sub(first));
         let expected = lines * ny * nz;
         let found = if first.is_multiple_of(self.slab_inlines()) { distance.len().min(leaf.len()) } else { first };
         if found != expected {
-            return Err(StoreError::SizeMismatch { what: "a slab of candidates", expected, found });
+            return Err(StoreError::SizeMismatch { what: "a slab of candidates", expected, found }.into());
         }
         let size = [lines, ny, nz];
         let (edge, counts) = (self.distance.layout().file_shape(), self.distance.layout().file_counts());
@@ -125,16 +122,13 @@ impl CandidateWriter {
         Ok(())
     }
 
-    /// Writes the pyramid, the trees and the facts, and renames everything to the target.
-    ///
-    /// # Errors
-    /// [`StoreError`]; the target is then what it was before.
-    pub fn finish<R: Serialize>(
+    // If it fails, the target is what it was before.
+    fn finish<R: Serialize>(
         self,
         info: &CandidateInfo<R>,
         forest: &ForestTables,
         progress: &Progress,
-    ) -> Result<(), StoreError> {
+    ) -> Result<(), SourceError> {
         let Self { replacement, size, half, .. } = self;
         let mut half = half.unwrap_or_else(|| StoredLevel::empty(halved(size)));
         let group = replacement.path();
@@ -160,32 +154,7 @@ impl CandidateWriter {
         write_table(group, "forest/surfaces", forest.surfaces.as_flattened(), 5, progress)?;
         write_table(group, "forest/nodes", forest.nodes.as_flattened(), 6, progress)?;
         write_header(group, KIND, info)?;
-        replacement.commit()
-    }
-}
-
-impl CandidateSink for CandidateWriter {
-    fn slab_inlines(&self) -> usize {
-        Self::slab_inlines(self)
-    }
-
-    fn write_slab(
-        &mut self,
-        first: usize,
-        distance: &[u8],
-        leaf: &[u32],
-        progress: &Progress,
-    ) -> Result<(), SourceError> {
-        Ok(Self::write_slab(self, first, distance, leaf, progress)?)
-    }
-
-    fn finish<R: Serialize>(
-        self,
-        info: &CandidateInfo<R>,
-        forest: &ForestTables,
-        progress: &Progress,
-    ) -> Result<(), SourceError> {
-        Ok(Self::finish(self, info, forest, progress)?)
+        Ok(replacement.commit()?)
     }
 }
 

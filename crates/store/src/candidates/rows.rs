@@ -176,6 +176,7 @@ mod tests {
     use super::super::tests::{info, volume};
     use super::super::{CandidateWriter, StoredCandidates};
     use super::*;
+    use survey::candidates::CandidateSink;
 
     /// Three surfaces of two, one and three triangles, the last of which has two leaves.
     fn tables() -> ForestTables {
