@@ -416,7 +416,7 @@ pub fn read_horizons(
     geometry: &SurveyGeometry,
     options: &ImportOptions,
 ) -> Result<Vec<(Horizon, ImportReport)>, FormatError> {
-    built(path, geometry, options, SurfaceKind::Horizon, horizon::build)
+    built(&SourceFile::open(path)?, geometry, options, SurfaceKind::Horizon, horizon::build)
 }
 
 /// Makes a horizon or a fault of a surface as read.
@@ -431,15 +431,15 @@ type Build<T> = fn(
 
 /// The selected surfaces of a file, made and placed.
 fn built<T>(
-    path: &Path,
+    source: &SourceFile,
     geometry: &SurveyGeometry,
     options: &ImportOptions,
     kind: SurfaceKind,
     build: Build<T>,
 ) -> Result<Vec<(T, ImportReport)>, FormatError> {
-    let (source, format, surfaces) = read_raw(path, Some(geometry), options, kind)?;
-    let name = |raw: &RawSurface| name_of(raw, &source, options);
-    surfaces.into_iter().map(|raw| build(path, name(&raw), format.clone(), raw, geometry, options)).collect()
+    let (format, surfaces) = read_source(source, Some(geometry), options, kind)?;
+    let name = |raw: &RawSurface| name_of(raw, source, options);
+    surfaces.into_iter().map(|raw| build(&source.path, name(&raw), format.clone(), raw, geometry, options)).collect()
 }
 
 /// Writes a horizon under a temporary name, then renames the file. A rotated grid is resampled for formats
@@ -502,7 +502,7 @@ pub fn read_fault(
     geometry: &SurveyGeometry,
     options: &ImportOptions,
 ) -> Result<Vec<(Fault, ImportReport)>, FormatError> {
-    built(path, geometry, options, SurfaceKind::Fault, fault::build)
+    built(&SourceFile::open(path)?, geometry, options, SurfaceKind::Fault, fault::build)
 }
 
 /// The fault surface through sticks (world X, Y and vertical value). It needs two sticks of at least two

@@ -201,7 +201,13 @@ fn petromod_turns_about_its_own_pivot() {
     }
     let read = |bytes: &[u8]| {
         let source = SourceFile { path: "a.pmd".into(), bytes: bytes.to_vec() };
-        horizons_of(&source, &survey(VerticalUnit::Milliseconds), &ImportOptions::default())
+        built(
+            &source,
+            &survey(VerticalUnit::Milliseconds),
+            &ImportOptions::default(),
+            SurfaceKind::Horizon,
+            horizon::build,
+        )
     };
     let (horizon, report) = read(&file).unwrap().remove(0);
     assert_eq!((report.format.value, report.nulls), (Format::PetroMod, 1));
