@@ -2,6 +2,7 @@
 
 use crate::state::picking::{PickingStep, Tool, free_name};
 use crate::state::{Action, Session};
+use crate::widgets::form;
 use crate::widgets::obstacle::{needs, unless};
 use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Align, Button, ComboBox, DragValue, Grid, Layout, ProgressBar, Ui};
@@ -64,17 +65,11 @@ impl CandidatesPanel {
         Grid::new("extraction").num_columns(2).show(ui, |ui| {
             let own = || session.document.volumes.iter().filter(|entry| entry.geometry.is_none());
             if own().count() > 1 {
-                let label = ui.label("Volume");
                 let first = own().next().map_or_else(String::new, |entry| entry.name.clone());
-                ui.label_inputs_by(label.id, |ui| {
-                    let text = self.volume.clone().unwrap_or(first);
-                    ComboBox::from_id_salt("extracted").selected_text(text).truncate().show_ui(ui, |ui| {
-                        for entry in own() {
-                            ui.selectable_value(&mut self.volume, Some(entry.name.clone()), &entry.name);
-                        }
-                    });
-                });
-                ui.end_row();
+                let text = self.volume.clone().unwrap_or(first);
+                let combo = ComboBox::from_id_salt("extracted").selected_text(text).truncate();
+                let choices = own().map(|entry| (Some(entry.name.clone()), &entry.name));
+                form::chosen(ui, "Volume", combo, &mut self.volume, choices);
             }
             ui.label("Method");
             ui.horizontal(|ui| {
@@ -98,31 +93,21 @@ impl CandidatesPanel {
                 }
             });
             ui.end_row();
-            let label = ui.label("Minimum front width");
             let drag = DragValue::new(&mut settings.grow.min_front_width).range(2..=64).suffix(" traces");
-            ui.add(drag).labelled_by(label.id);
-            ui.end_row();
-            let label = ui.label("Fault evidence");
+            form::row(ui, "Minimum front width", |ui| ui.add(drag));
             let drag = DragValue::new(&mut settings.grow.fault_evidence).range(5.0..=10_000.0).speed(1.0);
             let hint = "More evidence gives fewer cuts: 25 for clean data, 100 to 200 for clipped samples or chaotic reflectors";
-            ui.add(drag).labelled_by(label.id).on_hover_text(hint);
-            ui.end_row();
-            let label = ui.label("Join pieces from");
+            form::row(ui, "Fault evidence", |ui| ui.add(drag)).on_hover_text(hint);
             let mut percent = 100.0 * settings.grow.join_share;
             let drag = DragValue::new(&mut percent).range(5.0..=101.0).speed(1.0).suffix(" %");
             let hint = "Share of the common boundary that must support joining two pieces; 101 joins none";
-            if ui.add(drag).labelled_by(label.id).on_hover_text(hint).changed() {
+            if form::row(ui, "Join pieces from", |ui| ui.add(drag)).on_hover_text(hint).changed() {
                 settings.grow.join_share = percent / 100.0;
             }
-            ui.end_row();
-            let label = ui.label("Minimum leaf size");
             let drag = DragValue::new(&mut settings.forest.min_leaf_triangles).range(1..=100_000).suffix(" triangles");
-            ui.add(drag).labelled_by(label.id);
-            ui.end_row();
-            let label = ui.label("Maximum distance");
+            form::row(ui, "Minimum leaf size", |ui| ui.add(drag));
             let drag = DragValue::new(&mut settings.distance.max_distance).range(1.0..=10.0).suffix(" voxels");
-            ui.add(drag).labelled_by(label.id);
-            ui.end_row();
+            form::row(ui, "Maximum distance", |ui| ui.add(drag));
         });
         if ui.button("Default settings").clicked() {
             *settings = ExtractSettings::default();

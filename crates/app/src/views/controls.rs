@@ -124,28 +124,21 @@ fn camera(ui: &mut Ui, scene: &mut Scene, actions: &mut Vec<Action>) {
     });
 }
 
-/// A labelled row of a form.
-fn row(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui) -> eframe::egui::Response) {
-    let label = ui.label(name);
-    add(ui).labelled_by(label.id);
-    ui.end_row();
-}
-
 fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
     let has_layers = !session.document.horizons.is_empty() && session.view.panel != Panel::Interpret;
     Grid::new("display").num_columns(2).min_col_width(LABELS).show(ui, |ui| {
-        row(ui, "Exaggeration", |ui| {
+        form::row(ui, "Exaggeration", |ui| {
             ui.add(Slider::new(&mut scene.exaggeration, 0.25..=20.0).logarithmic(true).max_decimals(2).suffix("×"))
         });
         if has_layers {
-            row(ui, "Pattern density", |ui| {
+            form::row(ui, "Pattern density", |ui| {
                 ui.add(
                     Slider::new(&mut scene.global_frequency, 0.1..=10.0).logarithmic(true).max_decimals(2).suffix("×"),
                 )
             });
         }
         if has_layers {
-            row(ui, "Pattern size", |ui| {
+            form::row(ui, "Pattern size", |ui| {
                 let mut on_paper = scene.pattern_size == PatternSize::Paper;
                 let constant = ui.checkbox(&mut on_paper, "kept while zooming");
                 if constant.changed() {
@@ -155,7 +148,7 @@ fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
             });
         }
         if has_layers {
-            row(ui, "Print in", |ui| {
+            form::row(ui, "Print in", |ui| {
                 let words = |preset: Preset| preset.name().replace('-', " ");
                 let shown = ComboBox::from_id_salt("preset").selected_text(words(scene.preset));
                 let shown = shown.show_ui(ui, |ui| {
@@ -166,7 +159,7 @@ fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
                 shown.response
             });
         }
-        row(ui, "Face tone", |ui| ui.add(percent::slider_to(&mut scene.face_tone, 0.5)));
+        form::row(ui, "Face tone", |ui| ui.add(percent::slider_to(&mut scene.face_tone, 0.5)));
     });
     if has_layers {
         let mut has_ground = scene.ground.is_some();
@@ -176,8 +169,8 @@ fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
         }
         if let Some(ground) = &mut scene.ground {
             Grid::new("ground").num_columns(2).min_col_width(LABELS).show(ui, |ui| {
-                row(ui, "Hill shading", |ui| ui.add(percent::slider(&mut ground.hill_shade)));
-                row(ui, "Light from", |ui| {
+                form::row(ui, "Hill shading", |ui| ui.add(percent::slider(&mut ground.hill_shade)));
+                form::row(ui, "Light from", |ui| {
                     ui.add(Slider::new(&mut ground.light_deg, -180.0..=180.0).max_decimals(0).suffix("°"))
                 });
             });

@@ -17,6 +17,7 @@ use project::document::{FaultEntry, VolumeEntry};
 use project::error::Noun;
 use project::styles;
 use render::Scene;
+use std::fmt::Display;
 use survey::VerticalUnit;
 use ttf::ColourMap;
 
@@ -145,19 +146,8 @@ impl Data {
                 if let Some(chosen) = palette(ui, entry.ink(), &format!("Colour of fault {}", entry.name)) {
                     actions.push(colour(Noun::Fault, &entry.name, chosen));
                 }
-                if let Some(renamed) = self.renaming.show(ui, 150.0, (Noun::Fault, &entry.name), actions) {
-                    if let Renamed::To(to) = renamed {
-                        self.fault = Some(to);
-                    }
-                    return;
-                }
-                let row = named(ui, &entry.name, Some(is_chosen), &format!("Remove fault {}", entry.name));
-                if row.name.on_hover_text(format!("{}: {}", entry.name, entry.origin)).clicked() {
-                    self.fault = (!is_chosen).then(|| entry.name.clone());
-                }
-                if row.is_removed {
-                    actions.push(named::remove(Noun::Fault, &entry.name));
-                }
+                let (renaming, what) = (&mut self.renaming, (Noun::Fault, entry.name.as_str()));
+                choosable(ui, renaming, &mut self.fault, what, &entry.origin, actions);
             });
             if let Some(other) = &entry.truncated_by {
                 ui.indent("ends", |ui| ui.weak(format!("ends at {other}")));
@@ -219,19 +209,8 @@ impl Data {
                 if let Some(chosen) = palette(ui, ink, &format!("Colour of well {}", entry.name)) {
                     actions.push(colour(Noun::Well, &entry.name, chosen));
                 }
-                if let Some(renamed) = self.renaming.show(ui, 150.0, (Noun::Well, &entry.name), actions) {
-                    if let Renamed::To(to) = renamed {
-                        self.well = Some(to);
-                    }
-                    return;
-                }
-                let row = named(ui, &entry.name, Some(is_chosen), &format!("Remove well {}", entry.name));
-                if row.name.on_hover_text(format!("{}: {}", entry.name, entry.origin)).clicked() {
-                    self.well = (!is_chosen).then(|| entry.name.clone());
-                }
-                if row.is_removed {
-                    actions.push(named::remove(Noun::Well, &entry.name));
-                }
+                let (renaming, what) = (&mut self.renaming, (Noun::Well, entry.name.as_str()));
+                choosable(ui, renaming, &mut self.well, what, &entry.origin, actions);
             });
             if is_chosen {
                 ui.indent("chosen", |ui| {
@@ -316,6 +295,31 @@ pub(super) fn named(ui: &mut Ui, name: &str, is_chosen: Option<bool>, hint: &str
         Row { name, is_removed }
     })
     .inner
+}
+
+/// The name of a fault or well, which can be chosen, renamed and removed.
+fn choosable(
+    ui: &mut Ui,
+    renaming: &mut NameField,
+    chosen: &mut Option<String>,
+    (noun, name): (Noun, &str),
+    origin: &impl Display,
+    actions: &mut Vec<Action>,
+) {
+    if let Some(renamed) = renaming.show(ui, 150.0, (noun, name), actions) {
+        if let Renamed::To(to) = renamed {
+            *chosen = Some(to);
+        }
+        return;
+    }
+    let is_chosen = chosen.as_deref() == Some(name);
+    let row = named(ui, name, Some(is_chosen), &format!("Remove {noun} {name}"));
+    if row.name.on_hover_text(format!("{name}: {origin}")).clicked() {
+        *chosen = (!is_chosen).then(|| name.to_owned());
+    }
+    if row.is_removed {
+        actions.push(named::remove(noun, name));
+    }
 }
 
 /// A box that shows or hides the lines and surfaces of a horizon or fault.

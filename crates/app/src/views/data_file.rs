@@ -3,6 +3,7 @@
 use super::notices;
 use crate::state::{Action, DataForm, Dialogue, Place, State, Written};
 use crate::widgets::dialogue;
+use crate::widgets::form;
 use crate::widgets::keyboard::is_entered;
 use crate::widgets::obstacle::{needs, unless};
 use eframe::egui::{Button, ComboBox, Context, Grid, TextEdit};
@@ -17,9 +18,7 @@ pub fn dialogue(ctx: &Context, state: &State, form: &DataForm, actions: &mut Vec
         notices::show(ui, state, Place::Dialogue, actions);
         let mut next = form.clone();
         Grid::new("data file").num_columns(2).spacing([14.0, 10.0]).show(ui, |ui| {
-            let label = ui.label("File");
-            ui.add(TextEdit::singleline(&mut next.path).desired_width(320.0)).labelled_by(label.id);
-            ui.end_row();
+            form::row(ui, "File", |ui| ui.add(TextEdit::singleline(&mut next.path).desired_width(320.0)));
             let label = ui.label("Format");
             ui.label_inputs_by(label.id, |ui| {
                 ComboBox::from_id_salt("format").selected_text(format_name(form.what)).show_ui(ui, |ui| {

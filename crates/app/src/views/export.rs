@@ -5,6 +5,7 @@ use crate::state::{
     Action, Dialogue, ExportForm, Layout, Panel, Place, SectionFill, SectionVolumes, Session, Shown, State,
 };
 use crate::widgets::dialogue;
+use crate::widgets::form;
 use crate::widgets::keyboard::is_entered;
 use crate::widgets::obstacle::{needs, unless};
 use crate::widgets::page::PagePreview;
@@ -119,10 +120,8 @@ fn fields(
     notices::show(ui, state, Place::Dialogue, actions);
     let mut next = form.clone();
     Grid::new("export").num_columns(2).spacing([14.0, 10.0]).show(ui, |ui| {
-        let label = ui.label("File");
-        let field = ui.add(TextEdit::singleline(&mut next.path).desired_width(300.0)).labelled_by(label.id);
-        field.on_hover_text(format!("The ending of the name says what is written: {}", page::endings_of_pages()));
-        ui.end_row();
+        form::row(ui, "File", |ui| ui.add(TextEdit::singleline(&mut next.path).desired_width(300.0)))
+            .on_hover_text(format!("The ending of the name says what is written: {}", page::endings_of_pages()));
         ui.label("Size");
         ui.horizontal(|ui| {
             for (index, name) in ["Width", "Height"].into_iter().enumerate() {
@@ -132,15 +131,11 @@ fn fields(
             }
         });
         ui.end_row();
-        let label = ui.label("Resolution");
         let drag = DragValue::new(&mut next.dpi).speed(5.0).range(36.0..=1200.0).max_decimals(0).suffix(" dpi");
-        ui.add(drag).labelled_by(label.id);
-        ui.end_row();
+        form::row(ui, "Resolution", |ui| ui.add(drag));
         let words = [("Title", &mut next.title), ("Caption", &mut next.caption), ("Data credit", &mut next.credit)];
         for (name, words) in words {
-            let label = ui.label(name);
-            ui.add(TextEdit::singleline(words).desired_width(300.0)).labelled_by(label.id);
-            ui.end_row();
+            form::row(ui, name, |ui| ui.add(TextEdit::singleline(words).desired_width(300.0)));
         }
         if shows_rock(session) {
             ui.label("Sections show");

@@ -132,18 +132,11 @@ impl Import {
                 let units =
                     [FileUnit::Milliseconds, FileUnit::Metres, FileUnit::Feet].map(|unit| (unit, unit.symbol()));
                 form::choice(ui, Setting::VerticalUnit, &mut options.vertical_unit, &found, &units);
-                let label = ui.label("Polarity");
-                ui.label_inputs_by(label.id, |ui| {
-                    ComboBox::from_id_salt("polarity").selected_text(polarity.to_string()).show_ui(ui, |ui| {
-                        for choice in [Polarity::Normal, Polarity::Reverse] {
-                            ui.selectable_value(polarity, choice, choice.to_string());
-                        }
-                    });
-                });
-                ui.end_row();
-                let label = ui.label("Name");
-                ui.add(TextEdit::singleline(name).hint_text("seismic").desired_width(160.0)).labelled_by(label.id);
-                ui.end_row();
+                let combo = ComboBox::from_id_salt("polarity").selected_text(polarity.to_string());
+                let both = [Polarity::Normal, Polarity::Reverse].map(|choice| (choice, choice.to_string()));
+                form::chosen(ui, "Polarity", combo, polarity, both);
+                let field = TextEdit::singleline(name).hint_text("seismic").desired_width(160.0);
+                form::row(ui, "Name", |ui| ui.add(field));
             });
             CollapsingHeader::new("More").open(is_refused.then_some(true)).show(ui, |ui| more(ui, options));
             if *options != SegyOptions::default()

@@ -100,29 +100,20 @@ impl Interpretation {
 
     fn form(&mut self, ui: &mut Ui, session: &Session, kind: FileContent) {
         Grid::new("interpretation").num_columns(2).spacing([12.0, 8.0]).show(ui, |ui| {
-            let label = ui.label("Name");
-            ui.add(TextEdit::singleline(&mut self.name).desired_width(240.0)).labelled_by(label.id);
-            ui.end_row();
+            form::row(ui, "Name", |ui| ui.add(TextEdit::singleline(&mut self.name).desired_width(240.0)));
             let units =
                 [ZUnit::Milliseconds, ZUnit::Seconds, ZUnit::Metres, ZUnit::Feet].map(|unit| (unit, unit.symbol()));
             form::choice(ui, Setting::ZUnit, &mut self.options.z_unit, form::AS_FILE, &units);
             let signs = [(ZPositive::Down, "positive down"), (ZPositive::Up, "positive up")];
             form::choice(ui, Setting::ZPositive, &mut self.options.z_positive, form::AS_FILE, &signs);
-            let label = ui.label(form::name_of(Setting::ZFactor));
-            ui.add(DragValue::new(&mut self.options.z_factor).speed(0.01)).labelled_by(label.id);
-            ui.end_row();
+            let factor = DragValue::new(&mut self.options.z_factor).speed(0.01);
+            form::row(ui, form::name_of(Setting::ZFactor), |ui| ui.add(factor));
             if kind == FileContent::Fault {
-                let label = ui.label("Ends at");
-                ui.label_inputs_by(label.id, |ui| {
-                    let shown = self.truncated_by.clone().unwrap_or_else(|| "nothing".to_owned());
-                    ComboBox::from_id_salt("ends at").selected_text(shown).show_ui(ui, |ui| {
-                        ui.selectable_value(&mut self.truncated_by, None, "nothing");
-                        for fault in &session.document.faults {
-                            ui.selectable_value(&mut self.truncated_by, Some(fault.name.clone()), &fault.name);
-                        }
-                    });
-                });
-                ui.end_row();
+                let combo = ComboBox::from_id_salt("ends at");
+                let combo = combo.selected_text(self.truncated_by.as_deref().unwrap_or("nothing"));
+                let faults = session.document.faults.iter().map(|fault| (Some(fault.name.clone()), &*fault.name));
+                let choices = [(None, "nothing")].into_iter().chain(faults);
+                form::chosen(ui, "Ends at", combo, &mut self.truncated_by, choices);
                 let label = ui.label("Reaches farther by").on_hover_text(
                     "A fault ends where it was drawn. So many metres more on every side where it was drawn too short",
                 );
@@ -140,27 +131,17 @@ impl Interpretation {
 
     /// What is stated of a horizon alone.
     fn horizon_rows(&mut self, ui: &mut Ui, session: &Session) {
-        let label = ui.label("Contact");
-        ui.label_inputs_by(label.id, |ui| {
-            ComboBox::from_id_salt("contact").selected_text(contact_name(self.contact)).show_ui(ui, |ui| {
-                for contact in Contact::ALL {
-                    ui.selectable_value(&mut self.contact, contact, contact_name(contact));
-                }
-            });
+        let combo = ComboBox::from_id_salt("contact").selected_text(contact_name(self.contact));
+        let contacts = Contact::ALL.map(|contact| (contact, contact_name(contact)));
+        form::chosen(ui, "Contact", combo, &mut self.contact, contacts);
+        let combo = ComboBox::from_id_salt("age").selected_text(age_name(&self.age));
+        let names = || session.document.horizons.iter().map(|horizon| horizon.name.clone());
+        let ages = [Age::ByDepth].into_iter().chain(names().map(Age::Above)).chain(names().map(Age::Below));
+        let named = ages.map(|age| {
+            let name = age_name(&age);
+            (age, name)
         });
-        ui.end_row();
-        let label = ui.label("Place in the column");
-        ui.label_inputs_by(label.id, |ui| {
-            ComboBox::from_id_salt("age").selected_text(age_name(&self.age)).show_ui(ui, |ui| {
-                let names = || session.document.horizons.iter().map(|horizon| horizon.name.clone());
-                let ages = names().map(Age::Above).chain(names().map(Age::Below));
-                for age in [Age::ByDepth].into_iter().chain(ages) {
-                    let name = age_name(&age);
-                    ui.selectable_value(&mut self.age, age, name);
-                }
-            });
-        });
-        ui.end_row();
+        form::chosen(ui, "Place in the column", combo, &mut self.age, named);
         let label = ui.label("Shape").on_hover_text(
             "A map has one depth at a place in each fault block. A surface of any shape may be overturned, or a body",
         );

@@ -7,6 +7,7 @@ use super::{export, named, notices, texture};
 use crate::state::picking::place_of;
 use crate::state::{Action, Dialogue, Place, Session, ShareForm, ShareKind, State};
 use crate::widgets::dialogue;
+use crate::widgets::form;
 use crate::widgets::keyboard::is_entered;
 use crate::widgets::obstacle::{needs, unless};
 use crate::work::{RunningLine, SharePreview};
@@ -243,10 +244,8 @@ impl ShareView {
         let place = self.note.at.unwrap_or_else(|| place_of(geometry, session.view.slices.into()));
         let mut at = place;
         Grid::new("note").num_columns(2).min_col_width(LABELS).spacing([14.0, 8.0]).show(ui, |ui| {
-            let label = ui.label("New note");
             let text = TextEdit::singleline(&mut self.note.text).char_limit(500).desired_width(300.0);
-            ui.add(text).labelled_by(label.id);
-            ui.end_row();
+            form::row(ui, "New note", |ui| ui.add(text));
             ui.label("Points at");
             ui.horizontal(|ui| {
                 let last = VoxelBox::of_size(geometry.size()).max;
@@ -260,17 +259,11 @@ impl ShareView {
             });
             ui.end_row();
             if !session.document.scenes.is_empty() {
-                let label = ui.label("In");
-                ui.label_inputs_by(label.id, |ui| {
-                    let shown = self.note.scene.as_deref().unwrap_or("every scene");
-                    ComboBox::from_id_salt("note's scene").selected_text(shown).show_ui(ui, |ui| {
-                        ui.selectable_value(&mut self.note.scene, None, "every scene");
-                        for entry in &session.document.scenes {
-                            ui.selectable_value(&mut self.note.scene, Some(entry.name.clone()), &entry.name);
-                        }
-                    });
-                });
-                ui.end_row();
+                let combo = ComboBox::from_id_salt("note's scene");
+                let combo = combo.selected_text(self.note.scene.as_deref().unwrap_or("every scene"));
+                let scenes = session.document.scenes.iter().map(|entry| (Some(entry.name.clone()), &*entry.name));
+                let choices = [(None, "every scene")].into_iter().chain(scenes);
+                form::chosen(ui, "In", combo, &mut self.note.scene, choices);
             }
         });
         if at != place {
@@ -369,10 +362,8 @@ impl ShareView {
 /// The fields of the file.
 fn rows(ui: &mut Ui, session: &Session, next: &mut ShareForm) {
     let is_page = next.kind == ShareKind::Page;
-    let label = ui.label("File");
     let path = if is_page { &mut next.page } else { &mut next.model };
-    ui.add(TextEdit::singleline(path).desired_width(300.0)).labelled_by(label.id);
-    ui.end_row();
+    form::row(ui, "File", |ui| ui.add(TextEdit::singleline(path).desired_width(300.0)));
     let scenes = &session.document.scenes;
     if is_page && !scenes.is_empty() {
         ui.label("Scenes");
@@ -387,23 +378,15 @@ fn rows(ui: &mut Ui, session: &Session, next: &mut ShareForm) {
         });
         ui.end_row();
     } else if !scenes.is_empty() {
-        let label = ui.label("Scene");
-        ui.label_inputs_by(label.id, |ui| {
-            let shown = next.scene.clone().unwrap_or_else(|| scenes[0].name.clone());
-            ComboBox::from_id_salt("scene").selected_text(shown).show_ui(ui, |ui| {
-                for entry in scenes {
-                    ui.selectable_value(&mut next.scene, Some(entry.name.clone()), &entry.name);
-                }
-            });
-        });
-        ui.end_row();
+        let combo = ComboBox::from_id_salt("scene");
+        let combo = combo.selected_text(next.scene.as_ref().unwrap_or(&scenes[0].name));
+        let choices = scenes.iter().map(|entry| (Some(entry.name.clone()), &entry.name));
+        form::chosen(ui, "Scene", combo, &mut next.scene, choices);
     }
     let number = |ui: &mut Ui, name: &str, unit: &str, value: &mut f64, [least, most]: [f64; 2], decimals: usize| {
-        let label = ui.label(name);
         let speed = ((most - least) / 2000.0).clamp(0.1, 20.0);
         let drag = DragValue::new(value).range(least..=most).speed(speed).max_decimals(decimals).suffix(unit);
-        ui.add(drag).labelled_by(label.id);
-        ui.end_row();
+        form::row(ui, name, |ui| ui.add(drag));
     };
     number(ui, "Detail of faces", " texels along the block", &mut next.density, DENSITIES, 0);
     if is_page {

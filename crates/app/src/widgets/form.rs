@@ -1,6 +1,6 @@
 //! Rows of the dialogues' forms: the name of a setting, and its stated value or that of the file.
 
-use eframe::egui::{Align, ComboBox, DragValue, Layout, Response, TextEdit, Ui, vec2};
+use eframe::egui::{Align, ComboBox, DragValue, Layout, Response, TextEdit, Ui, WidgetText, vec2};
 use state::fields::field;
 use survey::Setting;
 
@@ -15,6 +15,33 @@ pub fn label(ui: &mut Ui, name: &str) -> Response {
         ui.label(name)
     })
     .inner
+}
+
+/// A row of a grid: its name, and the field that it labels.
+pub fn row(ui: &mut Ui, name: &str, field: impl FnOnce(&mut Ui) -> Response) -> Response {
+    let label = ui.label(name);
+    let response = field(ui).labelled_by(label.id);
+    ui.end_row();
+    response
+}
+
+/// A row of a grid in which one of these values is chosen.
+pub fn chosen<T: PartialEq, N: Into<WidgetText>>(
+    ui: &mut Ui,
+    name: &str,
+    combo: ComboBox,
+    value: &mut T,
+    choices: impl IntoIterator<Item = (T, N)>,
+) {
+    let label = ui.label(name);
+    ui.label_inputs_by(label.id, |ui| {
+        combo.show_ui(ui, |ui| {
+            for (choice, name) in choices {
+                ui.selectable_value(value, choice, name.into());
+            }
+        });
+    });
+    ui.end_row();
 }
 
 /// The text of a field whose value is taken from the file.
@@ -34,32 +61,17 @@ pub fn choice<T: Copy + PartialEq>(
     choices: &[(T, &str)],
 ) {
     let name = name_of(setting);
-    let label = ui.label(name);
     let shown = choices.iter().find(|(choice, _)| Some(*choice) == *value).map_or(unstated, |(_, name)| name);
-    ui.label_inputs_by(label.id, |ui| {
-        ComboBox::from_id_salt(name).selected_text(shown).show_ui(ui, |ui| {
-            ui.selectable_value(value, None, unstated);
-            for (choice, name) in choices {
-                ui.selectable_value(value, Some(*choice), *name);
-            }
-        });
-    });
-    ui.end_row();
+    let stated = choices.iter().map(|(choice, name)| (Some(*choice), *name));
+    let combo = ComboBox::from_id_salt(name).selected_text(shown);
+    chosen(ui, name, combo, value, [(None, unstated)].into_iter().chain(stated));
 }
 
 /// A choice that always has a value.
 pub fn one_of<T: Copy + PartialEq>(ui: &mut Ui, setting: Setting, value: &mut T, choices: &[(T, &str)]) {
     let name = name_of(setting);
-    let label = ui.label(name);
     let shown = choices.iter().find(|(choice, _)| choice == value).map_or("", |(_, name)| name);
-    ui.label_inputs_by(label.id, |ui| {
-        ComboBox::from_id_salt(name).selected_text(shown).show_ui(ui, |ui| {
-            for (choice, name) in choices {
-                ui.selectable_value(value, *choice, *name);
-            }
-        });
-    });
-    ui.end_row();
+    chosen(ui, name, ComboBox::from_id_salt(name).selected_text(shown), value, choices.iter().copied());
 }
 
 /// A number that may be left to the file.
@@ -87,7 +99,5 @@ pub fn number(ui: &mut Ui, setting: Setting, value: &mut Option<f64>) {
 
 /// A line of text.
 pub fn text(ui: &mut Ui, setting: Setting, hint: &str, text: &mut String) {
-    let label = ui.label(name_of(setting));
-    ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(240.0)).labelled_by(label.id);
-    ui.end_row();
+    row(ui, name_of(setting), |ui| ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(240.0)));
 }

@@ -180,9 +180,7 @@ fn light(ui: &mut Ui, next: &mut Scene) {
     }
     Grid::new("light terms").num_columns(2).min_col_width(LABELS).show(ui, |ui| {
         let mut row = |name: &str, value: &mut f32, range| {
-            let label = ui.label(name);
-            ui.add(Slider::new(value, range).max_decimals(2)).labelled_by(label.id);
-            ui.end_row();
+            form::row(ui, name, |ui| ui.add(Slider::new(value, range).max_decimals(2)));
         };
         match &mut next.media.shading {
             Shading::Unshaded | Shading::Interleaved(_) => {}
