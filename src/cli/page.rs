@@ -11,7 +11,6 @@ use figure::{
     Annotation, BlockPart, CorrelationPart, FencePart, Figure, MapPart, PageSize, Part, SectionKind, SectionPart,
 };
 use project::pictures::figures::{self, FigureSettings, InterpreterView};
-use project::pictures::load::{self, Request};
 use project::{Project, memory_budget};
 use render::{FaceData, Scene};
 use std::path::PathBuf;
@@ -223,8 +222,8 @@ pub(super) fn draw(
     let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
     let (format, device, fonts) = (*format, *device, page.fonts.clone());
     let settings = FigureSettings { format, device, volume_bytes, fonts, picture_dpi: None };
-    let made = figures::make(project, &figure, &InterpreterView::default(), &settings, progress)?;
-    figures::write(&made.page, format, &request.out, figure.dpi, &figures::title(project))?;
+    let (made, loaded) = figures::make(project, &figure, &InterpreterView::default(), &settings, progress)?;
+    figures::write(&made.page, format, &request.out, figure.dpi, &project.title())?;
     let mut report = Report::line(written(&request.out, figure.size_px(), figure.dpi));
     advise(&request.project, made.confusions, &mut report);
     let blocks = figure.parts.iter().filter_map(|part| match part {
@@ -232,7 +231,6 @@ pub(super) fn draw(
         _ => None,
     });
     if let Some(scene) = blocks.clone().find(|scene| scene.face_data == FaceData::Distortion) {
-        let loaded = load::load(project.facts(), &Request::new(scene).within(volume_bytes), progress)?;
         super::distortion::say(project.document(), &loaded.distortion(scene, progress)?, &mut report);
     }
     let shown = blocks.clone().map(|scene| assumptions(project, scene)).next().unwrap_or_default();

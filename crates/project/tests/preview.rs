@@ -79,7 +79,7 @@ fn is_previewed(project: &Project, figure: &Figure, scene: &Scene, format: &'sta
     let page = |figure: &Figure, picture_dpi: Option<f64>| {
         let settings =
             FigureSettings { format, device: Device::Cpu, volume_bytes: 1 << 28, fonts: Vec::new(), picture_dpi };
-        make(project, figure, &InterpreterView::default(), &settings, &Progress::silent()).unwrap().page
+        make(project, figure, &InterpreterView::default(), &settings, &Progress::silent()).unwrap().0.page
     };
     let (written, seen) = (page(figure, None), page(figure, Some(60.0)));
     assert_eq!(laid_out(written.clone()), laid_out(seen.clone()));

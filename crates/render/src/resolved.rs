@@ -84,10 +84,10 @@ impl<'a> ResolvedScene<'a> {
         let interpretation = resolve_interpretation(scene, inputs)?;
         let view = scene.view(inputs.geometry);
         let mut tables = resolve_tables(scene, inputs, &view, interpretation.is_some())?;
-        let media = media_volumes(scene);
+        let media = scene.media.volumes().collect::<Vec<_>>();
         for name in &media {
-            if !tables.volumes.contains(name) {
-                tables.volumes.push((*name).clone());
+            if !tables.volumes.iter().any(|known| known == name) {
+                tables.volumes.push((*name).to_owned());
             }
         }
         let volumes = resolve_volumes(&tables, &media, inputs.volumes)?;
@@ -288,16 +288,10 @@ pub(crate) fn shows_depths(scene: &Scene) -> bool {
     scene.media.isosurfaces.iter().any(|surface| surface.of == IsosurfaceSource::Depth)
 }
 
-/// Names of the volumes of all media, painted horizons and isosurfaces.
-fn media_volumes(scene: &Scene) -> Vec<&String> {
-    let painted = scene.media.horizons.iter().filter_map(|horizon| horizon.paint.as_ref()).map(|paint| &paint.volume);
-    scene.media.all().map(|m| &m.volume).chain(painted).chain(scene.media.isosurface_volumes()).collect()
-}
-
 /// The volumes of the slots that are in use.
 fn resolve_volumes<'a>(
     tables: &TtfTables,
-    media: &[&String],
+    media: &[&str],
     volumes: &[NamedVolume<'a>],
 ) -> Result<Vec<Option<NamedVolume<'a>>>, RenderError> {
     if tables.volumes.len() > MAX_VOLUMES {
@@ -306,7 +300,7 @@ fn resolve_volumes<'a>(
     let is_used = |slot: u32| {
         tables.globals.raw_volume == slot
             || tables.scalars.iter().any(|s| s.volume == slot)
-            || media.contains(&&tables.volumes[slot as usize])
+            || media.contains(&tables.volumes[slot as usize].as_str())
     };
     (0u32..)
         .zip(&tables.volumes)

@@ -139,7 +139,7 @@ pub fn make(project: &Project, settings: &ReviewSettings, progress: &Progress) -
         no_data: raw.no_data,
     });
     Ok(Model {
-        title: figures::title(project),
+        title: project.title(),
         provenance: provenance(document, &loaded),
         warning: document.uninterpreted().map(|why| why.to_string()),
         geometry: loaded.geometry.clone(),
@@ -453,7 +453,7 @@ impl Maker<'_> {
         for cover in &self.covers {
             cover.data.pixels().for_each(|pixel| seen[usize::from(pixel.0[1])] = true);
         }
-        let styles = figures::layer_styles(document, self.library);
+        let styles = styles::layer_styles(document, self.library);
         // Patterns of what nobody interpreted say nothing of rocks.
         let is_interpreted = document.uninterpreted().is_none();
         let layer = |(number, style): (usize, &LayerStyle)| {

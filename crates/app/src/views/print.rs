@@ -88,7 +88,7 @@ impl Page {
             }
         }
         let settings = self.settings(Some(PREVIEW_DPI));
-        let made = compute(|| figures::make(&project, &figure, &self.view, &settings, progress))?;
+        let (made, _) = compute(|| figures::make(&project, &figure, &self.view, &settings, progress))?;
         Ok((made.page, figure.printed_in()))
     }
 
@@ -117,8 +117,8 @@ impl Page {
         let path = Path::new(&self.path);
         let settings = self.settings(None);
         compute(|| {
-            let made = figures::make(&project, &self.figure, &self.view, &settings, progress)?;
-            figures::write(&made.page, self.format(), path, self.figure.dpi, &figures::title(&project))
+            let (made, _) = figures::make(&project, &self.figure, &self.view, &settings, progress)?;
+            figures::write(&made.page, self.format(), path, self.figure.dpi, &project.title())
         })
     }
 }

@@ -59,7 +59,7 @@ pub struct Seen {
 impl Seen {
     /// What a scene renders within the block.
     pub fn of(scene: &Scene) -> Self {
-        let mut volumes: Vec<String> = project::document::volumes_within(scene).map(str::to_owned).collect();
+        let mut volumes: Vec<String> = scene.media.volumes().map(str::to_owned).collect();
         let mut horizons: Vec<String> =
             scene.media.horizons.iter().filter_map(|horizon| horizon.name.clone()).collect();
         for names in [&mut volumes, &mut horizons] {

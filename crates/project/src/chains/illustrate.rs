@@ -127,8 +127,8 @@ pub fn run(
         fonts: Vec::new(),
         picture_dpi: None,
     };
-    let made = figures::make(&project, &figure, &InterpreterView::default(), &drawing, progress)?;
-    figures::write(&made.page, format, out, DPI, &figures::title(&project))?;
+    let (made, _) = figures::make(&project, &figure, &InterpreterView::default(), &drawing, progress)?;
+    figures::write(&made.page, format, out, DPI, &project.title())?;
     Ok(Illustrated {
         file: out.to_owned(),
         project: project.root().to_owned(),

@@ -82,7 +82,7 @@ pub(super) fn check(
     progress: &Progress,
 ) -> Result<(), ProjectError> {
     let document = newest(states);
-    for name in storage::names_in(&derived::folder(root)) {
+    for name in storage::names_in(&root.join(storage::DERIVED)) {
         let Some(computed) = Computed::of(&name) else { continue };
         let file = format!("{}/{name}", storage::DERIVED);
         report.derived_files += 1;

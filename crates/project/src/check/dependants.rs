@@ -1,7 +1,7 @@
 //! What is made of a data file, or shows it: what is lost while it is damaged.
 
 use super::objects::Entry;
-use crate::document::{Document, HorizonEntry, volumes_within};
+use crate::document::{Document, HorizonEntry};
 
 /// What of a state depends on one of its data files.
 pub(super) fn of(document: &Document, entry: &Entry) -> Vec<String> {
@@ -31,7 +31,7 @@ fn of_volume(document: &Document, name: &str, is_on_the_lattice: bool) -> Vec<St
     }
     let shows = |scene: &render::Scene| {
         let shows_raw = scene.raw.as_ref().map_or(is_raw && scene.blend > 0.0, |raw| raw.volume == name);
-        shows_raw || volumes_within(scene).any(|shown| shown == name)
+        shows_raw || scene.media.volumes().any(|shown| shown == name)
     };
     let scenes = document.scenes.iter().filter(|entry| shows(&entry.scene));
     found.extend(scenes.map(|entry| format!("scene \"{}\"", entry.name)));

@@ -45,7 +45,7 @@ fn find_in_derived(root: &Path, states: &States, report: &mut CheckReport) {
     for writer in derived::abandoned(root) {
         add(root, writer, LeftoverKind::Unfinished, report);
     }
-    for name in storage::names_in(&derived::folder(root)) {
+    for name in storage::names_in(&root.join(storage::DERIVED)) {
         let key = |start: &str, end: &str| name.strip_prefix(start)?.strip_suffix(end);
         let key = key("candidates-", ".zarr").or(key("fault-proposals-", ".json"));
         let is_unnamed = key.is_some_and(|key| !history::is_named(root, key) && !states.may_be_named(key));

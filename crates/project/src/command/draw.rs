@@ -1,6 +1,5 @@
 //! Horizons where there is no candidate: lines drawn by hand, and reflections tracked from one place.
 
-use super::pick::next_id;
 use super::{Effect, ProjectError};
 use crate::derived::FaultBlocks;
 use crate::document::{Drawn, DrawnEntry};
@@ -64,7 +63,7 @@ impl DrawHorizon {
         let mut log = assembly::log_or_new(draft, &self.horizon)?;
         let candidates = assembly::needed(draft, &log, progress)?;
         let blocks = draft.facts().get(&FaultBlocks, progress)?;
-        let id = next_id(draft);
+        let id = draft.document.next_pick_id();
         if let Some(colour) = self.colour {
             log.colour = colour;
         }

@@ -184,9 +184,10 @@ impl PickNode {
         let mut log = assembly::log_or_new(draft, &self.horizon)?;
         let candidates = Candidates::for_picks(draft.facts(), &[self.at], progress)?;
         let blocks = draft.facts().get(&FaultBlocks, progress)?;
-        let id = next_id(draft);
+        let id = draft.document.next_pick_id();
         let geometry = draft.document.frame()?.clone();
-        let stopped_by = self.enter(&mut log, id, &geometry, &candidates, &blocks)?;
+        let hit = candidates.leaf_near(&geometry, self.at)?;
+        let stopped_by = self.enter(&mut log, id, hit.leaf, &candidates, &blocks)?;
         let stopped_by = stopped_by.and_then(|overlap| ReportedOverlap::new(overlap, &geometry));
         let PickEntry { leaf, up, node, .. } = log.picks[log.picks.len() - 1];
         let result = rebuild(draft, Some(&candidates), &blocks, &self.horizon, log, progress)?;
@@ -203,29 +204,28 @@ impl PickNode {
         })))
     }
 
-    /// Appends the pick to a log; returns the overlap that ended the climb.
+    /// Appends the pick of a leaf to a log; returns the overlap that ended the climb.
     fn enter(
         &self,
         log: &mut Assembly,
         id: u32,
-        geometry: &SurveyGeometry,
+        leaf: u32,
         candidates: &Candidates,
         blocks: &FaultNetwork,
     ) -> Result<Option<Overlap>, ProjectError> {
         let chosen = assembly::selection(&self.horizon, log, candidates)?;
-        let hit = candidates.leaf_near(geometry, self.at)?;
         // A removed node may overlap with what stays.
         let beside = if self.operation == Operation::Add { chosen.clone() } else { Selection::default() };
-        let (node, up, stopped_by) = climbed(candidates, hit.leaf, self.climb, &beside, blocks)?;
+        let (node, up, stopped_by) = climbed(candidates, leaf, self.climb, &beside, blocks)?;
         let mut own = Selection::default();
         own.insert(candidates.forest.nodes[node as usize].triangles.clone());
         let common = own.intersection(&chosen).len();
         match self.operation {
             Operation::Add if common == own.len() => {
-                return Err(ProjectError::AlreadyPicked { horizon: self.horizon.clone(), leaf: hit.leaf });
+                return Err(ProjectError::AlreadyPicked { horizon: self.horizon.clone(), leaf });
             }
             Operation::Remove if common == 0 => {
-                return Err(ProjectError::NotPicked { horizon: self.horizon.clone(), leaf: hit.leaf });
+                return Err(ProjectError::NotPicked { horizon: self.horizon.clone(), leaf });
             }
             _ => {}
         }
@@ -236,7 +236,7 @@ impl PickNode {
             id,
             at: self.at,
             operation: self.operation,
-            leaf: hit.leaf,
+            leaf,
             up,
             extraction: candidates.key.clone(),
             node: Fingerprint::of(&candidates.forest, node),
@@ -264,9 +264,10 @@ impl PickNodes {
         let places: Vec<[f64; 3]> = self.picks.iter().map(|pick| pick.at).collect();
         let candidates = Candidates::for_picks(draft.facts(), &places, progress)?;
         let blocks = draft.facts().get(&FaultBlocks, progress)?;
-        let id = next_id(draft);
+        let id = draft.document.next_pick_id();
         for (n, pick) in self.picks.iter().enumerate() {
-            pick.enter(&mut log, id + n as u32, draft.document.frame()?, &candidates, &blocks)?;
+            let hit = candidates.leaf_near(draft.document.frame()?, pick.at)?;
+            pick.enter(&mut log, id + n as u32, hit.leaf, &candidates, &blocks)?;
         }
         rebuild(draft, Some(&candidates), &blocks, &first.horizon, log, progress)?;
         Ok(Effect::Changed { summary: format!("{} picks of {}", self.picks.len(), first.horizon) })
@@ -295,22 +296,11 @@ impl RemovePick {
 /// Finds a pick, or what was drawn, by its number: its horizon and that horizon's log.
 fn find(draft: &Draft, id: u32) -> Result<(String, Assembly), ProjectError> {
     let logs = || draft.document.horizons.iter().filter_map(|entry| Some((entry, entry.assembly.as_ref()?)));
-    let found = logs().find(|(_, log)| numbers(log).any(|known| known == id));
+    let found = logs().find(|(_, log)| log.numbers().any(|known| known == id));
     found.map(|(entry, log)| (entry.name.clone(), log.clone())).ok_or_else(|| ProjectError::UnknownPick {
         pick: id,
-        known: logs().flat_map(|(_, log)| numbers(log)).collect(),
+        known: logs().flat_map(|(_, log)| log.numbers()).collect(),
     })
-}
-
-/// The numbers of the picks of a log and of what was drawn.
-fn numbers(log: &Assembly) -> impl Iterator<Item = u32> {
-    log.picks.iter().map(|pick| pick.id).chain(log.drawn.iter().map(|drawn| drawn.id))
-}
-
-/// A number that no pick has yet, and nothing that was drawn.
-pub(super) fn next_id(draft: &Draft) -> u32 {
-    let logs = draft.document.horizons.iter().filter_map(|entry| entry.assembly.as_ref());
-    logs.flat_map(numbers).max().unwrap_or(0) + 1
 }
 
 impl MovePick {

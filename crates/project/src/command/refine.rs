@@ -5,7 +5,8 @@ use crate::content;
 use crate::derived::FaultBlocks;
 use crate::document::{Assembly, Refinement};
 use crate::folder::Draft;
-use crate::interpretation::assembly::{self, AssemblyReport, put, rebuild, refined, report_on};
+use crate::interpretation::assembly::{self, AssemblyReport, put, rebuild, report_on};
+use crate::interpretation::finish;
 use interp::holes::FillSettings;
 use interp::reassembly::{from_horizon, to_horizon};
 use interp::refine::SmoothSettings;
@@ -84,7 +85,7 @@ fn refine(
             let geometry = draft.document.frame()?.clone();
             let horizon = content::read_horizon(draft.root(), &draft.document.horizons[index], progress)?;
             let mut sheets = from_horizon(&horizon, &geometry, &blocks);
-            let (filled, smoothed) = refined(draft, &mut sheets, &blocks, fill, smooth, progress)?;
+            let (filled, smoothed) = finish::refine(draft, &mut sheets, &blocks, fill, smooth, progress)?;
             put(draft, &to_horizon(name, &sheets, &geometry), None, Some(done), progress)?;
             AssemblyReport { filled, smoothed, ..report_on(&sheets, &geometry) }
         }

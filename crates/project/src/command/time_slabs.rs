@@ -5,7 +5,7 @@ use crate::content;
 use crate::derived::FaultBlocks;
 use crate::document::{Document, VolumeEntry};
 use crate::facts::Facts;
-use crate::interpretation::candidates::{Candidates, amplitudes};
+use crate::interpretation::candidates::Candidates;
 use crate::interpretation::extraction;
 use crate::interpretation::times::Obeyed;
 use ::time::{JoinedSlabs, Slabs, TimeSettings, find_faults, geologic_time, surfaces_within};
@@ -119,7 +119,7 @@ impl TimeSlabs {
         } else {
             SlabCandidates::Stored(extraction::open(root, document)?)
         };
-        let from = amplitudes(document)?.clone();
+        let from = document.amplitudes()?.clone();
         let geometry = document.frame()?;
         let network = Facts::of(root, document).get(&FaultBlocks, progress)?;
         let obeyed = Obeyed::load(root, document, &network, progress)?;

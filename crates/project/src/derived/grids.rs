@@ -1,9 +1,10 @@
 //! Storage of the parameterization: `grids-KEY.bin` and `parameterization.zarr`.
 
 use super::kept::{Kind, damaged, read_array, read_header, write_header};
-use super::{Scratch, folder, key_of, revision};
+use super::{Scratch, key_of, revision};
 use crate::document::Document;
 use crate::error::ProjectError;
+use crate::folder::storage;
 use model::ModelSettings;
 use param::{
     ComputeCost, ParamSettings, Parameterization, Region, RegionGrid, SheetRef, SheetSource, Unfolded, Unfolding,
@@ -304,7 +305,7 @@ const VOLUMES: &str = "parameterization.zarr";
 
 /// Its path.
 pub fn volumes_path(root: &Path) -> PathBuf {
-    folder(root).join(VOLUMES)
+    root.join(storage::DERIVED).join(VOLUMES)
 }
 
 /// Keeps the sampled parameterization that `write` writes into the folder it is given, for other programs.

@@ -1,7 +1,7 @@
 //! A file of derived data: a kind, a body, and the BLAKE3 hash of both, so that a damaged or truncated file is not
 //! used.
 
-use super::{Scratch, folder};
+use super::Scratch;
 use crate::folder::storage;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -29,7 +29,7 @@ impl Kind {
     }
 
     pub(super) fn path(&self, root: &Path, key: &str) -> PathBuf {
-        folder(root).join(self.file(key))
+        root.join(storage::DERIVED).join(self.file(key))
     }
 
     /// Stores what `body` writes under `key`; warns if that fails.
@@ -93,10 +93,10 @@ impl Kind {
         let prefix = format!("{}-", self.prefix);
         let ours = |name: &String| name.starts_with(&prefix) && name.ends_with(".bin");
         let written = |name: String| {
-            let facts = fs::symlink_metadata(folder(root).join(&name)).ok()?;
+            let facts = fs::symlink_metadata(root.join(storage::DERIVED).join(&name)).ok()?;
             facts.is_file().then_some((facts.modified().ok()?, name))
         };
-        let names = storage::names_in(&folder(root)).into_iter().filter(ours);
+        let names = storage::names_in(&root.join(storage::DERIVED)).into_iter().filter(ours);
         let mut files: Vec<(std::time::SystemTime, String)> = names.filter_map(written).collect();
         files.sort();
         for (_, name) in files.iter().rev().skip(KEPT) {

@@ -30,11 +30,6 @@ pub(crate) use kept::verify_kept;
 pub(crate) use scratch::{RESUMABLE, Scratch, abandoned, remove_leftovers, remove_resumable};
 
 use serde::Serialize;
-use std::path::{Path, PathBuf};
-
-pub(crate) fn folder(root: &Path) -> PathBuf {
-    root.join("derived")
-}
 
 /// The key of a result that is computed from `inputs`, which hold numbers and strings only: these always serialise.
 pub fn key_of(inputs: &impl Serialize) -> String {

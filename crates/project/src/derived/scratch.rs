@@ -6,7 +6,6 @@
 //! removes the folders whose lock is free. The folder of work in bricks has a name that tells the work: when the same
 //! work is asked for again, it goes on with what is there.
 
-use super::folder;
 use crate::error::ProjectError;
 use crate::folder::storage;
 use std::fs::{self, File};
@@ -83,7 +82,7 @@ impl Scratch {
     /// # Errors
     /// The file cannot be renamed.
     pub(crate) fn publish(&self, file: &str) -> Result<(), ProjectError> {
-        let target = folder(&self.root).join(file);
+        let target = self.root.join(storage::DERIVED).join(file);
         if target.is_dir() {
             storage::rename(&target, &self.path("replaced"))?;
         }

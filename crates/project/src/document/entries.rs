@@ -311,15 +311,3 @@ pub struct FigureEntry {
     #[serde(flatten)]
     pub figure: Figure,
 }
-
-/// The volumes that a scene shows within the block: those of media and isosurfaces, and those painted on horizons.
-/// Every loader asks here.
-pub fn volumes_within(scene: &Scene) -> impl Iterator<Item = &str> {
-    let media = &scene.media;
-    let painted = media.horizons.iter().filter_map(|horizon| Some(horizon.paint.as_ref()?.volume.as_str()));
-    media
-        .all()
-        .map(|medium| medium.volume.as_str())
-        .chain(media.isosurface_volumes().map(String::as_str))
-        .chain(painted)
-}

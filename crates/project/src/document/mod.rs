@@ -18,7 +18,7 @@ use crate::error::{Noun, ProjectError};
 pub(crate) use entries::is_zero;
 pub use entries::{
     ExtractionEntry, FaultEntry, FigureEntry, HorizonEntry, NoteEntry, ParameterizationEntry, Polarity, ProposalsEntry,
-    Refinement, SceneEntry, Style, TextureEntry, VolumeEntry, WellEntry, volumes_within,
+    Refinement, SceneEntry, Style, TextureEntry, VolumeEntry, WellEntry,
 };
 pub use ids::{Id, Renamed};
 pub use origin::{AttributeKind, Chooser, Origin, Uninterpreted};

@@ -2,7 +2,7 @@
 
 use super::references::{HORIZON, VOLUME};
 use super::{Document, VolumeEntry};
-use crate::error::Noun;
+use crate::error::{Noun, ProjectError};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -204,6 +204,16 @@ impl Document {
                 (!self.horizons.iter().any(|entry| is_chosen(&entry.origin))).then_some(Uninterpreted::ComputedLevels)
             }
         }
+    }
+
+    /// The volume that the present extraction is of; the first one on the project's lattice where that is not recorded.
+    ///
+    /// # Errors
+    /// [`ProjectError::NoVolume`].
+    pub(crate) fn amplitudes(&self) -> Result<&VolumeEntry, ProjectError> {
+        let extracted = self.extraction.as_ref().map(|entry| &entry.volume);
+        let own = || self.volumes.iter().filter(|entry| entry.geometry.is_none());
+        own().find(|entry| extracted == Some(&entry.name)).or_else(|| own().next()).ok_or(ProjectError::NoVolume)
     }
 
     /// The newest volume of geologic time on the project's lattice, wherever it was computed.

@@ -4,6 +4,7 @@
 //! same picks repeated on another extraction. Places are line numbers and vertical values, so that they can be read and
 //! typed.
 
+use super::Document;
 use interp::assembly::{Fingerprint, Operation};
 use interp::holes::FillSettings;
 use interp::refine::{SmoothSettings, TrackSettings};
@@ -27,6 +28,21 @@ pub struct Assembly {
     /// What was drawn or tracked of it without candidates, first to last.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub drawn: Vec<DrawnEntry>,
+}
+
+impl Assembly {
+    /// The numbers of its picks and of what was drawn.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = u32> {
+        self.picks.iter().map(|pick| pick.id).chain(self.drawn.iter().map(|drawn| drawn.id))
+    }
+}
+
+impl Document {
+    /// A number that no pick has yet, and nothing that was drawn.
+    pub(crate) fn next_pick_id(&self) -> u32 {
+        let logs = self.horizons.iter().filter_map(|entry| entry.assembly.as_ref());
+        logs.flat_map(Assembly::numbers).max().unwrap_or(0) + 1
+    }
 }
 
 /// A part of a horizon that was drawn or tracked.

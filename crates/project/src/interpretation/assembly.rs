@@ -4,21 +4,22 @@ use super::order;
 use crate::content;
 use crate::derived::FaultBlocks;
 use crate::document::Document;
-use crate::document::{Assembly, HorizonEntry, Origin, Refinement, VolumeEntry};
+use crate::document::{Assembly, HorizonEntry, Origin, PickEntry, Refinement};
 use crate::error::{Noun, ProjectError};
 use crate::folder::Draft;
 use crate::interpretation::candidates::Candidates;
-use crate::interpretation::drawn;
+use crate::interpretation::finish;
 use crate::interpretation::sheets::HorizonSheets;
 use interp::Forest;
 use interp::assembly::{
     AssemblyError, Conflict, ConflictSettings, NamedSheets, Overlap, Selection, assemble, conflicts, node_above,
+    selected_leaves,
 };
-use interp::holes::{FillSettings, Filled, Hole, fill_holes, find_holes};
+use interp::holes::{Filled, Hole, find_holes};
 use interp::reassembly::{Reassembled, VoxelSheet, reassemble, to_horizon};
-use interp::refine::{SmoothSettings, fill_along};
 use model::{ContactRules, FaultNetwork};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use survey::{Horizon, Progress, SurveyGeometry};
 
@@ -197,6 +198,17 @@ pub fn picked_selection(log: &Assembly, forest: &Forest) -> Result<Selection, As
     Ok(assemble(forest, nodes))
 }
 
+/// Ids of the leaves of each horizon that was picked on the extraction of this key alone, by its name.
+pub(crate) fn picked_leaves(document: &Document, key: &str, trees: &Forest) -> BTreeMap<String, Vec<u32>> {
+    let of_this = |pick: &PickEntry| pick.extraction == key && (1..=trees.leaf_count()).contains(&(pick.leaf as usize));
+    let leaves = |entry: &HorizonEntry| {
+        let log = entry.assembly.as_ref().filter(|log| log.picks.iter().all(of_this))?;
+        let leaves = selected_leaves(trees, &picked_selection(log, trees).ok()?);
+        (!leaves.is_empty()).then(|| (entry.name.clone(), leaves))
+    };
+    document.horizons.iter().filter_map(leaves).collect()
+}
+
 /// The candidates that a log needs: none where nothing was picked on them.
 ///
 /// # Errors
@@ -234,11 +246,12 @@ pub(crate) fn rebuild(
         left_out: 0,
         doubled: Overlap::default(),
     });
-    let made = drawn::add(draft, &mut assembled.sheets, blocks, &log.drawn)?;
+    let made = finish::add_drawn(draft, &mut assembled.sheets, blocks, &log.drawn)?;
     if assembled.sheets.iter().all(|sheet| sheet.nodes() == 0) {
         return Err(ProjectError::NothingLeft { horizon: name.to_owned() });
     }
-    let refined = refined(draft, &mut assembled.sheets, blocks, log.fill.as_ref(), log.smooth.as_ref(), progress)?;
+    let refined =
+        finish::refine(draft, &mut assembled.sheets, blocks, log.fill.as_ref(), log.smooth.as_ref(), progress)?;
     let mut report = report_on(&assembled.sheets, &geometry);
     (report.filled, report.smoothed) = refined;
     report.drawn = made;
@@ -263,41 +276,6 @@ fn from_picks(
     let leaves = log.picks.iter().map(|pick| node_above(forest, pick.leaf, 0)).collect::<Result<Vec<_>, _>>()?;
     let seeds: Vec<u32> = leaves.iter().map(|&leaf| forest.nodes[leaf as usize].triangles.start).collect();
     Ok(reassemble(forest, &chosen, &seeds, blocks))
-}
-
-/// The volume in which reflections are followed: the one that candidates were extracted from, or else the first one on the
-/// project's lattice.
-pub(crate) fn followed(document: &Document) -> Result<&VolumeEntry, ProjectError> {
-    let extracted = document.extraction.as_ref().map(|extraction| &extraction.volume);
-    let own = || document.volumes.iter().filter(|entry| entry.geometry.is_none());
-    own().find(|entry| extracted == Some(&entry.name)).or_else(|| own().next()).ok_or(ProjectError::NoVolume)
-}
-
-/// Fills and smooths sheets; returns what was filled, and the largest change by smoothing in samples. A reflection is
-/// followed in the volume that candidates were extracted from, or else in the first one.
-pub(crate) fn refined(
-    draft: &Draft,
-    sheets: &mut [VoxelSheet],
-    blocks: &FaultNetwork,
-    fill: Option<&FillSettings>,
-    smooth: Option<&SmoothSettings>,
-    progress: &Progress,
-) -> Result<(Option<Filled>, Option<f32>), ProjectError> {
-    let document = &draft.document;
-    let size = document.frame()?.size();
-    let plane = [size[0], size[1]];
-    let filled = match fill {
-        Some(settings) if settings.along_reflection => {
-            let volume = content::open_recorded(draft.root(), followed(document)?, document.frame()?)?;
-            let read = |first, extent| -> Result<_, ProjectError> { Ok(volume.read_box_f32(0, first, extent)?) };
-            Some(fill_along(sheets, size, blocks, settings, read, progress)?)
-        }
-        Some(settings) => Some(fill_holes(sheets, plane, blocks, settings, progress)?),
-        None => None,
-    };
-    let smoothed =
-        smooth.map(|settings| interp::refine::smooth(sheets, plane, blocks, settings, progress)).transpose()?;
-    Ok((filled, smoothed))
 }
 
 /// Counts nodes, traces and holes of sheets.

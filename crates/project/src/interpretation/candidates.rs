@@ -5,7 +5,7 @@
 //! The others are empty there.
 
 use super::extraction;
-use crate::document::{Document, VolumeEntry};
+use crate::document::Document;
 use crate::error::ProjectError;
 use crate::facts::{Facts, Query};
 use glam::{DVec2, Vec3};
@@ -158,13 +158,6 @@ fn near_leaves(stored: &StoredCandidates, voxel: Vec3) -> Result<BTreeSet<u32>, 
         }
     }
     Ok(BTreeSet::new())
-}
-
-/// The volume that the present extraction is of; the first on the project's lattice where that is not recorded.
-pub(crate) fn amplitudes(document: &Document) -> Result<&VolumeEntry, ProjectError> {
-    let extracted = document.extraction.as_ref().map(|entry| entry.volume.as_str());
-    let named = document.volumes.iter().find(|entry| extracted == Some(entry.name.as_str()));
-    named.or_else(|| document.volumes.iter().find(|entry| entry.geometry.is_none())).ok_or(ProjectError::NoVolume)
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@
 use super::bricked::BrickedExtraction;
 pub use super::bricked::{ExtractionPlan, SharedExtraction};
 use crate::content;
-use crate::derived::{Scratch, folder, key_of, remove_resumable, revision};
+use crate::derived::{Scratch, key_of, remove_resumable, revision};
 use crate::document::{Document, VolumeEntry};
 use crate::error::ProjectError;
 use crate::folder::{history, storage};
@@ -72,11 +72,11 @@ fn key_at(path: &Path) -> Option<String> {
 /// # Errors
 /// [`ProjectError::NotExtracted`] if the state names none or it is missing, [`ProjectError::Store`] if it is damaged.
 pub fn candidates_path(root: &Path, document: &Document) -> Result<PathBuf, ProjectError> {
-    let present = folder(root).join(PRESENT);
+    let present = root.join(storage::DERIVED).join(PRESENT);
     let Some(entry) = &document.extraction else {
         return if present.exists() { Ok(present) } else { Err(ProjectError::NotExtracted) };
     };
-    let waiting = folder(root).join(parked(&entry.key));
+    let waiting = root.join(storage::DERIVED).join(parked(&entry.key));
     if waiting.exists() {
         return Ok(waiting);
     }
@@ -91,17 +91,17 @@ pub fn candidates_path(root: &Path, document: &Document) -> Result<PathBuf, Proj
 /// Moves the extraction that the state names to the path of the present one; the former one is stored under its key.
 /// Called by whoever holds the project's lock. If it fails, the extraction is still found by its key.
 pub(crate) fn make_present(root: &Path, document: &Document) {
-    let present = folder(root).join(PRESENT);
+    let present = root.join(storage::DERIVED).join(PRESENT);
     let wanted = document.extraction.as_ref().map(|entry| entry.key.as_str());
     let now = key_at(&present);
     if now.as_deref() == wanted {
         return;
     }
     if let Some(now) = now {
-        let _ = storage::rename(&present, &folder(root).join(parked(&now)));
+        let _ = storage::rename(&present, &root.join(storage::DERIVED).join(parked(&now)));
     }
     if let Some(wanted) = wanted {
-        let waiting = folder(root).join(parked(wanted));
+        let waiting = root.join(storage::DERIVED).join(parked(wanted));
         if waiting.exists() && !present.exists() {
             let _ = storage::rename(&waiting, &present);
         }
@@ -110,7 +110,7 @@ pub(crate) fn make_present(root: &Path, document: &Document) {
 
 /// Removes extractions that no state of the history names any more.
 pub(crate) fn forget_unnamed(root: &Path) {
-    for file in storage::names_in(&folder(root)) {
+    for file in storage::names_in(&root.join(storage::DERIVED)) {
         let key = file.strip_prefix("candidates-").and_then(|rest| rest.strip_suffix(".zarr"));
         if let Some(key) = key.filter(|key| !history::is_named(root, key)) {
             storage::remove(root, &format!("{}/{}", storage::DERIVED, parked(key)));
@@ -120,7 +120,7 @@ pub(crate) fn forget_unnamed(root: &Path) {
 
 /// The path of the present extraction.
 pub fn present_path(root: &Path) -> PathBuf {
-    folder(root).join(PRESENT)
+    root.join(storage::DERIVED).join(PRESENT)
 }
 
 /// The candidates that a state names.
@@ -212,7 +212,7 @@ fn find_stored(
     progress: &Progress,
 ) -> Result<Option<(PathBuf, ExtractReport)>, ProjectError> {
     for file in [parked(key), PRESENT.to_owned()] {
-        let path = folder(root).join(&file);
+        let path = root.join(storage::DERIVED).join(&file);
         let Ok(stored) = StoredCandidates::open(&path) else { continue };
         let Some(report) = report(&stored).filter(|_| stored.info().key == key) else { continue };
         let verified = if how == Stored::Verified { stored.verify(progress) } else { Ok(()) };
@@ -232,7 +232,7 @@ fn find_stored(
 /// whoever holds the project's lock.
 pub(crate) fn replace_damaged(root: &Path, document: &Document) {
     let Some(entry) = &document.extraction else { return };
-    let again = folder(root).join(parked(&entry.key)).exists();
+    let again = root.join(storage::DERIVED).join(parked(&entry.key)).exists();
     if again && key_at(&present_path(root)).as_ref() == Some(&entry.key) {
         storage::remove(root, &format!("{}/{PRESENT}", storage::DERIVED));
         make_present(root, document);
@@ -341,5 +341,5 @@ pub(crate) fn compute(
     if let Some(sentence) = report.nothing_found() {
         progress.warn(&sentence);
     }
-    Ok(answer(folder(root).join(file), report, true))
+    Ok(answer(root.join(storage::DERIVED).join(file), report, true))
 }

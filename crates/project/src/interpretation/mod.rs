@@ -6,8 +6,8 @@
 pub mod assembly;
 mod bricked;
 pub mod candidates;
-pub(crate) mod drawn;
 pub mod extraction;
+pub(crate) mod finish;
 pub(crate) mod order;
 pub mod proposals;
 mod sheets;

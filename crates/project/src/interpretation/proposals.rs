@@ -6,12 +6,12 @@
 //! them. A fault that the project already has is reported but not proposed.
 
 use crate::content;
-use crate::derived::{FaultBlocks, Scratch, folder, key_of, revision};
+use crate::derived::{FaultBlocks, Scratch, key_of, revision};
 use crate::document::{Document, Origin};
 use crate::error::{Noun, ProjectError};
 use crate::facts::Facts;
 use crate::folder::{history, storage};
-use crate::interpretation::candidates::{Candidates, amplitudes};
+use crate::interpretation::candidates::Candidates;
 use ::time::{Cut, FoundFault, TimeSettings, find_faults};
 use attribute::{DipSettings, SemblanceSettings, dip, semblance};
 use interp::faults::{Evidence, Proposal, ProposeSettings, Repeat, propose_faults};
@@ -121,7 +121,7 @@ fn file_of(key: &str) -> String {
 
 /// The path of the proposals of a state and settings.
 pub fn path(root: &Path, document: &Document, settings: &ProposeSettings) -> PathBuf {
-    folder(root).join(file_of(&whole_key(document, settings)))
+    root.join(storage::DERIVED).join(file_of(&whole_key(document, settings)))
 }
 
 /// The key with the candidates, where there are any.
@@ -211,7 +211,7 @@ fn from_candidates(
     }
     let key = whole_key(document, settings);
     // The key relies on the hashes that were recorded.
-    content::open_recorded(root, amplitudes(document)?, geometry)?;
+    content::open_recorded(root, document.amplitudes()?, geometry)?;
     let blocks = Facts::of(root, document).get(&FaultBlocks, progress)?;
     if let Some(known) = read(root, document, &key) {
         return Ok((key, known));
@@ -234,7 +234,7 @@ fn new_faults(
 ) -> Result<Vec<FoundFault>, ProjectError> {
     memory::check("finding faults", &document.frame()?.size(), FINDING_BYTES)?;
     let candidates = Candidates::load(Facts::of(root, document), progress)?;
-    let seismic = content::read_volume(root, amplitudes(document)?, document.frame()?, progress)?;
+    let seismic = content::read_volume(root, document.amplitudes()?, document.frame()?, progress)?;
     let fewest = TimeSettings::default().fewest_vertices;
     let found = find_faults(&seismic, &candidates.forest.surfaces, fewest, progress)?;
     let drawn = Cut::of_network(blocks, seismic.size());
@@ -289,7 +289,7 @@ fn write(root: &Path, document: &Document, key: &str, mut proposals: Proposals) 
 
 /// The proposals stored under a key, if there is an intact file.
 fn read(root: &Path, document: &Document, key: &str) -> Option<Proposals> {
-    let text = file::read_text(&folder(root).join(file_of(key)), file::MAX_INTERPRETATION_BYTES).ok()?;
+    let text = file::read_text(&root.join(storage::DERIVED).join(file_of(key)), file::MAX_INTERPRETATION_BYTES).ok()?;
     let mut proposals = serde_json::from_str(&text).ok()?;
     call(&mut proposals, document.names_of_ids());
     Some(proposals)
@@ -310,7 +310,7 @@ pub(crate) fn verify(path: &Path) -> Result<(), ProjectError> {
 
 /// Removes proposals that no state of the history names any more.
 pub(crate) fn forget_unnamed(root: &Path) {
-    for file in storage::names_in(&folder(root)) {
+    for file in storage::names_in(&root.join(storage::DERIVED)) {
         let key = file.strip_prefix("fault-proposals-").and_then(|rest| rest.strip_suffix(".json"));
         if let Some(key) = key.filter(|key| !history::is_named(root, key)) {
             storage::remove(root, &format!("{}/{}", storage::DERIVED, file_of(key)));

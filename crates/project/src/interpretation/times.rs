@@ -7,7 +7,7 @@ use crate::derived::{FaultBlocks, blocks_key, key_of};
 use crate::document::{Document, HorizonEntry, Origin, VolumeEntry};
 use crate::error::ProjectError;
 use crate::facts::{Facts, Query};
-use crate::interpretation::candidates::{Candidates, amplitudes};
+use crate::interpretation::candidates::Candidates;
 use ::time::{Cut, Interpretation, Jump, KnownHorizon, Place, Reflections};
 use interp::reassembly::from_horizon;
 use model::FaultNetwork;
@@ -214,7 +214,7 @@ pub fn read_time(
 ) -> Result<(Volume<f32>, Volume<f32>), ProjectError> {
     let frame = document.frame()?;
     let tau = content::read_volume(root, time_volume(document)?, frame, progress)?;
-    Ok((tau, content::read_volume(root, amplitudes(document)?, frame, progress)?))
+    Ok((tau, content::read_volume(root, document.amplitudes()?, frame, progress)?))
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! Each part is a [`Query`], so that whoever loads again, for another scene or state, computes only what has changed.
 
 use super::PickedShare;
-use crate::document::{Document, volumes_within};
+use crate::document::Document;
 use crate::error::ProjectError;
 use crate::facts::{Facts, Query};
 use crate::interpretation::solid::{self, SolidModel};
@@ -369,7 +369,7 @@ impl<'a> Request<'a> {
         let is_data = matches!(self.extent, Extent::Data(_));
         let scalars = functions.scalars.iter().filter(|_| !is_data).map(|function| function.volume.as_str());
         let raw = functions.raw.iter().filter(|_| is_data || self.scene.blend > 0.0 || !has_rock);
-        scalars.chain(raw.map(|raw| raw.volume.as_str())).chain(volumes_within(self.scene)).collect()
+        scalars.chain(raw.map(|raw| raw.volume.as_str())).chain(self.scene.media.volumes()).collect()
     }
 }
 
@@ -422,7 +422,7 @@ pub fn load(facts: Facts<'_>, request: &Request<'_>, progress: &Progress) -> Res
         }
         Extent::Data(places) => places,
     };
-    let rendered: Vec<&str> = volumes_within(scene).collect();
+    let rendered: Vec<&str> = scene.media.volumes().collect();
     let reading = Reading { bytes: request.volume_bytes, places, small_bytes: request.small_bytes, whole: &rendered };
     let volumes = read_volumes(facts, &request.volumes(&functions, rock.is_some()), &reading, progress)?;
     let candidates = ShownCandidates::load(facts, scene, rock.as_deref(), progress)?;

@@ -10,16 +10,14 @@
 //! In memory: five bytes a voxel, and the trees without their triangles.
 
 use crate::derived;
-use crate::document::{Document, HorizonEntry, PickEntry};
 use crate::error::{Noun, ProjectError};
 use crate::facts::{Facts, Query};
-use crate::interpretation::assembly::picked_selection;
+use crate::interpretation::assembly::picked_leaves;
 use crate::interpretation::extraction;
 use crate::pictures::horizon_distance::{self, FARTHEST};
 use crate::pictures::load::Rock;
 use glam::Vec3;
 use interp::Forest;
-use interp::assembly::selected_leaves;
 use render::media::Colouring;
 use render::{CandidateVolume, FaceData, Scene};
 use std::collections::BTreeMap;
@@ -103,7 +101,10 @@ impl ShownCandidates {
         let asks_leaves = scene.face_data.shows_candidates() || horizons.iter().any(|horizon| horizon.name.is_none());
         let by_level = scene.tree_level > 0
             && (scene.face_data == FaceData::Leaves || horizons.iter().any(|h| h.colouring == Colouring::ByLeaf));
-        let stored = stored(facts, size, progress)?;
+        let stored = match extraction::open(facts.root, document) {
+            Err(ProjectError::NotExtracted) => None,
+            found => Some(found?),
+        };
         if stored.is_none() && (by_level || asks_leaves && rock.is_none()) {
             return Err(ProjectError::NotExtracted);
         }
@@ -112,7 +113,7 @@ impl ShownCandidates {
             None => Arc::default(),
         };
         let key = stored.as_ref().map(|stored| stored.info().key.clone());
-        let picked = key.as_ref().map(|key| picked(document, key, &trees)).unwrap_or_default();
+        let picked = key.as_ref().map(|key| picked_leaves(document, key, &trees)).unwrap_or_default();
         let is_picked = |index: &usize| picked.contains_key(&document.horizons[*index].name);
         let mut unpicked: Vec<usize> = named.iter().copied().filter(|index| !is_picked(index)).collect();
         let wanted = stored.as_ref().filter(|_| asks_leaves || unpicked.len() < named.len());
@@ -204,17 +205,6 @@ impl ShownCandidates {
     }
 }
 
-/// Ids of the leaves of each horizon that was picked on the extraction of this key alone, by its name.
-fn picked(document: &Document, key: &str, trees: &Forest) -> BTreeMap<String, Vec<u32>> {
-    let of_this = |pick: &PickEntry| pick.extraction == key && (1..=trees.leaf_count()).contains(&(pick.leaf as usize));
-    let leaves = |entry: &HorizonEntry| {
-        let log = entry.assembly.as_ref().filter(|log| log.picks.iter().all(of_this))?;
-        let leaves = selected_leaves(trees, &picked_selection(log, trees).ok()?);
-        (!leaves.is_empty()).then(|| (entry.name.clone(), leaves))
-    };
-    document.horizons.iter().filter_map(leaves).collect()
-}
-
 /// The trees of an extraction without vertices and triangles.
 struct Trees<'a>(&'a StoredCandidates);
 
@@ -295,18 +285,4 @@ impl Query for ShownVoxels<'_> {
     fn bytes(voxels: &CandidateBox) -> usize {
         voxels.distance.len() + size_of_val(&voxels.leaf[..])
     }
-}
-
-/// The project's extraction, if there is one on its lattice.
-fn stored(facts: Facts<'_>, size: [usize; 3], progress: &Progress) -> Result<Option<StoredCandidates>, ProjectError> {
-    let stored = match extraction::open(facts.root, facts.document) {
-        Ok(stored) => stored,
-        Err(ProjectError::NotExtracted) => return Ok(None),
-        Err(error) => return Err(error),
-    };
-    if stored.info().size != size {
-        progress.warn("the horizon candidates are of another lattice and are not shown; extract them again");
-        return Ok(None);
-    }
-    Ok(Some(stored))
 }

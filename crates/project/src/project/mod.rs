@@ -120,6 +120,12 @@ impl Project {
         &self.root
     }
 
+    /// What it is called: the name of its folder, without the ending.
+    pub fn title(&self) -> String {
+        let stem = self.root.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        stem.unwrap_or_else(|| "Petroglyph".to_owned())
+    }
+
     /// The state.
     pub fn document(&self) -> &Document {
         &self.document

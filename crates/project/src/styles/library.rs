@@ -4,7 +4,7 @@ use crate::content;
 use crate::document::Document;
 use crate::error::ProjectError;
 use std::path::Path;
-use ttf::TextureLibrary;
+use ttf::{LayerStyle, LayerTtf, TextureLibrary};
 
 /// The built-in patterns and the tiles of the project in `root`.
 ///
@@ -17,4 +17,14 @@ pub fn pattern_library(root: &Path, document: &Document) -> Result<TextureLibrar
         library.set_tile_mm(index, entry.tile_mm);
     }
     Ok(library)
+}
+
+/// The styles of the layers, youngest first: their own, or the default ones.
+pub fn layer_styles(document: &Document, library: &TextureLibrary) -> Vec<LayerStyle> {
+    let names = document.layers();
+    let style = |(index, name): (usize, &String)| match document.style.layers.style(name) {
+        Some(style) => style.clone(),
+        None => LayerTtf::default_style(name, names.len() - 1 - index, library),
+    };
+    names.iter().enumerate().map(style).collect()
 }

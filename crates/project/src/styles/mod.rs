@@ -4,5 +4,5 @@
 mod library;
 mod raw_colour;
 
-pub use library::pattern_library;
+pub use library::{layer_styles, pattern_library};
 pub use raw_colour::{raw_colour, transfer_functions};

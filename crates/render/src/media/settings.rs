@@ -264,8 +264,14 @@ impl Media {
         self.surroundings.iter().chain(&self.cut_outs)
     }
 
+    /// The names of the volumes that are shown: those of media and isosurfaces, and those painted on horizons.
+    pub fn volumes(&self) -> impl Iterator<Item = &str> {
+        let painted = self.horizons.iter().filter_map(|horizon| Some(&horizon.paint.as_ref()?.volume));
+        self.all().map(|medium| &medium.volume).chain(painted).chain(self.isosurface_volumes()).map(String::as_str)
+    }
+
     /// The names of the volumes that have isosurfaces.
-    pub fn isosurface_volumes(&self) -> impl Iterator<Item = &String> {
+    fn isosurface_volumes(&self) -> impl Iterator<Item = &String> {
         self.isosurfaces.iter().filter_map(|surface| match &surface.of {
             IsosurfaceSource::Volume(name) => Some(name),
             IsosurfaceSource::Depth => None,

@@ -7,6 +7,7 @@ use crate::work::Rocks;
 use eframe::egui::{Button, Ui};
 use project::command::{Command, SetLayer};
 use project::pictures::figures::{NamedConfusion, confusions};
+use project::styles;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use ttf::Preset;
@@ -98,7 +99,10 @@ impl Legibility {
         let (scene, context) = (scene.clone(), ui.ctx().clone());
         std::thread::spawn(move || {
             // What cannot be read here is told where the picture is drawn.
-            let found = confusions(&root, &document, rocks.rock.as_deref(), &scene).unwrap_or_default();
+            let found = styles::pattern_library(&root, &document).and_then(|library| {
+                confusions(rocks.rock.as_deref(), &styles::layer_styles(&document, &library), &library, &scene)
+            });
+            let found = found.unwrap_or_default();
             if sender.send(found).is_ok() {
                 context.request_repaint();
             }

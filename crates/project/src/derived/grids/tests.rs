@@ -98,7 +98,7 @@ fn only_the_latest_few_are_kept() {
         let made = SystemTime::UNIX_EPOCH + Duration::from_secs(1_000_000 + 10 * n as u64);
         File::options().write(true).open(GRIDS.path(folder.path(), &key)).unwrap().set_modified(made).unwrap();
     }
-    assert_eq!(fs::read_dir(super::super::folder(folder.path())).unwrap().count(), KEPT);
+    assert_eq!(fs::read_dir(folder.path().join(storage::DERIVED)).unwrap().count(), KEPT);
     for n in 0..KEPT + 3 {
         assert_eq!(load_grids(folder.path(), &format!("{n}")).is_some(), n >= 3, "{n}");
     }

@@ -3,7 +3,7 @@
 //! What can be refused is refused before the first is made, and none has its name before all are made: a figure that
 //! cannot be made leaves the folder as it was.
 
-use super::{FigureSettings, InterpreterView, NamedConfusion, interpreted, make, title, write};
+use super::{FigureSettings, InterpreterView, NamedConfusion, interpreted, make, write};
 use crate::Project;
 use crate::document::{Document, FigureEntry};
 use crate::error::ProjectError;
@@ -75,11 +75,12 @@ fn stage(
     for &(file, format, ref figure) in meant {
         let fonts = fonts.to_vec();
         let settings = FigureSettings { format, device, volume_bytes, fonts, picture_dpi: None };
-        let made = make(project, figure, &InterpreterView::default(), &settings, progress).map_err(of_figure(file))?;
-        rock = made.rock.or(rock);
+        let (made, loaded) =
+            make(project, figure, &InterpreterView::default(), &settings, progress).map_err(of_figure(file))?;
+        rock = loaded.rock.or(rock);
         let path = out.join(file);
         let replacement = Replacement::of(&path)?;
-        write(&made.page, format, replacement.path(), figure.dpi, &title(project))?;
+        write(&made.page, format, replacement.path(), figure.dpi, &project.title())?;
         let size_px = figure.size_px();
         let (dpi, device, look_alikes) = (figure.dpi, made.device, made.confusions);
         staged.push((replacement, WrittenFigure { file: path, size_px, dpi, device, look_alikes }));

@@ -1,14 +1,10 @@
 //! Layers of a picture that are neighbours and cannot be told apart, by name.
 
-use super::layer_styles;
-use crate::document::Document;
 use crate::error::ProjectError;
 use crate::pictures::load::Rock;
-use crate::styles;
 use render::{FaceData, Faces, Scene};
 use serde::Serialize;
-use std::path::Path;
-use ttf::{Confusion, Vision};
+use ttf::{Confusion, LayerStyle, TextureLibrary, Vision};
 
 /// Two layers that are neighbours and cannot be told apart.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -22,21 +18,19 @@ pub struct NamedConfusion {
 }
 
 /// The layers that touch in the block or follow one another in the column and cannot be told apart by a colour-blind
-/// reader, in greyscale or photocopied; none where the scene shows no patterns.
+/// reader, in greyscale or photocopied; none where the scene shows no patterns. `layers` are the styles of all, youngest first.
 ///
 /// # Errors
 /// The patterns of the project cannot be read.
 pub fn confusions(
-    root: &Path,
-    document: &Document,
     rock: Option<&Rock>,
+    layers: &[LayerStyle],
+    library: &TextureLibrary,
     scene: &Scene,
 ) -> Result<Vec<NamedConfusion>, ProjectError> {
     let is_illustrated = scene.blend < 1.0 && scene.face_data == FaceData::Rock && scene.media.faces != Faces::None;
     let Some(rock) = rock.filter(|_| is_illustrated) else { return Ok(Vec::new()) };
-    let library = styles::pattern_library(root, document)?;
-    let layers = layer_styles(document, &library);
-    let found = ttf::confusions(&layers, &rock.neighbours(scene), scene.preset, &library)?;
+    let found = ttf::confusions(layers, &rock.neighbours(scene), scene.preset, library)?;
     let name = |position: usize| layers[position].layer.clone();
     let named = found.into_iter().map(|confusion| NamedConfusion {
         layers: confusion.layers.map(name),

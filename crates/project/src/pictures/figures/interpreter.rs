@@ -5,6 +5,7 @@ use crate::content;
 use crate::document::FaultEntry;
 use crate::error::ProjectError;
 use crate::interpretation::{HorizonSheets, proposals};
+use figure::draw::NamedColour;
 use figure::interpretation::{
     DrawnInterpretation, DrawnSelection, FaultMesh, PickedSheets, SheetHole, Stick, TraceSheet,
 };
@@ -69,17 +70,24 @@ impl<'a> InterpreterPicks<'a> {
     /// Reads the interpretation.
     pub(super) fn read(
         project: &Project,
+        colours: &[NamedColour],
         view: &'a InterpreterView,
         progress: &Progress,
     ) -> Result<Self, ProjectError> {
         let (root, document) = (project.root(), project.document());
         let geometry = document.frame()?;
         let [nx, ny, _] = geometry.size();
+        let made = document.sticks.iter().flat_map(|fault| {
+            let colour = document.faults.iter().find(|entry| entry.name == fault.fault).map_or(STICK, FaultEntry::ink);
+            fault.sticks.iter().map(move |stick| (stick, colour))
+        });
+        let drawn = view.sticks.iter().map(|(stick, colour)| (stick, *colour));
+        let sticks = made.chain(drawn).map(|(stick, colour)| Stick { places: voxels(stick, geometry), colour });
         let mut horizons = Vec::new();
-        for (entry, named) in document.horizons.iter().zip(super::horizons(document)) {
+        for (entry, named) in document.horizons.iter().zip(colours) {
             let sheets = project.facts().get(&HorizonSheets(entry), progress)?;
             let holes = find_holes(&sheets, [nx, ny]);
-            horizons.push(Picked { name: named.name, colour: named.colour, sheets, holes });
+            horizons.push(Picked { name: named.name.clone(), colour: named.colour, sheets, holes });
         }
         let faults = document.faults.iter().map(|entry| {
             let fault = content::read_fault(root, entry)?;
@@ -94,12 +102,6 @@ impl<'a> InterpreterPicks<'a> {
             let triangles = content::fault_triangles(&proposal.fault(&proposal.name), geometry);
             Mesh { name: proposal.name, colour: Colour::BLACK, triangles }
         });
-        let made = document.sticks.iter().flat_map(|fault| {
-            let colour = document.faults.iter().find(|entry| entry.name == fault.fault).map_or(STICK, FaultEntry::ink);
-            fault.sticks.iter().map(move |stick| (stick, colour))
-        });
-        let drawn = view.sticks.iter().map(|(stick, colour)| (stick, *colour));
-        let sticks = made.chain(drawn).map(|(stick, colour)| Stick { places: voxels(stick, geometry), colour });
         Ok(Self {
             view,
             faults: faults.collect::<Result<_, ProjectError>>()?,

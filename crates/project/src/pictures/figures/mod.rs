@@ -15,13 +15,13 @@ pub use batch::{WrittenFigure, make_all};
 pub use confusion::{NamedConfusion, confusions};
 pub use fonts::{FontFile, faces, font_files};
 pub use interpreter::{InterpreterView, borrowed};
-pub use output::{title, write};
+pub use output::write;
 
 use crate::Project;
 use crate::content;
 use crate::document::{Document, WellEntry};
 use crate::error::ProjectError;
-use crate::pictures::load::{self, Extent, Loaded, Request, Rock, Stage};
+use crate::pictures::load::{self, Extent, Loaded, Request, Stage};
 use crate::pictures::{Device, Painter};
 use crate::styles;
 use figure::cut::{SectionKind, SectionSource};
@@ -41,7 +41,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use survey::{Progress, SurveyGeometry, Well};
 use system::memory;
-use ttf::{LayerStyle, LayerTtf, Preset, TextureLibrary};
+use ttf::{LayerStyle, Preset, TextureLibrary};
 
 /// The page of a figure, and how it was made.
 pub struct MadeFigure {
@@ -53,8 +53,6 @@ pub struct MadeFigure {
     pub stages: Vec<Stage>,
     /// The neighbouring layers of its blocks that cannot be told apart.
     pub confusions: Vec<NamedConfusion>,
-    /// The model and its parameterization, if they were needed: while they are held, the next figure finds them.
-    pub rock: Option<Arc<Rock>>,
 }
 
 /// Settings for making a figure.
@@ -79,7 +77,8 @@ const LONGEST_SIDE: u32 = 1 << 15;
 /// Memory that is needed for each pixel of a page: its colour, and once more in the file.
 const PIXEL_BYTES: usize = 8;
 
-/// Loads what a figure needs, and makes its page. `view` is what only an interpreter's view knows.
+/// Loads what a figure needs, and makes its page. `view` is what only an interpreter's view knows. While what was loaded is
+/// held, the next figure finds it.
 ///
 /// # Errors
 /// Data are damaged, a place or horizon does not exist, the page has no room, or the user cancelled.
@@ -89,7 +88,7 @@ pub fn make(
     view: &InterpreterView,
     settings: &FigureSettings,
     progress: &Progress,
-) -> Result<MadeFigure, ProjectError> {
+) -> Result<(MadeFigure, Loaded), ProjectError> {
     faces(project, &settings.fonts)?.scope(|| lettered(project, figure, view, settings, progress))
 }
 
@@ -100,7 +99,7 @@ fn lettered(
     view: &InterpreterView,
     settings: &FigureSettings,
     progress: &Progress,
-) -> Result<MadeFigure, ProjectError> {
+) -> Result<(MadeFigure, Loaded), ProjectError> {
     let document = project.document();
     let figure = &settled(figure, document);
     memory::check("the page", &figure.size_px().map(|side| side.min(LONGEST_SIDE) as usize), PIXEL_BYTES)?;
@@ -118,7 +117,7 @@ fn lettered(
     };
     let request = Request::new(&scene).of(extent).within(settings.volume_bytes);
     let page = |loaded: &Loaded| page_of(project, figure, (&scene, loaded), view, settings, &mut painter, progress);
-    Ok(load::drawn(project.facts(), &request, progress, page)?.0)
+    load::drawn(project.facts(), &request, progress, page)
 }
 
 /// Whether the rock of a figure is painted, and not traced.
@@ -137,6 +136,10 @@ fn page_of(
     progress: &Progress,
 ) -> Result<MadeFigure, ProjectError> {
     let document = project.document();
+    let horizons = horizons(document);
+    let has_wells = figure.parts.iter().any(|part| matches!(part, Part::Correlation(_)));
+    let names_wells = figure.annotate.contains(&Annotation::Wells);
+    let wells = if has_wells || names_wells { wells_of(project)? } else { Vec::new() };
     let stages: Vec<Stage>;
     // Sections and maps of measured data need the model without the coordinates of its layers.
     let model = match &loaded.rock {
@@ -151,32 +154,31 @@ fn page_of(
             model
         }
     };
-    let picks = if figure.interpretation { Some(InterpreterPicks::read(project, view, progress)?) } else { None };
+    let picks =
+        if figure.interpretation { Some(InterpreterPicks::read(project, &horizons, view, progress)?) } else { None };
     let shown = picks.as_ref().map(|picks| {
         let mut shown = picks.borrowed();
         shown.horizons.retain(|horizon| !figure.hides(horizon.name));
         shown.faults.retain(|fault| !figure.hides(fault.name));
         shown
     });
-    let has_wells = figure.parts.iter().any(|part| matches!(part, Part::Correlation(_)));
-    let names_wells = figure.annotate.contains(&Annotation::Wells);
     let library = &styles::pattern_library(project.root(), document)?;
-    let mut layers = layer_styles(document, library);
-    layers.iter_mut().for_each(|style| *style = figure.printed_in().layer(style));
-    let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
-    let mut data = loaded.inputs(&volumes, &wells);
+    let styles = styles::layer_styles(document, library);
+    let layers: Vec<LayerStyle> = styles.iter().map(|style| figure.printed_in().layer(style)).collect();
+    let (volumes, paths) = (loaded.named_volumes(), loaded.well_paths());
+    let mut data = loaded.inputs(&volumes, &paths);
     data.model = data.model.or(model.as_deref());
     let inputs = FigureInputs {
         source: SectionSource { data, raw: loaded.raw.as_ref() },
-        horizons: &horizons(document),
+        horizons: &horizons,
         strata: &document.stratigraphy().horizons,
-        wells: &if has_wells || names_wells { wells_of(project)? } else { Vec::new() },
+        wells: &wells,
         faults: &document.faults.iter().map(|entry| entry.name.clone()).collect::<Vec<_>>(),
         fault_colours: &document.faults.iter().map(|entry| entry.colour).collect::<Vec<_>>(),
         layers: &layers,
         library: Some(library),
         interpretation: shown.as_ref(),
-        provenance: &format!("Petroglyph {} · {}", env!("CARGO_PKG_VERSION"), title(project)),
+        provenance: &format!("Petroglyph {} · {}", env!("CARGO_PKG_VERSION"), project.title()),
     };
     let preset = figure.printed_in();
     let share = settings.picture_dpi.map_or(1.0, |dpi| (dpi / figure.dpi).min(1.0));
@@ -186,8 +188,8 @@ fn page_of(
     warn_of_boxes(&page, progress);
     let device = painter.painter.as_ref().map(|painter| painter.device().to_owned());
     let stages = painter.stages;
-    let confusions = confusions(project.root(), document, loaded.rock.as_deref(), scene)?;
-    Ok(MadeFigure { page, device, stages, confusions, rock: loaded.rock.clone() })
+    let confusions = confusions(loaded.rock.as_deref(), &styles, library, scene)?;
+    Ok(MadeFigure { page, device, stages, confusions })
 }
 
 /// The figure with what its sections show: measured data where there are some, and the rock otherwise.
@@ -367,14 +369,4 @@ pub fn horizons(document: &Document) -> Vec<NamedColour> {
         colour: figure::style::horizon_colour(entry.own_colour(), index),
     });
     named.collect()
-}
-
-/// The styles of the layers, youngest first: their own, or the default ones.
-pub fn layer_styles(document: &Document, library: &TextureLibrary) -> Vec<LayerStyle> {
-    let names = document.layers();
-    let style = |(index, name): (usize, &String)| match document.style.layers.style(name) {
-        Some(style) => style.clone(),
-        None => LayerTtf::default_style(name, names.len() - 1 - index, library),
-    };
-    names.iter().enumerate().map(style).collect()
 }

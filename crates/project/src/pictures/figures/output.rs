@@ -1,17 +1,10 @@
 //! Files that pages are written to.
 
-use crate::Project;
 use crate::error::ProjectError;
 use crate::folder;
 use page::FileFormat;
 use page::list::DisplayList;
 use std::path::Path;
-
-/// What readers of a vector figure announce: the project's name.
-pub fn title(project: &Project) -> String {
-    let stem = project.root().file_stem().map(|stem| stem.to_string_lossy().into_owned());
-    stem.unwrap_or_else(|| "Petroglyph".to_owned())
-}
 
 /// Writes a page, completely or not at all. `dpi` is the resolution of pixels; `title` is what readers of vector
 /// formats announce.
