@@ -47,7 +47,7 @@ use survey::{Cancelled, Progress};
 pub use split::Subtree;
 
 /// Largest count of triangles of a forest: the distance search uses two bits of a leaf id for itself.
-pub const MAX_TRIANGLES: usize = (1 << 30) - 1;
+pub(crate) const MAX_TRIANGLES: usize = (1 << 30) - 1;
 
 /// Settings of surface trees.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -196,7 +196,7 @@ impl Forest {
 
     /// Id of the leaf that contains a triangle.
     #[inline]
-    pub fn leaf_of_triangle(&self, triangle: u32) -> u32 {
+    pub(crate) fn leaf_of_triangle(&self, triangle: u32) -> u32 {
         self.leaves.partition_point(|&leaf| self.nodes[leaf as usize].triangles.start <= triangle) as u32
     }
 
@@ -206,7 +206,7 @@ impl Forest {
     }
 
     /// Whether a node is a whole surface with fewer than `min_leaf_triangles` triangles.
-    pub fn is_undersized(&self, node: u32, min_leaf_triangles: u32) -> bool {
+    pub(crate) fn is_undersized(&self, node: u32, min_leaf_triangles: u32) -> bool {
         let node = &self.nodes[node as usize];
         node.parent.is_none() && (node.triangles.len() as u64) < u64::from(min_leaf_triangles)
     }

@@ -251,7 +251,7 @@ pub fn caption(columns: &[Column], geometry: &SurveyGeometry) -> String {
 }
 
 /// What the axis of a panel counts; `name` is what it counts without a datum, such as "Depth (m)".
-pub fn axis_name(name: &str, part: &CorrelationPart, columns: &[Column]) -> String {
+pub(crate) fn axis_name(name: &str, part: &CorrelationPart, columns: &[Column]) -> String {
     let Some(datum) = &part.datum else { return name.to_owned() };
     let mut met = columns.iter().flat_map(|column| &column.markers).map(|marker| &marker.name);
     let datum = met.find(|known| is_same_surface(known, datum)).unwrap_or(datum);
@@ -263,7 +263,7 @@ pub fn axis_name(name: &str, part: &CorrelationPart, columns: &[Column]) -> Stri
 
 /// Where a layer lies in a column, as it is drawn: its first piece, or the place where it wedges out; `None` where the
 /// well does not reach it.
-pub fn place_of_layer(column: &Column, layer: usize) -> Option<[f64; 2]> {
+pub(crate) fn place_of_layer(column: &Column, layer: usize) -> Option<[f64; 2]> {
     let own = column.intervals.iter().find(|interval| interval.layer == layer);
     let wedge = || {
         let below = column.intervals.iter().find(|interval| interval.layer > layer)?;
@@ -274,7 +274,7 @@ pub fn place_of_layer(column: &Column, layer: usize) -> Option<[f64; 2]> {
 
 /// Where a surface lies in a column, as it is drawn, and whether it is met there; a horizon that is missing lies where
 /// the layer below it wedges out.
-pub fn place_of_surface(column: &Column, surface: &Marker) -> Option<(f64, bool)> {
+pub(crate) fn place_of_surface(column: &Column, surface: &Marker) -> Option<(f64, bool)> {
     let is_it = |marker: &&Marker| match surface.horizon {
         Some(horizon) => marker.horizon == Some(horizon),
         None => marker.horizon.is_none() && is_same_surface(&marker.name, &surface.name),

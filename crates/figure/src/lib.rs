@@ -27,7 +27,7 @@ pub mod error;
 pub mod interpretation;
 pub mod make;
 pub mod map;
-pub mod spec;
+mod spec;
 pub mod style;
 
 pub use annotation::Annotation;

@@ -6,33 +6,33 @@ pub use page::style::{INK, LEAST_TEXT_PT, TEXT_PT};
 use ttf::Colour;
 
 /// Font size of titles, points.
-pub const TITLE_PT: f64 = 9.5;
+pub(crate) const TITLE_PT: f64 = 9.5;
 /// Font size of numbers along axes, points.
 pub const NUMBER_PT: f64 = 7.0;
 
 /// Numbers along axes and captions.
-pub const QUIET_INK: Colour = Colour::new(0x57, 0x51, 0x4a);
+pub(crate) const QUIET_INK: Colour = Colour::new(0x57, 0x51, 0x4a);
 /// Thin frames and rules between panels.
-pub const RULE_INK: Colour = Colour::new(0x8c, 0x86, 0x7e);
+pub(crate) const RULE_INK: Colour = Colour::new(0x8c, 0x86, 0x7e);
 /// Where other sections run: ochre, as rock paintings have it.
-pub const ACCENT: Colour = Colour::new(0xa4, 0x4a, 0x1c);
+pub(crate) const ACCENT: Colour = Colour::new(0xa4, 0x4a, 0x1c);
 /// Proposed faults.
-pub const PROPOSAL: Colour = Colour::new(0xb0, 0x1e, 0x1e);
+pub(crate) const PROPOSAL: Colour = Colour::new(0xb0, 0x1e, 0x1e);
 /// Where a section has no data.
-pub const NO_DATA: Colour = Colour::new(0xdc, 0xdc, 0xda);
+pub(crate) const NO_DATA: Colour = Colour::new(0xdc, 0xdc, 0xda);
 
 /// Width of frames and ticks, points.
-pub const FRAME_PT: f64 = 0.5;
+pub(crate) const FRAME_PT: f64 = 0.5;
 /// Length of ticks, points.
-pub const TICK_PT: f64 = 2.6;
+pub(crate) const TICK_PT: f64 = 2.6;
 /// Width of horizons on sections, points.
-pub const HORIZON_PT: f64 = 1.2;
+pub(crate) const HORIZON_PT: f64 = 1.2;
 /// Width of faults on sections, points: the heaviest lines of a figure.
-pub const FAULT_PT: f64 = 1.45;
+pub(crate) const FAULT_PT: f64 = 1.45;
 /// How much wider the light rim under a line is, points.
-pub const RIM_PT: f64 = 1.2;
+pub(crate) const RIM_PT: f64 = 1.2;
 /// Opacity of that rim.
-pub const RIM_OPACITY: f32 = 0.6;
+pub(crate) const RIM_OPACITY: f32 = 0.6;
 
 /// Colours that horizons get in turn, wherever they are drawn: told apart by most eyes, and on grey.
 pub const HORIZON_COLOURS: [Colour; 8] = [

@@ -37,7 +37,7 @@ mod tests;
 mod traces;
 
 pub use known::Repeat;
-pub use pairs::Pair;
+pub(crate) use pairs::Pair;
 
 use crate::reassembly::VoxelSheet;
 use glam::{DVec2, DVec3};

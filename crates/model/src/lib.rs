@@ -68,7 +68,7 @@ mod structural;
 
 pub use contacts::ContactRules;
 pub use levels::{
-    CutLattice, Equations, LevelSurface, NodeBox, Terms, bodies_overlap, check_surface, hole_m, is_closed, resampled,
+    CutLattice, Equations, LevelSurface, NodeBox, bodies_overlap, check_surface, hole_m, is_closed, resampled,
     surface_through,
 };
 pub use network::{BlockSignature, FaultCrossing, FaultNetwork, FaultSurface, Truncation, drawn_crossing};

@@ -266,7 +266,8 @@ impl StructuralModel {
     }
 
     /// Number of interpreted nodes that `horizon` has in `block`; 0 when it was placed there without data.
-    pub fn own_nodes(&self, horizon: usize, block: u16) -> usize {
+    #[cfg(test)]
+    pub(crate) fn own_nodes(&self, horizon: usize, block: u16) -> usize {
         self.sheets[horizon][usize::from(block)].own
     }
 

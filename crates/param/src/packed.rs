@@ -15,8 +15,7 @@
 //! = 1 on a top may still read as the layer above, which is a property of the paper's packing.
 //!
 //! # Lookup
-//! [`PackedVolume::lookup_linear`] is plain trilinear interpolation, which is wrong in every cell that
-//! straddles a boundary. [`PackedVolume::lookup_extrapolated`] follows 3.4. The paper does not define the id
+//! Plain trilinear interpolation is wrong in every cell that straddles a boundary. [`PackedVolume::lookup_extrapolated`] follows 3.4. The paper does not define the id
 //! of the lookup position, where interpolation is what fails; ours is the id of the nearest corner. Corners
 //! with another id are invalid. Each of them gets a value extrapolated linearly from its two neighbours in +x
 //! if both have the id of the position, else from those in −x, +y, −y, +z, −z. Where none works the stored
@@ -119,7 +118,7 @@ impl PackedVolume {
 
     /// The ids that a packed value carries: floors on half-open intervals, clamped. [`NO_REGION`] for NaN.
     #[inline]
-    pub fn region_of(&self, value: [f32; 3]) -> Region {
+    pub(crate) fn region_of(&self, value: [f32; 3]) -> Region {
         if value[2].is_nan() {
             return Region { layer: NO_REGION, block: NO_REGION };
         }
@@ -149,14 +148,6 @@ impl PackedVolume {
             k: value[2] * self.layers as f32 - f32::from(region.layer),
             region,
         }
-    }
-
-    /// Trilinear interpolation of the packed values at voxel `p`; the ids are read from the result.
-    pub fn lookup_linear(&self, p: Vec3) -> FlatPoint {
-        let (cell, fraction) = self.cell(p);
-        let corners = std::array::from_fn(|c| self.at(corner(cell, c)));
-        let value = trilinear(&corners, fraction);
-        self.unpack(value, self.region_of(value))
     }
 
     /// The lookup of P-illus 3.4 at voxel `p`: corners of another region are extrapolated from neighbours of
@@ -286,7 +277,11 @@ mod tests {
             assert!((found.j - 0.44 + 0.02 * x).abs() < 1e-4, "j at {x}, {z}: {}", found.j);
             assert!((found.k - k).abs() < 1e-4, "k at {x}, {z}: {} and not {k}", found.k);
             // Plain interpolation mixes in the other side.
-            let plain = packed.lookup_linear(Vec3::new(x, 4.4, z));
+            let plain = {
+                let (cell, fraction) = packed.cell(Vec3::new(x, 4.4, z));
+                let value = trilinear(&std::array::from_fn(|c| packed.at(corner(cell, c))), fraction);
+                packed.unpack(value, packed.region_of(value))
+            };
             assert!((plain.i - found.i).abs() > 0.01 || (plain.k - found.k).abs() > 0.01, "{plain:?} at {x}, {z}");
         }
         // Where the fault meets the horizon the corner across both has no neighbour of the own region: 3.4's

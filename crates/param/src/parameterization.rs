@@ -205,7 +205,7 @@ impl Parameterization {
     }
 
     /// Whether the parameterization of `region` has a crease (a jump of the closest point) next to voxel `p`.
-    pub fn is_near_crease<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3, region: Region) -> bool {
+    pub(crate) fn is_near_crease<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3, region: Region) -> bool {
         self.grid(region).is_near_crease(model, p)
     }
 

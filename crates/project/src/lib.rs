@@ -36,7 +36,7 @@ pub mod folder;
 pub mod interpretation;
 pub mod memory_budget;
 pub mod pictures;
-pub mod placement;
+mod placement;
 mod project;
 pub mod styles;
 

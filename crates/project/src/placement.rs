@@ -58,7 +58,7 @@ const MAX_SHIFT_BINS: f64 = 0.25;
 ///
 /// # Errors
 /// [`PlacementError`] if its lines do not run along the project's or it lies elsewhere.
-pub fn covers(frame: &SurveyGeometry, other: &SurveyGeometry) -> Result<VoxelBox, PlacementError> {
+pub(crate) fn covers(frame: &SurveyGeometry, other: &SurveyGeometry) -> Result<VoxelBox, PlacementError> {
     if frame.vertical.unit != other.vertical.unit {
         let word = |unit| match unit {
             VerticalUnit::Milliseconds => "ms of two-way time",

@@ -108,7 +108,7 @@ impl HorizonScore {
     }
 
     /// The coverage of its least covered part; 1 without parts.
-    pub fn least_part(&self) -> f64 {
+    pub(crate) fn least_part(&self) -> f64 {
         self.parts.iter().map(HorizonPart::coverage).fold(1.0, f64::min)
     }
 }

@@ -224,7 +224,7 @@ impl View {
     }
 
     /// The unit direction in display space of a vector that is given as right, up and towards the viewer.
-    pub fn display_direction(&self, eye: DVec3) -> DVec3 {
+    pub(crate) fn display_direction(&self, eye: DVec3) -> DVec3 {
         (self.right * eye.x + self.up * eye.y - self.forward * eye.z).normalize_or_zero()
     }
 
@@ -238,7 +238,7 @@ impl View {
 
     /// The inverse of [`Self::eye_from_voxel`] for view coordinates (metres right and up, or tangents). At a
     /// depth, the voxel position is `origin + depth · direction`.
-    pub fn depth_ray(&self, flat: DVec2) -> (DVec3, DVec3) {
+    pub(crate) fn depth_ray(&self, flat: DVec2) -> (DVec3, DVec3) {
         let spread = self.voxel_from_display * (self.right * flat.x + self.up * flat.y);
         let forward = self.voxel_from_display * self.forward;
         let back = self.centre_voxel - forward * self.distance;

@@ -30,17 +30,17 @@ use std::collections::BTreeSet;
 use survey::SurveyGeometry;
 
 /// Shortest step near the ground, voxels. Ridges thinner than this can be missed.
-pub const SHORTEST_STEP: f32 = 0.5;
+pub(crate) const SHORTEST_STEP: f32 = 0.5;
 /// Bisections of a last step to which the secant method does not apply: from half a voxel to 2⁻⁸ voxel.
-pub const BISECTIONS: u32 = 7;
+pub(crate) const BISECTIONS: u32 = 7;
 /// Largest number of steps; a ray that needs more misses the ground.
-pub const MAX_STEPS: u32 = 4096;
+pub(crate) const MAX_STEPS: u32 = 4096;
 /// Side of a cell of the coarse map, voxels.
 pub const CELL: f32 = 4.0;
 /// How far a ray that skips a cell enters the next one, voxels.
-pub const INTO_CELL: f32 = 0.01;
+pub(crate) const INTO_CELL: f32 = 0.01;
 /// Depth below the ground, or inside a surface of any shape, at which its layer is looked up, voxels: more than rounding.
-pub const INTO_ROCK: f32 = 0.05;
+pub(crate) const INTO_ROCK: f32 = 0.05;
 /// Largest slope that step lengths take into account; steeper ground is treated as if it had this slope.
 const STEEPEST: f32 = 3.0;
 /// How much steeper than at its nodes the ground may be in a cell: a factor, and what is added.

@@ -179,7 +179,7 @@ impl CandidateVolume<'_> {
     /// another group. First the sample of the point's own surface is located on its trace. On the
     /// neighbouring traces that surface is searched for at about the same depth; only if it does not continue
     /// there, a surface of another group counts.
-    pub fn is_border(&self, p: Vec3) -> bool {
+    pub(crate) fn is_border(&self, p: Vec3) -> bool {
         let place = self.sample_at(p);
         let own = self.group(self.leaf[self.index_of(place)]);
         let reach = (1.5 * self.distance_at(p)) as usize + 1;
@@ -231,7 +231,7 @@ impl CandidateVolume<'_> {
 }
 
 /// Samples with an interpolation weight below this are not read.
-pub const NO_WEIGHT: f32 = 1e-5;
+pub(crate) const NO_WEIGHT: f32 = 1e-5;
 /// How far outside its extent a volume still has values, in its own samples: only rounding.
 pub const SLACK: f32 = 1e-3;
 
@@ -268,7 +268,7 @@ impl<'a> NamedVolume<'a> {
 
     /// Scale and offset from voxel positions to the volume's own sample indices: `index = p · scale +
     /// offset`.
-    pub fn index_from_voxel(&self) -> (Vec3, Vec3) {
+    pub(crate) fn index_from_voxel(&self) -> (Vec3, Vec3) {
         let last = Vec3::from_array(self.volume.size().map(|n| n.saturating_sub(1) as f32));
         let scale = last / self.covers.extent().as_vec3().max(Vec3::splat(1e-6));
         (scale, -self.covers.low().as_vec3() * scale)

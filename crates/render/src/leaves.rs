@@ -30,20 +30,20 @@ impl FaceData {
 }
 
 /// Half of the thickness of a leaf on a face, voxels.
-pub const HALF_WIDTH: f32 = 0.8;
+pub(crate) const HALF_WIDTH: f32 = 0.8;
 /// Width over which the edge of a leaf fades, voxels.
-pub const FADE: f32 = 0.5;
+pub(crate) const FADE: f32 = 0.5;
 /// Distance that is shown as black, voxels.
-pub const BLACK_AT: f32 = 10.0;
+pub(crate) const BLACK_AT: f32 = 10.0;
 /// How far to the side the border of a leaf is searched for, voxels.
-pub const BORDER: f32 = 0.75;
+pub(crate) const BORDER: f32 = 0.75;
 /// Largest distance from its surface of a sample that counts in the search for borders, voxels.
-pub const BORDER_REACH: f32 = 0.75;
+pub(crate) const BORDER_REACH: f32 = 0.75;
 /// Largest difference in depth between neighbouring traces, samples, at which another leaf counts as the
 /// continuation of a surface. The same leaf may rise or fall by twice that.
-pub const BORDER_STEP: usize = 1;
+pub(crate) const BORDER_STEP: usize = 1;
 /// Factor on the colour at the border between leaves.
-pub const BORDER_TONE: f32 = 0.35;
+pub(crate) const BORDER_TONE: f32 = 0.35;
 
 /// The colour of a leaf.
 ///

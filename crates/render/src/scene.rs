@@ -17,11 +17,11 @@ use survey::block::{CutShape, CutShapeError, MAX_BODIES, MAX_PLANES, VoxelBox};
 use ttf::{Colour, Preset, RawColour};
 
 /// Largest image side, pixels.
-pub const MAX_SIDE_PX: u32 = 32_768;
+pub(crate) const MAX_SIDE_PX: u32 = 32_768;
 /// Largest number of samples per pixel along one axis.
-pub const MAX_SAMPLES: u32 = 16;
+pub(crate) const MAX_SAMPLES: u32 = 16;
 /// Largest number of cut-outs in a scene.
-pub const MAX_CUT_OUTS: usize = 16;
+pub(crate) const MAX_CUT_OUTS: usize = 16;
 
 /// A picture of a block.
 ///

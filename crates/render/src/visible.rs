@@ -16,7 +16,7 @@ use survey::block::VoxelBox;
 use survey::block::{Body, BodyPlane};
 
 /// Boxes closer than this along a ray count as touching, voxels.
-pub const TOUCH: f32 = 1e-3;
+pub(crate) const TOUCH: f32 = 1e-3;
 
 impl From<ViewRay> for Ray {
     fn from(ray: ViewRay) -> Self {
@@ -73,7 +73,7 @@ impl Solid {
     }
 
     /// A box with boxes cut out, clipped to it.
-    pub fn of_boxes(roaming_box: &VoxelBox, cut_outs: &[VoxelBox]) -> Self {
+    pub(crate) fn of_boxes(roaming_box: &VoxelBox, cut_outs: &[VoxelBox]) -> Self {
         let corners = |b: &VoxelBox| [b.low().as_vec3(), b.high().as_vec3()];
         Self::new(corners(roaming_box), cut_outs.iter().map(|cut| Body::of_box(corners(cut))).collect())
     }
@@ -86,7 +86,7 @@ impl Solid {
     }
 
     /// The interval of a ray in the roaming box, regardless of cut-outs.
-    pub fn box_interval(&self, ray: &Ray) -> Option<[f32; 2]> {
+    pub(crate) fn box_interval(&self, ray: &Ray) -> Option<[f32; 2]> {
         let outer = self.block.cross(ray);
         (outer.exit > outer.enter).then_some([outer.enter, outer.exit])
     }

@@ -61,7 +61,7 @@ impl WellStyle {
 
 /// A piece of a tube.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Capsule {
+pub(crate) struct Capsule {
     /// Its ends in display space relative to voxel 0, m.
     pub ends: [Vec3; 2],
     /// Its radius, m.
@@ -74,7 +74,7 @@ pub struct Capsule {
 
 /// Where a ray meets a well.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WellHit {
+pub(crate) struct WellHit {
     /// Distance along the ray, voxels.
     pub t: f32,
     /// The index of the well.
@@ -85,7 +85,7 @@ pub struct WellHit {
 
 /// All wells of a scene.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tubes {
+pub(crate) struct Tubes {
     /// The pieces of the tubes.
     pub capsules: Vec<Capsule>,
     /// The linear map from voxel to display space.
@@ -93,7 +93,7 @@ pub struct Tubes {
 }
 
 /// Brightness at the rim of a tube, relative to its middle.
-pub const RIM_LIGHT: f32 = 0.35;
+pub(crate) const RIM_LIGHT: f32 = 0.35;
 /// How far a tube may deviate from its path, voxels. Paths are sampled far more densely than they bend.
 const STRAIGHT: f64 = 0.05;
 /// Width of the band of a top, relative to the tube.
@@ -101,7 +101,7 @@ const TOP_WIDTH: f32 = 1.6;
 
 impl Tubes {
     /// The wells inside a block; `None` if there are none.
-    pub fn new(
+    pub(crate) fn new(
         wells: &[DrawnWell],
         scene: &Scene,
         view: &View,
@@ -137,7 +137,7 @@ impl Tubes {
     }
 
     /// The first well on a ray before distance `stop`.
-    pub fn hit(&self, ray: &Ray, stop: f32) -> Option<WellHit> {
+    pub(crate) fn hit(&self, ray: &Ray, stop: f32) -> Option<WellHit> {
         let origin = self.display_from_voxel * ray.origin;
         let along = self.display_from_voxel * ray.direction;
         let metres = along.length();

@@ -42,7 +42,7 @@ pub struct Model {
 
 impl Model {
     /// Whether a face or a horizon shows what was filled or extrapolated, not picked.
-    pub fn has_unpicked(&self) -> bool {
+    pub(crate) fn has_unpicked(&self) -> bool {
         let is_unpicked = |cover: &Cover| cover.data.pixels().any(|pixel| pixel.0[2] > 0);
         self.horizons.iter().any(|horizon| horizon.is_picked.contains(&false)) || self.covers.iter().any(is_unpicked)
     }

@@ -73,7 +73,7 @@ pub fn zoom_at(scene: &mut Scene, size: DVec2, at: DVec2, factor: f64) {
 }
 
 /// Moves the camera to a standard position; the projection stays.
-pub fn stand(scene: &mut Scene, place: StandardView) {
+pub(crate) fn stand(scene: &mut Scene, place: StandardView) {
     let usual = render::Camera::default();
     let (azimuth_deg, elevation_deg) = match place {
         StandardView::Block => (None, usual.elevation_deg),

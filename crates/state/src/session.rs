@@ -48,7 +48,7 @@ impl Session {
     }
 
     /// Takes over a new state of the same project; the view stays as far as it still applies.
-    pub fn renew(&mut self, snapshot: Snapshot) {
+    pub(crate) fn renew(&mut self, snapshot: Snapshot) {
         let had_frame = self.document.geometry.is_some();
         let was_bare = self.document.horizons.is_empty();
         let times = [&self.document, &snapshot.document].map(|document| document.geologic_time().is_some());

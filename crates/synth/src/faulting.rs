@@ -76,7 +76,7 @@ impl TruthFault {
 
     /// Depth at which a vertical line crosses the extended surface, m: above it is the hanging wall. −∞ where
     /// the line passes beside the surface, all of it in the footwall.
-    pub fn crossing_m(&self, place: DVec2) -> f64 {
+    pub(crate) fn crossing_m(&self, place: DVec2) -> f64 {
         let q = place.x - self.trace_u(place.y);
         let root = self.run * self.run + 4.0 * self.listric * q;
         if root < 0.0 { f64::NEG_INFINITY } else { self.middle_m.y + 2.0 * q / (self.run + root.sqrt()) }
@@ -91,13 +91,13 @@ impl TruthFault {
     }
 
     /// Downward displacement of the hanging wall at (u, v), m.
-    pub fn throw_at(&self, place: DVec2) -> f64 {
+    pub(crate) fn throw_at(&self, place: DVec2) -> f64 {
         let away = (place.x - self.trace_u(place.y)) / self.reach_m;
         self.throw_m * self.taper(place.y)[0] * (-away * away).exp()
     }
 
     /// (∂throw/∂u, ∂throw/∂v), metres a metre.
-    pub fn throw_slope(&self, place: DVec2) -> DVec2 {
+    pub(crate) fn throw_slope(&self, place: DVec2) -> DVec2 {
         let away = (place.x - self.trace_u(place.y)) / self.reach_m;
         let [taper, taper_slope] = self.taper(place.y);
         let bell = self.throw_m * (-away * away).exp();

@@ -36,7 +36,7 @@ impl Undulation {
     }
 
     /// (∂/∂u, ∂/∂v) at metric (u, v).
-    pub fn gradient_at(&self, place: DVec2) -> DVec2 {
+    pub(crate) fn gradient_at(&self, place: DVec2) -> DVec2 {
         self.waves.iter().map(|w| w.wave_vector * (w.amplitude * (w.wave_vector.dot(place) + w.phase).cos())).sum()
     }
 
@@ -65,7 +65,7 @@ impl FoldedBeds {
 
     /// Stratigraphic depth of what lies at `depth_m` before faulting, m: the inverse of
     /// [`FoldedBeds::depth_m`].
-    pub fn strat_m(&self, depth_m: f64, place: DVec2) -> f64 {
+    pub(crate) fn strat_m(&self, depth_m: f64, place: DVec2) -> f64 {
         let thickening = self.thickening.at(place);
         (depth_m - self.relief.at(place) + self.pivot_m * thickening) / (1.0 + thickening)
     }

@@ -37,7 +37,7 @@ pub use events::{Reflector, ReflectorEvent};
 pub use faulting::{Tip, TruthFault};
 pub use fold::{FoldedBeds, Undulation, Wave};
 pub use overturned::{OutcropFault, OutcropTruth, Overturned};
-pub use seismic::{AMPLITUDE, SeismicLines};
+pub use seismic::SeismicLines;
 pub use truth::{Sequence, SynthTruth, TruthHorizon};
 
 use glam::{DVec2, DVec3};

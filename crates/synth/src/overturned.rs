@@ -61,7 +61,7 @@ impl OutcropTruth {
     }
 
     /// Slip of a fault at y, m.
-    pub fn slip_m(&self, fault: usize, y: f64) -> f64 {
+    pub(crate) fn slip_m(&self, fault: usize, y: f64) -> f64 {
         let OutcropFault { slip_m, tip_y, .. } = self.faults[fault];
         // As on an elliptic fault: vertical tangent at the tip.
         tip_y.map_or(slip_m, |tip| slip_m * (1.0 - y / tip).clamp(0.0, 1.0).sqrt())

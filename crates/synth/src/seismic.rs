@@ -23,7 +23,7 @@ use std::ops::Range;
 use survey::progress::{Cancelled, Progress};
 
 /// Amplitude of a reflectivity of 1.
-pub const AMPLITUDE: f64 = 10_000.0;
+pub(crate) const AMPLITUDE: f64 = 10_000.0;
 
 /// Reach of the wavelet in wavelengths: beyond, it is less than 10⁻⁵.
 const REACH: f64 = 1.3;

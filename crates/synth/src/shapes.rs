@@ -94,7 +94,7 @@ impl Diapir {
     }
 
     /// The same in a volume of an extent, m.
-    pub fn of_extent(extent: DVec3) -> Self {
+    pub(crate) fn of_extent(extent: DVec3) -> Self {
         let width = extent.x.min(extent.y);
         Self {
             axis: DVec2::new(0.42 * extent.x, 0.4 * extent.y),

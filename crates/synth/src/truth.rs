@@ -85,7 +85,7 @@ impl SynthTruth {
     }
 
     /// Whether voxel `p` lies in salt.
-    pub fn in_salt(&self, p: DVec3) -> bool {
+    pub(crate) fn in_salt(&self, p: DVec3) -> bool {
         self.salt.is_some_and(|salt| salt.holds(self.metric(p)))
     }
 
@@ -169,7 +169,7 @@ impl SynthTruth {
     }
 
     /// Acoustic impedance at voxel `p`, kg/(m²·s): of the bed, and a few per cent of slow change along it.
-    pub fn impedance_at(&self, p: DVec3) -> f64 {
+    pub(crate) fn impedance_at(&self, p: DVec3) -> f64 {
         if self.in_salt(p) {
             return SALT_IMPEDANCE;
         }

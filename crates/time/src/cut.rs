@@ -79,7 +79,7 @@ impl Cut {
     }
 
     /// Least and greatest place across on each line along the fault; none lies between them where there is no fault.
-    pub fn extents(&self) -> Vec<[f32; 2]> {
+    pub(crate) fn extents(&self) -> Vec<[f32; 2]> {
         let none = [f32::INFINITY, f32::NEG_INFINITY];
         let both = |[least, most]: [f32; 2], place: &f32| [least.min(*place), most.max(*place)];
         self.place.chunks(self.size[1].max(1)).map(|row| row.iter().fold(none, both)).collect()

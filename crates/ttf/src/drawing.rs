@@ -71,7 +71,7 @@ const SAME: f64 = 1e-3;
 ///
 /// # Errors
 /// [`TtfError::BadSvg`] and [`TtfError::RefusedSvg`] with the name given.
-pub fn drawing_of(name: &str, svg: &str) -> Result<Option<TileDrawing>, TtfError> {
+pub(crate) fn drawing_of(name: &str, svg: &str) -> Result<Option<TileDrawing>, TtfError> {
     let tree = crate::svg::parse(name, svg.as_bytes())?;
     let size = [f64::from(tree.size().width()), f64::from(tree.size().height())];
     let mut drawing = TileDrawing::default();

@@ -18,16 +18,16 @@ use crate::texture::TEXTURE_SIDE_PX;
 use crate::{Texture, TtfError};
 
 /// Largest side of an image accepted as a tile, in pixels.
-pub const MAX_IMAGE_SIDE_PX: u32 = 4096;
+pub(crate) const MAX_IMAGE_SIDE_PX: u32 = 4096;
 
 /// Largest file accepted as a tile, in bytes.
-pub const MAX_FILE_BYTES: u64 = 64 << 20;
+pub(crate) const MAX_FILE_BYTES: u64 = 64 << 20;
 
 /// Endings of the names of files that tiles are read from, without the dot; the last one holds a drawing.
 pub const TILE_ENDINGS: [&str; 4] = ["png", "jpg", "jpeg", "svg"];
 
 /// Most memory that the decoder of an image may take, in bytes: the largest tile with 16 bits for each channel.
-pub const MAX_DECODING_BYTES: u64 = 160 << 20;
+pub(crate) const MAX_DECODING_BYTES: u64 = 160 << 20;
 
 /// Reads a tile. Returns its texture, its source if it is an SVG, and its height divided by its width.
 ///

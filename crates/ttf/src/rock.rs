@@ -53,11 +53,6 @@ fn terms() -> impl Iterator<Item = Term<'static>> {
     })
 }
 
-/// The names of all terms.
-pub fn rock_terms() -> Vec<&'static str> {
-    terms().map(|term| term.name).collect()
-}
-
 /// Names in common use, each with the term or the pattern that it stands for.
 fn common() -> impl Iterator<Item = (&'static str, &'static str)> {
     COMMON.lines().filter(|line| !line.starts_with('#')).filter_map(|line| line.split_once('\t'))
@@ -148,13 +143,12 @@ mod tests {
     fn every_term_has_a_pattern_of_the_library_and_most_are_not_plain() {
         let library = TextureLibrary::builtin().unwrap();
         let patterns: Vec<&str> = library.patterns().map(|pattern| pattern.name.as_str()).collect();
-        let found: Vec<RockPattern> = rock_terms()
-            .into_iter()
-            .map(|term| rock(term, &patterns).unwrap_or_else(|| panic!("{term} has no pattern")))
-            .collect();
+        let names: Vec<&str> = terms().map(|term| term.name).collect();
+        let found: Vec<RockPattern> =
+            names.iter().map(|term| rock(term, &patterns).unwrap_or_else(|| panic!("{term} has no pattern"))).collect();
         assert_eq!(found.len(), 265);
         assert!(terms().all(|term| term.pattern.is_empty() || patterns.contains(&term.pattern)));
-        assert!(terms().all(|term| term.broader.iter().all(|name| rock_terms().contains(name))));
+        assert!(terms().all(|term| term.broader.iter().all(|name| names.contains(name))));
         assert!(found.iter().filter(|found| found.pattern == "plain").count() < 8);
     }
 
@@ -172,7 +166,7 @@ mod tests {
         let of = |name: &str| rock(name, &patterns).map(|found| found.pattern);
         let lost: Vec<&str> = common().map(|(name, _)| name).filter(|name| of(name).is_none()).collect();
         assert!(lost.is_empty(), "{lost:?}");
-        let is_term = |name: &&str| rock_terms().iter().any(|term| words(term) == words(name));
+        let is_term = |name: &&str| terms().any(|term| words(term.name) == words(name));
         let twice: Vec<&str> = common().map(|(name, _)| name).filter(is_term).collect();
         assert!(twice.is_empty(), "terms of the vocabulary: {twice:?}");
         let expected = [

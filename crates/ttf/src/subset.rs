@@ -115,7 +115,11 @@ pub fn subset(face: &Face, glyphs: &BTreeSet<u16>, characters: &BTreeMap<char, u
 }
 
 /// The same with the numbers and the rules of the face, for programs that shape text themselves.
-pub fn subset_with_rules(face: &Face, glyphs: &BTreeSet<u16>, characters: &BTreeMap<char, u16>) -> Option<FontSubset> {
+pub(crate) fn subset_with_rules(
+    face: &Face,
+    glyphs: &BTreeSet<u16>,
+    characters: &BTreeMap<char, u16>,
+) -> Option<FontSubset> {
     let open = face.open()?;
     let places = (0..open.count()).map(|glyph| (glyph == 0 || glyphs.contains(&glyph)).then_some(glyph));
     written_subset(&open, &places.collect::<Vec<_>>(), characters, true)

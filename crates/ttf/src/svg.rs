@@ -15,7 +15,7 @@ use resvg::usvg::{self, ImageHrefResolver};
 use crate::TtfError;
 
 /// Largest SVG file accepted as a tile, in bytes.
-pub const MAX_SVG_BYTES: u64 = 4 << 20;
+pub(crate) const MAX_SVG_BYTES: u64 = 4 << 20;
 
 /// Deepest nesting of elements, with what `use` refers to in its place.
 const MAX_DEPTH: usize = 64;

@@ -14,14 +14,14 @@ use time::TimeSettings;
 
 /// The volume and the settings of the next extraction.
 #[derive(Default)]
-pub struct CandidatesPanel {
+pub(crate) struct CandidatesPanel {
     settings: ExtractSettings,
     volume: Option<String>,
 }
 
 impl CandidatesPanel {
     /// Shows the panel.
-    pub fn show(
+    pub(crate) fn show(
         &mut self,
         ui: &mut Ui,
         session: &Session,

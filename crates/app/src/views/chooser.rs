@@ -12,7 +12,7 @@ use eframe::egui::{Context, RichText, ScrollArea, TextEdit, Ui};
 use std::path::{Path, PathBuf};
 
 /// The chooser.
-pub struct Chooser {
+pub(crate) struct Chooser {
     choice: Option<Choice>,
     text: String,
     listing: Folder,
@@ -29,7 +29,7 @@ impl Default for Chooser {
 
 impl Chooser {
     /// Shows the chooser in front of everything.
-    pub fn show(&mut self, ctx: &Context, state: &State, choice: Choice, actions: &mut Vec<Action>) {
+    pub(crate) fn show(&mut self, ctx: &Context, state: &State, choice: Choice, actions: &mut Vec<Action>) {
         if self.choice != Some(choice) {
             self.choice = Some(choice);
             self.text = self.home.join("").display().to_string();
@@ -63,7 +63,7 @@ impl Chooser {
     }
 
     /// Begins anew when it is next shown.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.choice = None;
     }
 

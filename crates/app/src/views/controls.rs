@@ -27,7 +27,7 @@ const CUT_SHARE: [f64; 2] = [0.45, 0.45];
 
 /// The panel, with the text being typed in it.
 #[derive(Debug, Default)]
-pub struct Controls {
+pub(crate) struct Controls {
     scene_name: String,
     /// The scene whose name is being changed.
     renaming: NameField,
@@ -35,7 +35,7 @@ pub struct Controls {
 
 impl Controls {
     /// Shows the panel.
-    pub fn show(&mut self, ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>) {
+    pub(crate) fn show(&mut self, ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>) {
         ScrollArea::vertical().show(ui, |ui| {
             // The panel keeps its width whatever rows it has, so that the middle keeps its place.
             ui.spacing_mut().slider_width = (ui.available_width() - BESIDE_SLIDER).max(60.0);
@@ -249,7 +249,7 @@ fn block(ui: &mut Ui, session: &Session, scene: &mut Scene, actions: &mut Vec<Ac
 }
 
 /// The cut-out at the corner that is nearest to the viewer.
-pub fn nearest_cut(scene: &Scene, geometry: &survey::SurveyGeometry) -> VoxelBox {
+pub(crate) fn nearest_cut(scene: &Scene, geometry: &survey::SurveyGeometry) -> VoxelBox {
     let block = scene.box_in(geometry);
     let corner = scene.view(geometry).nearest_corner(&block);
     block.corner_cut(corner, CUT_SHARE)

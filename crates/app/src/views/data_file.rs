@@ -11,7 +11,7 @@ use files::segy::WriteFormat;
 use files::{Format, SurfaceKind};
 
 /// Shows the dialogue.
-pub fn dialogue(ctx: &Context, state: &State, form: &DataForm, actions: &mut Vec<Action>) {
+pub(crate) fn dialogue(ctx: &Context, state: &State, form: &DataForm, actions: &mut Vec<Action>) {
     let modal = dialogue::show(ctx, "data file", |ui| {
         ui.set_width(440.0);
         ui.heading(format!("Export {} {}", form.what.noun(), form.name));

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// The file that was dropped last, until the window can take it in.
 #[derive(Default)]
-pub struct Dropped {
+pub(crate) struct Dropped {
     waiting: Option<PathBuf>,
 }
 
@@ -19,7 +19,7 @@ impl Dropped {
     ///
     /// Without an open project the file waits while the window is busy: a project may be opening, or a volume be
     /// scanned.
-    pub fn receive(&mut self, ctx: &Context, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
+    pub(crate) fn receive(&mut self, ctx: &Context, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
         let (is_held, path) = ctx.input(|input| {
             let dropped = input.raw.dropped_files.first().map(|file| file.path().to_owned());
             (!input.raw.hovered_files.is_empty(), dropped)

@@ -26,7 +26,7 @@ const MARGIN: Vec2 = vec2(52.0, 20.0);
 
 /// The view.
 #[derive(Default)]
-pub struct FenceView {
+pub(crate) struct FenceView {
     texture: Option<TextureHandle>,
     shown: Option<Shown>,
     requested: Option<(Vec<DVec2>, u64, FaceData)>,
@@ -41,13 +41,13 @@ struct Shown {
 
 impl FenceView {
     /// Takes over a fence that was cut.
-    pub fn receive(&mut self, ctx: &Context, cut: FenceCut) {
+    pub(crate) fn receive(&mut self, ctx: &Context, cut: FenceCut) {
         texture::keep(&mut self.texture, ctx, "fence", texture::pixels(&cut.image));
         self.shown = Some(Shown { corners: cut.corners, image: Arc::new(cut.image), lines: cut.lines });
     }
 
     /// Shows the fence in all the room there is; returns what is under the cursor.
-    pub fn show(
+    pub(crate) fn show(
         &mut self,
         ui: &mut Ui,
         session: &Session,

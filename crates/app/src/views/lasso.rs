@@ -13,13 +13,13 @@ const FEWEST: usize = 4;
 
 /// A line being drawn, points of the window.
 #[derive(Default)]
-pub struct LassoLine {
+pub(crate) struct LassoLine {
     corners: Vec<Pos2>,
 }
 
 impl LassoLine {
     /// Extends the line while it is dragged; returns it when the drag ends.
-    pub fn draw(&mut self, ui: &Ui, painter: &Painter, response: &Response, is_held: bool) -> Option<Vec<Pos2>> {
+    pub(crate) fn draw(&mut self, ui: &Ui, painter: &Painter, response: &Response, is_held: bool) -> Option<Vec<Pos2>> {
         if is_held && (response.dragged() || response.drag_stopped()) {
             let begun = ui.input(|input| input.pointer.press_origin()).filter(|_| response.drag_started());
             for at in begun.into_iter().chain(moves(ui)) {
@@ -44,17 +44,17 @@ impl LassoLine {
 }
 
 /// The key that makes a drag draw a lasso.
-pub const HELD: Key = Key::A;
+pub(crate) const HELD: Key = Key::A;
 
 /// Whether a drag draws a lasso: the lasso is the chosen tool, or its key is held.
-pub fn is_held(ui: &Ui, session: &Session) -> bool {
+pub(crate) fn is_held(ui: &Ui, session: &Session) -> bool {
     session.view.panel == Panel::Interpret
         && (session.view.picking.tool == Tool::Lasso
             || ui.input(|input| input.key_down(HELD)) && !ui.ctx().egui_wants_keyboard_input())
 }
 
 /// How a click picks, and where in the window; `None` where it does not pick.
-pub fn pick_at(ui: &Ui, response: &Response, session: &Session) -> Option<(How, Pos2)> {
+pub(crate) fn pick_at(ui: &Ui, response: &Response, session: &Session) -> Option<(How, Pos2)> {
     let picks = response.clicked() && !matches!(session.view.picking.tool, Tool::Sticks | Tool::Draw);
     picks.then(|| response.interact_pointer_pos().map(|at| (how(ui), at))).flatten()
 }
@@ -69,7 +69,7 @@ fn how(ui: &Ui) -> How {
 }
 
 /// What a click at a voxel position does.
-pub fn click(ui: &Ui, response: &Response, session: &Session, voxel: DVec3, actions: &mut Vec<Action>) {
+pub(crate) fn click(ui: &Ui, response: &Response, session: &Session, voxel: DVec3, actions: &mut Vec<Action>) {
     let move_there = Action::Slices(voxel.to_array());
     if session.view.panel != Panel::Interpret {
         if response.clicked() {

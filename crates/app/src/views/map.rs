@@ -18,7 +18,7 @@ const ZOOM: [f32; 2] = [0.8, 40.0];
 
 /// The view.
 #[derive(Default)]
-pub struct MapView {
+pub(crate) struct MapView {
     texture: Option<TextureHandle>,
     shown: Option<HorizonMap>,
     requested: Option<(Mapped, u64, bool)>,
@@ -29,13 +29,13 @@ pub struct MapView {
 
 impl MapView {
     /// Takes over a map that was drawn.
-    pub fn receive(&mut self, ctx: &Context, map: HorizonMap) {
+    pub(crate) fn receive(&mut self, ctx: &Context, map: HorizonMap) {
         texture::keep(&mut self.texture, ctx, "map", texture::pixels(&map.image));
         self.shown = Some(map);
     }
 
     /// Shows the map in all the room there is; `data` is what it is made from.
-    pub fn show(
+    pub(crate) fn show(
         &mut self,
         ui: &mut Ui,
         session: &Session,
@@ -76,7 +76,7 @@ impl MapView {
     }
 
     /// The content of the map, for a project that has horizons.
-    pub fn mapped(&self, session: &Session) -> Mapped {
+    pub(crate) fn mapped(&self, session: &Session) -> Mapped {
         let (upper, lower) = chosen(session);
         match lower.filter(|_| self.thickness) {
             Some(lower) => Mapped::Thickness(upper, lower),

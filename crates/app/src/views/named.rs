@@ -19,16 +19,16 @@ pub fn colour(noun: Noun, name: &str, colour: Colour) -> Action {
 
 /// The field in which a name is changed, while it is.
 #[derive(Debug, Default)]
-pub struct NameField(Option<(Noun, Renaming)>);
+pub(crate) struct NameField(Option<(Noun, Renaming)>);
 
 impl NameField {
     /// Begins to change a name.
-    pub fn begin(&mut self, noun: Noun, name: &str) {
+    pub(crate) fn begin(&mut self, noun: Noun, name: &str) {
         self.0 = Some((noun, Renaming::of(name)));
     }
 
     /// Shows the field if it is this name's; `None` if it is not.
-    pub fn show(
+    pub(crate) fn show(
         &mut self,
         ui: &mut Ui,
         width: f32,

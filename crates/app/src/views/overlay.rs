@@ -50,7 +50,7 @@ const ON_SECTION: f64 = 2.5;
 const CATCH: f32 = 9.0;
 
 /// The part of an interpretation that only this view knows, for figures, which read the rest from the project.
-pub fn interpreter_view(session: &Session, selected: Option<&ShownPick>) -> InterpreterView {
+pub(crate) fn interpreter_view(session: &Session, selected: Option<&ShownPick>) -> InterpreterView {
     let picking = &session.view.picking;
     InterpreterView {
         picked: picking.horizon.clone(),
@@ -69,7 +69,12 @@ fn own_sticks(session: &Session) -> impl Iterator<Item = (&Vec<[f64; 3]>, Colour
 }
 
 /// The point of a stick that is within reach of a place of a section: `page` leads from (s, t) to the window.
-pub fn stick_point(session: &Session, kind: SectionKind, at: Pos2, page: impl Fn(DVec2) -> Pos2) -> Option<StickPoint> {
+pub(crate) fn stick_point(
+    session: &Session,
+    kind: SectionKind,
+    at: Pos2,
+    page: impl Fn(DVec2) -> Pos2,
+) -> Option<StickPoint> {
     let geometry = session.document.geometry.as_ref()?;
     let picking = &session.view.picking;
     let section = session.view.slices[kind.axis()];
@@ -112,7 +117,7 @@ impl Overlay {
     }
 
     /// The selection as drawn last.
-    pub fn selected(&self) -> Option<&ShownPick> {
+    pub(crate) fn selected(&self) -> Option<&ShownPick> {
         self.selected.as_deref()
     }
 
@@ -153,7 +158,7 @@ impl Overlay {
     }
 
     /// Draws on a section; `page` converts (s, t) to the page.
-    pub fn on_section(
+    pub(crate) fn on_section(
         &mut self,
         painter: &Painter,
         session: &Session,
@@ -172,7 +177,13 @@ impl Overlay {
     }
 
     /// Draws on a fence with these corners, voxels.
-    pub fn on_fence(&mut self, painter: &Painter, session: &Session, corners: &[DVec2], page: impl Fn(DVec2) -> DVec2) {
+    pub(crate) fn on_fence(
+        &mut self,
+        painter: &Painter,
+        session: &Session,
+        corners: &[DVec2],
+        page: impl Fn(DVec2) -> DVec2,
+    ) {
         let made = self.made(session, corners.to_vec());
         let on = SeenOn::Fence(corners);
         if self.fence.as_ref().is_none_or(|(known, _)| *known != made) {
@@ -206,7 +217,7 @@ impl Overlay {
     }
 
     /// Draws the faults in front of the block, with the horizons and the selection where the picture has none.
-    pub fn surfaces_on_block(&self, ui: &Ui, session: &Session, pane: Rect, has_horizons: bool) {
+    pub(crate) fn surfaces_on_block(&self, ui: &Ui, session: &Session, pane: Rect, has_horizons: bool) {
         if session.view.panel != Panel::Interpret {
             return;
         }
@@ -232,7 +243,7 @@ impl Overlay {
     }
 
     /// Draws the sticks in front of the block.
-    pub fn sticks_on_block(&self, ui: &Ui, session: &Session, pane: Rect) {
+    pub(crate) fn sticks_on_block(&self, ui: &Ui, session: &Session, pane: Rect) {
         let Some(geometry) = &session.document.geometry else { return };
         if session.view.panel != Panel::Interpret {
             return;

@@ -26,7 +26,7 @@ pub struct Pointed {
 }
 
 /// The first rock under a point of a picture of this size.
-pub fn on_block(loaded: &Loaded, scene: &Scene, size: DVec2, at: DVec2) -> Option<Pointed> {
+pub(crate) fn on_block(loaded: &Loaded, scene: &Scene, size: DVec2, at: DVec2) -> Option<Pointed> {
     let geometry = &loaded.geometry;
     let ray = Ray::from(camera::view(scene, geometry, size).ray(at));
     let solid = scene.solid(geometry);
@@ -57,7 +57,7 @@ pub fn on_block(loaded: &Loaded, scene: &Scene, size: DVec2, at: DVec2) -> Optio
 }
 
 /// What is known of a place.
-pub fn at_voxel(loaded: &Loaded, voxel: Vec3, axis: Option<usize>) -> Pointed {
+pub(crate) fn at_voxel(loaded: &Loaded, voxel: Vec3, axis: Option<usize>) -> Pointed {
     let layer = loaded.rock.as_ref().map(|rock| rock.model.region_at(voxel).layer);
     let raw = loaded.raw.as_ref().and_then(|raw| loaded.volumes.iter().find(|volume| volume.name == raw.volume));
     let value = raw.map(|raw| raw.named().sample(voxel));
@@ -66,7 +66,7 @@ pub fn at_voxel(loaded: &Loaded, voxel: Vec3, axis: Option<usize>) -> Pointed {
 }
 
 /// The place in words: line numbers, time or depth with its unit, value, layer.
-pub fn sentence(pointed: &Pointed, document: &project::document::Document) -> String {
+pub(crate) fn sentence(pointed: &Pointed, document: &project::document::Document) -> String {
     let Some(geometry) = &document.geometry else { return String::new() };
     let lines = geometry.lines_from_voxel(pointed.voxel.truncate());
     let z = geometry.vertical.value_at(pointed.voxel.z);
@@ -85,7 +85,7 @@ pub fn sentence(pointed: &Pointed, document: &project::document::Document) -> St
 }
 
 /// What a click there selects while interpreting, and the horizon that has it already.
-pub fn picked(pointed: &Pointed, has: impl Fn(u32) -> Option<String>) -> String {
+pub(crate) fn picked(pointed: &Pointed, has: impl Fn(u32) -> Option<String>) -> String {
     let Some(LeafFacts { leaf, triangles, levels }) = pointed.leaf else {
         return "no leaf is near".to_owned();
     };

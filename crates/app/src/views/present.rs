@@ -19,7 +19,7 @@ use image::RgbaImage;
 use std::collections::HashMap;
 
 /// Size of a scene's small picture, points.
-pub const THUMBNAIL: [u32; 2] = [132, 84];
+pub(crate) const THUMBNAIL: [u32; 2] = [132, 84];
 /// Height of the strip, points.
 const STRIP: f32 = 122.0;
 /// Behind pictures that have not been drawn yet.
@@ -33,7 +33,7 @@ const KEYS: [(&[Key], isize); 2] = [
 
 /// The small pictures.
 #[derive(Default)]
-pub struct Presentation {
+pub(crate) struct Presentation {
     pictures: HashMap<String, TextureHandle>,
     /// The revision of the project that they were asked for.
     asked: Option<u64>,
@@ -41,21 +41,21 @@ pub struct Presentation {
 
 impl Presentation {
     /// Whether the small pictures have to be drawn, of this state of the project; they are asked for once.
-    pub fn asks(&mut self, session: &Session) -> bool {
+    pub(crate) fn asks(&mut self, session: &Session) -> bool {
         let is_new = self.asked != Some(session.revision);
         self.asked = Some(session.revision);
         is_new
     }
 
     /// Takes over the small picture of a scene.
-    pub fn receive(&mut self, ctx: &Context, name: String, image: &RgbaImage) {
+    pub(crate) fn receive(&mut self, ctx: &Context, name: String, image: &RgbaImage) {
         let mut kept = self.pictures.remove(&name);
         texture::keep(&mut kept, ctx, &format!("scene {name}"), texture::pixels(image));
         self.pictures.extend(kept.map(|kept| (name, kept)));
     }
 
     /// Shows the scene and the strip, and obeys the keys.
-    pub fn show(
+    pub(crate) fn show(
         &self,
         ui: &mut Ui,
         session: &Session,
@@ -143,7 +143,7 @@ fn obey(ctx: &Context, session: &Session, at: usize, actions: &mut Vec<Action>) 
 }
 
 /// Whether the scenes can be presented: there are some, and what they show is not being interpreted.
-pub fn obstacle(session: &Session) -> Option<&'static str> {
+pub(crate) fn obstacle(session: &Session) -> Option<&'static str> {
     if session.document.scenes.is_empty() {
         Some("Save a scene first")
     } else if session.view.panel == Panel::Interpret {

@@ -42,7 +42,7 @@ const NOTES_HEIGHT: f32 = 84.0;
 
 /// What the dialogue keeps while it is open.
 #[derive(Default)]
-pub struct ShareView {
+pub(crate) struct ShareView {
     seen: Option<Arc<SharePreview>>,
     /// What the preview was asked for.
     asked: Option<ShareForm>,
@@ -80,24 +80,24 @@ struct NoteDraft {
 
 impl ShareView {
     /// A preview is being made.
-    pub fn ask(&mut self, form: &ShareForm) {
+    pub(crate) fn ask(&mut self, form: &ShareForm) {
         self.asked = Some(form.previewed());
     }
 
     /// Takes over a preview.
-    pub fn receive(&mut self, seen: Arc<SharePreview>) {
+    pub(crate) fn receive(&mut self, seen: Arc<SharePreview>) {
         let scenes = seen.model.scenes.len();
         self.pose.scene = self.pose.scene.min(scenes.saturating_sub(1));
         (self.seen, self.drawn) = (Some(seen), None);
     }
 
     /// Whether the preview shows something else than what is shared now.
-    pub fn is_outdated(&self, form: &ShareForm) -> bool {
+    pub(crate) fn is_outdated(&self, form: &ShareForm) -> bool {
         self.seen.is_some() && self.asked.as_ref() != Some(&form.previewed())
     }
 
     /// Shows the dialogue; whether a preview is to be made.
-    pub fn show(
+    pub(crate) fn show(
         &mut self,
         ctx: &Context,
         state: &State,

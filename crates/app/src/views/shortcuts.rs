@@ -19,7 +19,7 @@ use render::{FaceData, Scene};
 type Deed = fn(&Session) -> Option<Action>;
 
 /// A key and its action.
-pub struct Shortcut {
+pub(crate) struct Shortcut {
     /// The key.
     pub key: Key,
     /// The modifier keys.
@@ -53,7 +53,7 @@ const SIDE: f64 = 4.0;
 const ANY_SIZE: DVec2 = DVec2::new(900.0, 650.0);
 
 /// The shortcuts that work everywhere.
-pub const SHORTCUTS: &[Shortcut] = &[
+pub(crate) const SHORTCUTS: &[Shortcut] = &[
     Shortcut {
         key: Key::Z,
         modifiers: Modifiers::COMMAND.plus(Modifiers::SHIFT),
@@ -135,7 +135,7 @@ pub const SHORTCUTS: &[Shortcut] = &[
 ];
 
 /// The shortcuts that work only while interpreting.
-pub const INTERPRETING: &[Shortcut] = &[
+pub(crate) const INTERPRETING: &[Shortcut] = &[
     plain(Key::ArrowUp, "Up", "Climb", |_| picking(PickingStep::Climb(1))),
     plain(Key::ArrowDown, "Down", "Descend", |_| picking(PickingStep::Climb(-1))),
     plain(Key::H, "H", "Highest valid", |_| picking(PickingStep::HighestValid)),
@@ -223,7 +223,7 @@ fn side(session: &Session, axis: usize, inwards: f64) -> Option<Action> {
 }
 
 /// Obeys the keys that were pressed, unless a text field, an open list or a dialogue takes them.
-pub fn obey(ctx: &Context, state: &State, listener: &Listener, actions: &mut Vec<Action>) {
+pub(crate) fn obey(ctx: &Context, state: &State, listener: &Listener, actions: &mut Vec<Action>) {
     if state.dialogue.is_some() || state.presented.is_some() || listener.is_typing(ctx) {
         return;
     }
@@ -246,7 +246,7 @@ pub fn obey(ctx: &Context, state: &State, listener: &Listener, actions: &mut Vec
 }
 
 /// Shows the table: two columns for everywhere, one for interpreting.
-pub fn dialogue(ctx: &Context, actions: &mut Vec<Action>) {
+pub(crate) fn dialogue(ctx: &Context, actions: &mut Vec<Action>) {
     let room = ctx.content_rect().size();
     let modal = dialogue::show(ctx, "shortcuts", |ui| {
         ui.set_width((room.x - 100.0).min(1060.0));

@@ -27,14 +27,14 @@ const PICTURE_SCALE: f32 = 0.6;
 
 /// The page, and what it keeps.
 #[derive(Default)]
-pub struct StartPage {
+pub(crate) struct StartPage {
     block: Option<[TextureHandle; 2]>,
     present: Presence,
 }
 
 impl StartPage {
     /// Shows the page.
-    pub fn show(&mut self, ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
+    pub(crate) fn show(&mut self, ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
         ScrollArea::vertical().show(ui, |ui| {
             ui.vertical_centered(|ui| {
                 ui.set_max_width(WIDTH.min(ui.available_width()));

@@ -24,7 +24,7 @@ const OFFERED: usize = 40;
 
 /// The dialogue, with the paths and numbers as they are typed.
 #[derive(Default)]
-pub struct WellDialogue {
+pub(crate) struct WellDialogue {
     deviation: PathBuf,
     name: String,
     tops: String,
@@ -40,7 +40,7 @@ pub struct WellDialogue {
 
 impl WellDialogue {
     /// Shows the dialogue.
-    pub fn show(&mut self, ctx: &Context, state: &State, work: &Work, path: &Path, actions: &mut Vec<Action>) {
+    pub(crate) fn show(&mut self, ctx: &Context, state: &State, work: &Work, path: &Path, actions: &mut Vec<Action>) {
         if self.deviation != path {
             let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
             *self = Self { deviation: path.to_owned(), name, ..Self::default() };

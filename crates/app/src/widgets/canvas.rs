@@ -15,7 +15,7 @@ use std::f32::consts::PI;
 use ttf::Colour;
 
 /// Points of the screen to a point of the page.
-pub const SCALE: f64 = 1.64;
+pub(crate) const SCALE: f64 = 1.64;
 /// Line segments that approximate a curve.
 const PIECES: usize = 8;
 /// Images of up to this many pixels are painted pixel by pixel where there is no texture of them.
@@ -24,23 +24,23 @@ const SMALL_PX: u32 = 512;
 const RIM: usize = 8;
 
 /// Converts a point of the screen to a point of the page.
-pub fn page(at: Pos2) -> DVec2 {
+pub(crate) fn page(at: Pos2) -> DVec2 {
     DVec2::new(f64::from(at.x), f64::from(at.y)) / SCALE
 }
 
 /// Converts a point of the page to a point of the screen.
-pub fn screen(at: DVec2) -> Pos2 {
+pub(crate) fn screen(at: DVec2) -> Pos2 {
     let at = at * SCALE;
     pos2(at.x as f32, at.y as f32)
 }
 
 /// Converts a rectangle of the screen to one of the page.
-pub fn page_rect(rect: Rect) -> page::Rect {
+pub(crate) fn page_rect(rect: Rect) -> page::Rect {
     page::Rect::new(page(rect.min), page(rect.max))
 }
 
 /// Paints a group; `texture` stands for its images.
-pub fn paint(painter: &Painter, group: &Group, texture: Option<TextureId>) {
+pub(crate) fn paint(painter: &Painter, group: &Group, texture: Option<TextureId>) {
     let clipped = group.clip.as_ref().and_then(Path::bounds).map(|bounds| {
         let clip = Rect::from_min_max(screen(bounds.min), screen(bounds.max));
         painter.with_clip_rect(clip.intersect(painter.clip_rect()))
@@ -59,7 +59,7 @@ pub fn paint(painter: &Painter, group: &Group, texture: Option<TextureId>) {
 /// The same group with letters and lines in the ink of the window's own words: what stands on the window and not on
 /// paper, whatever the theme.
 #[must_use]
-pub fn on_window(mut group: Group, visuals: &Visuals) -> Group {
+pub(crate) fn on_window(mut group: Group, visuals: &Visuals) -> Group {
     let [r, g, b, _] = visuals.text_color().to_array();
     let ink = Ink::glass(Colour::new(r, g, b), 0.8);
     for item in &mut group.items {

@@ -21,7 +21,7 @@ const LEAST_STEP_S: f64 = 1e-3;
 
 /// Holds back the events that belong to later frames.
 #[derive(Debug, Default)]
-pub struct EventOrder {
+pub(crate) struct EventOrder {
     waiting: Vec<Event>,
     /// When each of those that wait arrived, seconds.
     arrived_s: Vec<f64>,
@@ -33,7 +33,7 @@ pub struct EventOrder {
 impl EventOrder {
     /// Puts the events of windows of this context in order, and lets a press that is held for long in a slow frame count
     /// as a click.
-    pub fn install(ctx: &Context) {
+    pub(crate) fn install(ctx: &Context) {
         ctx.add_plugin(Self::default());
         ctx.options_mut(|options| {
             options.input_options.max_click_duration = f64::INFINITY;
@@ -118,7 +118,7 @@ impl Plugin for EventOrder {
 }
 
 /// The lines that the wheel was turned in this frame, upwards positive: a notch is a line. Nothing while it zooms.
-pub fn wheel_lines(ui: &Ui) -> f32 {
+pub(crate) fn wheel_lines(ui: &Ui) -> f32 {
     ui.input(|input| {
         let lines = |event: &Event| match event {
             Event::MouseWheel { unit, delta, modifiers, .. } if !modifiers.command && !modifiers.ctrl => match unit {
@@ -133,7 +133,7 @@ pub fn wheel_lines(ui: &Ui) -> f32 {
 }
 
 /// The places to which the pointer was moved in this frame, in order.
-pub fn moves(ui: &Ui) -> Vec<Pos2> {
+pub(crate) fn moves(ui: &Ui) -> Vec<Pos2> {
     let place = |event: &Event| match event {
         Event::PointerMoved(at) => Some(*at),
         _ => None,

@@ -5,7 +5,7 @@ use state::fields::field;
 use survey::Setting;
 
 /// Width of the column of labels that fields of a panel stand beside, points.
-pub const LABELS: f32 = 100.0;
+pub(crate) const LABELS: f32 = 100.0;
 
 /// A label in the column of labels, outside a grid.
 pub fn label(ui: &mut Ui, name: &str) -> Response {
@@ -45,10 +45,10 @@ pub fn chosen<T: PartialEq, N: Into<WidgetText>>(
 }
 
 /// The text of a field whose value is taken from the file.
-pub const AS_FILE: &str = "as the file says";
+pub(crate) const AS_FILE: &str = "as the file says";
 
 /// The name of a setting's field.
-pub fn name_of(setting: Setting) -> &'static str {
+pub(crate) fn name_of(setting: Setting) -> &'static str {
     field(setting).unwrap_or_else(|| setting.name())
 }
 
@@ -68,7 +68,7 @@ pub fn choice<T: Copy + PartialEq>(
 }
 
 /// A choice that always has a value.
-pub fn one_of<T: Copy + PartialEq>(ui: &mut Ui, setting: Setting, value: &mut T, choices: &[(T, &str)]) {
+pub(crate) fn one_of<T: Copy + PartialEq>(ui: &mut Ui, setting: Setting, value: &mut T, choices: &[(T, &str)]) {
     let name = name_of(setting);
     let shown = choices.iter().find(|(choice, _)| choice == value).map_or("", |(_, name)| name);
     chosen(ui, name, ComboBox::from_id_salt(name).selected_text(shown), value, choices.iter().copied());

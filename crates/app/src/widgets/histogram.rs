@@ -8,7 +8,7 @@ const COLUMNS: usize = 96;
 const SAMPLES: usize = 1 << 16;
 
 /// The histogram of a volume.
-pub struct Histogram {
+pub(crate) struct Histogram {
     /// Hash of the data that were counted.
     pub data_key: u64,
     counts: Vec<f32>,
@@ -18,7 +18,7 @@ pub struct Histogram {
 
 impl Histogram {
     /// Counts samples.
-    pub fn of(samples: &[f32], data_key: u64) -> Self {
+    pub(crate) fn of(samples: &[f32], data_key: u64) -> Self {
         let step = (samples.len() / SAMPLES).max(1);
         let values = || samples.iter().step_by(step).copied().filter(|value| value.is_finite());
         let range = [values().fold(f32::INFINITY, f32::min), values().fold(f32::NEG_INFINITY, f32::max)];
@@ -33,7 +33,7 @@ impl Histogram {
     }
 
     /// Draws the columns, each in the colour of its value.
-    pub fn paint(&self, painter: &Painter, rect: Rect, colour: impl Fn(f32) -> Color32) {
+    pub(crate) fn paint(&self, painter: &Painter, rect: Rect, colour: impl Fn(f32) -> Color32) {
         let [first, last] = self.range;
         let tallest = self.counts.iter().copied().fold(1e-6, f32::max);
         let column = rect.width() / COLUMNS as f32;

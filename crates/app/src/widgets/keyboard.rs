@@ -8,7 +8,7 @@ use eframe::egui::{Context, Event, Id, Key, Popup, TextEdit, Ui};
 
 /// Whether Enter was pressed in a dialogue and means its main button. Ask after the fields were drawn: the field in
 /// which Enter was pressed has let go of the focus by then.
-pub fn is_entered(ui: &Ui) -> bool {
+pub(crate) fn is_entered(ui: &Ui) -> bool {
     let pressed = |event: &Event| matches!(event, Event::Key { key: Key::Enter, pressed: true, repeat: false, .. });
     ui.input(|input| input.events.iter().any(pressed))
         && ui.memory(|memory| memory.focused().is_none())
@@ -17,7 +17,7 @@ pub fn is_entered(ui: &Ui) -> bool {
 
 /// Tells which keys belong to a field or an open list and which to the shortcuts.
 #[derive(Debug, Default)]
-pub struct Listener {
+pub(crate) struct Listener {
     /// Whether a field or a list took the keys in the last frame: egui lets go of the focus at Escape before the frame
     /// begins, so the key that ends the typing would be taken for a shortcut.
     was_typing: bool,
@@ -25,12 +25,12 @@ pub struct Listener {
 
 impl Listener {
     /// Whether the keys of this frame belong to a field or an open list.
-    pub fn is_typing(&self, ctx: &Context) -> bool {
+    pub(crate) fn is_typing(&self, ctx: &Context) -> bool {
         self.was_typing || takes_keys(ctx)
     }
 
     /// Ends a frame.
-    pub fn end_frame(&mut self, ctx: &Context) {
+    pub(crate) fn end_frame(&mut self, ctx: &Context) {
         self.was_typing = takes_keys(ctx);
     }
 }
@@ -41,7 +41,7 @@ fn takes_keys(ctx: &Context) -> bool {
 
 /// A name that is being changed in place.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Renaming {
+pub(crate) struct Renaming {
     of: String,
     text: String,
     is_open: bool,
@@ -49,7 +49,7 @@ pub struct Renaming {
 
 /// What became of the name.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Renamed {
+pub(crate) enum Renamed {
     /// It is still being typed.
     Typing,
     /// It stays as it was.
@@ -60,18 +60,18 @@ pub enum Renamed {
 
 impl Renaming {
     /// Begins to change this name.
-    pub fn of(name: &str) -> Self {
+    pub(crate) fn of(name: &str) -> Self {
         Self { of: name.to_owned(), text: name.to_owned(), is_open: false }
     }
 
     /// Whether this name is the one being changed.
-    pub fn is_of(&self, name: &str) -> bool {
+    pub(crate) fn is_of(&self, name: &str) -> bool {
         self.of == name
     }
 
     /// Shows the field, which takes the focus when it opens. Enter and a click elsewhere take the new name, Escape keeps
     /// the old one.
-    pub fn show(&mut self, ui: &mut Ui, width: f32) -> Renamed {
+    pub(crate) fn show(&mut self, ui: &mut Ui, width: f32) -> Renamed {
         let id = Id::unique(("renaming", &self.of));
         let field = TextEdit::singleline(&mut self.text).id(id).desired_width(width);
         let field = ui.name_inputs("New name", |ui| ui.add(field));

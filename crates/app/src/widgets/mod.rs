@@ -13,18 +13,18 @@
 //!
 //! Deliberately absent: the state of the window, projects, files, threads.
 
-pub mod canvas;
+pub(crate) mod canvas;
 mod colour_well;
 pub mod dialogue;
-pub mod event_order;
+pub(crate) mod event_order;
 pub mod form;
 pub mod histogram;
 pub mod keyboard;
-pub mod obstacle;
-pub mod opacity_curve;
+pub(crate) mod obstacle;
+pub(crate) mod opacity_curve;
 pub mod page;
 pub mod percent;
 pub mod raster;
-pub mod theme;
+pub(crate) mod theme;
 
-pub use colour_well::colour_well;
+pub(crate) use colour_well::colour_well;

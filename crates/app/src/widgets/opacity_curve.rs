@@ -30,14 +30,14 @@ struct Stop {
 
 /// The stop being dragged, and the stop chosen last.
 #[derive(Debug, Default)]
-pub struct OpacityCurve {
+pub(crate) struct OpacityCurve {
     held: Option<usize>,
     chosen: usize,
 }
 
 impl OpacityCurve {
     /// Shows a function and applies the user's changes to it.
-    pub fn show(&mut self, ui: &mut Ui, histogram: Option<&Histogram>, function: &mut RgbaFunction) {
+    pub(crate) fn show(&mut self, ui: &mut Ui, histogram: Option<&Histogram>, function: &mut RgbaFunction) {
         let mut stops = stops_of(function);
         self.chosen = self.chosen.min(stops.len().saturating_sub(1));
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click_and_drag());

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use ttf::{Colour, Preset};
 
 /// Pixels an inch of the page at which it is drawn here.
-pub const PREVIEW_DPI: f64 = 110.0;
+pub(crate) const PREVIEW_DPI: f64 = 110.0;
 /// How far beside a label it may be taken, points of the page.
 const REACH_PT: f64 = 2.0;
 /// Sizes that letters may be given, points.
@@ -43,7 +43,7 @@ impl PagePreview {
     }
 
     /// Whether there is a page to show.
-    pub fn has_page(&self) -> bool {
+    pub(crate) fn has_page(&self) -> bool {
         self.page.is_some()
     }
 

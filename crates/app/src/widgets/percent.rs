@@ -18,17 +18,17 @@ pub fn drag(share_of: &mut f32) -> DragValue<'_> {
 }
 
 /// A share from 0 to 1 as a slider.
-pub fn slider(share_of: &mut f32) -> Slider<'_> {
+pub(crate) fn slider(share_of: &mut f32) -> Slider<'_> {
     slider_to(share_of, 1.0)
 }
 
 /// A share from 0 to `most` as a slider.
-pub fn slider_to(share_of: &mut f32, most: f32) -> Slider<'_> {
+pub(crate) fn slider_to(share_of: &mut f32, most: f32) -> Slider<'_> {
     slider_within(share_of, 0.0..=most)
 }
 
 /// A share within a range as a slider.
-pub fn slider_within(share_of: &mut f32, range: RangeInclusive<f32>) -> Slider<'_> {
+pub(crate) fn slider_within(share_of: &mut f32, range: RangeInclusive<f32>) -> Slider<'_> {
     Slider::new(share_of, range).custom_formatter(|value, _| shown(value)).custom_parser(share)
 }
 

@@ -8,17 +8,17 @@ use eframe::egui::{
 };
 
 /// Ochre, as in rock paintings.
-pub const ACCENT_LIGHT: Color32 = Color32::from_rgb(0xa4, 0x4a, 0x1c);
+pub(crate) const ACCENT_LIGHT: Color32 = Color32::from_rgb(0xa4, 0x4a, 0x1c);
 /// The same for the dark theme.
-pub const ACCENT_DARK: Color32 = Color32::from_rgb(0xe5, 0x95, 0x5c);
+pub(crate) const ACCENT_DARK: Color32 = Color32::from_rgb(0xe5, 0x95, 0x5c);
 
 /// The accent colour of a theme.
-pub fn accent(visuals: &Visuals) -> Color32 {
+pub(crate) fn accent(visuals: &Visuals) -> Color32 {
     if visuals.dark_mode { ACCENT_DARK } else { ACCENT_LIGHT }
 }
 
 /// Sets both themes.
-pub fn install(ctx: &Context) {
+pub(crate) fn install(ctx: &Context) {
     ctx.set_style_of(Theme::Light, style(Theme::Light));
     ctx.set_style_of(Theme::Dark, style(Theme::Dark));
     // Where the desktop states no preference, the light theme is used.

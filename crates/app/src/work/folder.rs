@@ -50,14 +50,14 @@ impl Folder {
 
 /// Which of the recent projects still exist.
 #[derive(Default)]
-pub struct Presence {
+pub(crate) struct Presence {
     asked: Vec<PathBuf>,
     found: Latest<Vec<bool>>,
 }
 
 impl Presence {
     /// Whether each of the projects exists; until that is known, they are taken to exist.
-    pub fn of(&mut self, ctx: &Context, projects: &[PathBuf]) -> Vec<bool> {
+    pub(crate) fn of(&mut self, ctx: &Context, projects: &[PathBuf]) -> Vec<bool> {
         if self.asked != projects {
             self.asked = projects.to_vec();
             let (number, found, ctx) = (self.found.begin(), self.found.clone(), ctx.clone());

@@ -13,7 +13,7 @@ struct Looks<T> {
 }
 
 /// The latest result. Cheap to clone.
-pub struct Latest<T> {
+pub(crate) struct Latest<T> {
     looks: Arc<Mutex<Looks<T>>>,
 }
 
@@ -35,7 +35,7 @@ impl<T> Latest<T> {
     }
 
     /// Begins a new attempt, cancels the previous one, and returns the number under which the result is stored.
-    pub fn begin(&self) -> u64 {
+    pub(crate) fn begin(&self) -> u64 {
         let mut looks = self.lock();
         looks.progress.take().iter().for_each(Progress::cancel);
         looks.begun += 1;
@@ -43,7 +43,7 @@ impl<T> Latest<T> {
     }
 
     /// Registers the progress of an attempt, so that a newer one can cancel it.
-    pub fn stop_by(&self, number: u64, progress: &Progress) {
+    pub(crate) fn stop_by(&self, number: u64, progress: &Progress) {
         let mut looks = self.lock();
         if looks.begun == number {
             looks.progress = Some(progress.clone());
@@ -53,7 +53,7 @@ impl<T> Latest<T> {
     }
 
     /// Stores the result of an attempt, unless a newer one has begun.
-    pub fn put(&self, number: u64, found: T) {
+    pub(crate) fn put(&self, number: u64, found: T) {
         let mut looks = self.lock();
         if looks.begun == number {
             looks.found = Some((number, found));
@@ -61,12 +61,12 @@ impl<T> Latest<T> {
     }
 
     /// Reads the latest result and the number of its attempt.
-    pub fn with<R>(&self, look: impl FnOnce(Option<(u64, &T)>) -> R) -> R {
+    pub(crate) fn with<R>(&self, look: impl FnOnce(Option<(u64, &T)>) -> R) -> R {
         look(self.lock().found.as_ref().map(|(number, found)| (*number, found)))
     }
 
     /// Whether the attempt begun last has a result.
-    pub fn is_current(&self) -> bool {
+    pub(crate) fn is_current(&self) -> bool {
         let looks = self.lock();
         looks.found.as_ref().is_some_and(|(number, _)| *number == looks.begun)
     }

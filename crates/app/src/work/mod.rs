@@ -10,26 +10,28 @@ pub mod data;
 pub mod fence;
 pub mod folder;
 mod lasso;
-pub mod latest;
+pub(crate) mod latest;
 mod latest_value;
 pub mod map;
 mod orders;
 pub mod picks;
 pub mod picture;
-pub mod running;
+pub(crate) mod running;
 pub mod scan;
 pub mod share;
 pub mod slice;
-pub mod swatches;
+pub(crate) mod swatches;
 mod threads;
 
 pub use data::{Purpose, Rocks, Seen, Wanted};
 pub use map::Maps;
 pub use picks::{Interpreted, InterpretedHorizon, Picks, ShownFault, ShownPick, sheet};
-pub use picture::{Drawing, Drawn, PictureRequest, Touch};
+pub(crate) use picture::Touch;
+pub use picture::{Drawing, Drawn, PictureRequest};
 pub use running::{Running, RunningLine};
 pub use share::SharePreview;
-pub use slice::{CutOf, SliceRequest, Slices};
+pub(crate) use slice::CutOf;
+pub use slice::{SliceRequest, Slices};
 pub use swatches::Swatches;
 
 use super::state::{Notice, PickingStep, Place, Snapshot, Task};
@@ -118,7 +120,7 @@ pub enum Event {
 }
 
 /// Wakes the window up, because something has arrived.
-pub type Wake = Arc<dyn Fn() + Send + Sync>;
+pub(crate) type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// Where workers put their results.
 #[derive(Clone)]
@@ -135,7 +137,7 @@ impl Outbox {
     }
 
     /// Wakes the window without a result.
-    pub fn wake(&self) {
+    pub(crate) fn wake(&self) {
         (self.wake)();
     }
 }
@@ -182,7 +184,7 @@ impl Work {
     }
 
     /// The next result, if there is one.
-    pub fn next_event(&mut self) -> Option<Event> {
+    pub(crate) fn next_event(&mut self) -> Option<Event> {
         let event = self.events.try_recv().ok()?;
         if let Event::Opened(snapshot) = &event {
             self.root = Some(snapshot.root.clone());

@@ -50,7 +50,7 @@ pub struct PictureRequest {
 
 /// A click on volume rendering, where the place that is hit may lie behind the faces.
 #[derive(Clone)]
-pub struct Touch {
+pub(crate) struct Touch {
     /// The project.
     pub root: PathBuf,
     /// The scene, with a size in points.
@@ -123,7 +123,7 @@ impl Drawing {
     }
 
     /// Finds what is hit at a place of a picture, and picks it.
-    pub fn touch(&self, touch: Touch) {
+    pub(crate) fn touch(&self, touch: Touch) {
         self.worker.change(|wanted| wanted.touch = Some(touch));
     }
 }

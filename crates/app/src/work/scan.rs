@@ -41,7 +41,7 @@ pub struct InterpretationScan {
 const PATIENCE: Duration = Duration::from_millis(250);
 
 /// The result of reading a file with what is stated about it.
-pub struct Reading<O, T> {
+pub(crate) struct Reading<O, T> {
     /// The statements with which it was read last.
     read: Option<O>,
     /// The present statements, and since when they have been unchanged.
@@ -57,7 +57,7 @@ impl<O, T> Default for Reading<O, T> {
 
 impl<O: Clone + PartialEq, T: Send + 'static> Reading<O, T> {
     /// Reads the file on a thread: at once the first time, and again when the statements have stopped changing.
-    pub fn follow(
+    pub(crate) fn follow(
         &mut self,
         ctx: &Context,
         work: &Work,
@@ -91,13 +91,13 @@ impl<O: Clone + PartialEq, T: Send + 'static> Reading<O, T> {
     }
 
     /// Whether the file can be read with the present statements.
-    pub fn is_good(&self, stated: &O) -> bool {
+    pub(crate) fn is_good(&self, stated: &O) -> bool {
         let is_read = self.read.as_ref() == Some(stated) && self.found.is_current();
         is_read && self.with(|found| matches!(found, Some((_, Ok(_)))))
     }
 
     /// Reads the latest result and the number of its attempt.
-    pub fn with<R>(&self, look: impl FnOnce(Option<(u64, &Result<T, Notice>)>) -> R) -> R {
+    pub(crate) fn with<R>(&self, look: impl FnOnce(Option<(u64, &Result<T, Notice>)>) -> R) -> R {
         self.found.with(look)
     }
 }

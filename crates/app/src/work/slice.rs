@@ -32,7 +32,7 @@ pub struct SliceRequest {
 }
 
 /// What a section shows: its position, the key of its data, what of the candidates, which volumes.
-pub type CutOf = (f64, u64, FaceData, SectionVolumes);
+pub(crate) type CutOf = (f64, u64, FaceData, SectionVolumes);
 
 /// The latest request of each kind.
 #[derive(Default)]

@@ -69,7 +69,7 @@ impl Swatches {
     }
 
     /// Uses the tiles of this project, too.
-    pub fn follow(&mut self, root: &std::path::Path, document: &Document) {
+    pub(crate) fn follow(&mut self, root: &std::path::Path, document: &Document) {
         let tiles = document.textures.iter().map(|entry| entry.file.clone()).collect();
         let textures = Some((root.to_owned(), tiles));
         if self.textures != textures {

@@ -90,7 +90,7 @@ impl Stage {
     }
 
     /// Whether the stage has one task, which handles summaries of all bricks.
-    pub fn is_merging(self) -> bool {
+    pub(crate) fn is_merging(self) -> bool {
         use Kind::{Components, Divides, Field, Joined, Layers, Lobes, Noise, Offsets, Order, Surroundings, Variances};
         matches!(
             self.0,
@@ -184,7 +184,7 @@ impl Bricks<'_> {
     ///
     /// # Errors
     /// [`InterpError`].
-    pub fn run_task(&self, stage: Stage, task: usize, progress: &Progress) -> Result<(), InterpError> {
+    pub(crate) fn run_task(&self, stage: Stage, task: usize, progress: &Progress) -> Result<(), InterpError> {
         progress.check()?;
         match stage.0 {
             Kind::Extrema => self.extrema(task),

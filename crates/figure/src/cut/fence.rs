@@ -96,7 +96,7 @@ pub fn place(corners: &[DVec2], s: f64) -> DVec2 {
 }
 
 /// Length along a fence of the place on it nearest to a point, and how far that is, voxels.
-pub fn station_of(corners: &[DVec2], point: DVec2) -> Option<(f64, f64)> {
+pub(crate) fn station_of(corners: &[DVec2], point: DVec2) -> Option<(f64, f64)> {
     let legs = corners.windows(2).zip(stations(corners)).map(|(leg, station)| {
         let (step, off) = (leg[1] - leg[0], point - leg[0]);
         let share = (step.dot(off) / step.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);

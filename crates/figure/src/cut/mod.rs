@@ -10,7 +10,8 @@ mod kind;
 mod pixels;
 pub mod traces;
 
-pub use fence::{FenceCut, legs, length_m, place, station_of, stations};
+pub(crate) use fence::station_of;
+pub use fence::{FenceCut, legs, length_m, place, stations};
 pub use kind::{SectionKind, value_at};
 
 use glam::{DVec2, DVec3};

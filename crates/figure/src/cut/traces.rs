@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3};
 pub type Line = Vec<DVec2>;
 
 /// Where a sheet meets a section at a voxel position; `[inlines, crosslines]` is its size.
-pub fn of_sheet(sheet: &TraceSheet, [nx, ny]: [usize; 2], kind: SectionKind, at: f64) -> Vec<Line> {
+pub(crate) fn of_sheet(sheet: &TraceSheet, [nx, ny]: [usize; 2], kind: SectionKind, at: f64) -> Vec<Line> {
     if kind != SectionKind::Slice {
         return runs(passed(kind, at, [nx, ny]).map(|n| f64::from(sheet.z[n])));
     }
@@ -38,7 +38,13 @@ pub fn of_sheet(sheet: &TraceSheet, [nx, ny]: [usize; 2], kind: SectionKind, at:
 }
 
 /// Bridges across the holes of a sheet on an inline or crossline; a slice has none, for a hole has no depth.
-pub fn bridges(sheet: &TraceSheet, holes: &[SheetHole], size: [usize; 2], kind: SectionKind, at: f64) -> Vec<Line> {
+pub(crate) fn bridges(
+    sheet: &TraceSheet,
+    holes: &[SheetHole],
+    size: [usize; 2],
+    kind: SectionKind,
+    at: f64,
+) -> Vec<Line> {
     if kind == SectionKind::Slice {
         return Vec::new();
     }
@@ -51,7 +57,7 @@ pub fn along(sheet: &TraceSheet, size: [usize; 2], corners: &[DVec2]) -> Vec<Lin
 }
 
 /// Bridges across the holes of a sheet on a fence.
-pub fn bridges_along(sheet: &TraceSheet, holes: &[SheetHole], size: [usize; 2], corners: &[DVec2]) -> Vec<Line> {
+pub(crate) fn bridges_along(sheet: &TraceSheet, holes: &[SheetHole], size: [usize; 2], corners: &[DVec2]) -> Vec<Line> {
     gaps(passed_by_fence(size, corners).map(|n| match n {
         Some(n) => (f64::from(sheet.z[n]), is_hole(holes, sheet.block, n)),
         None => (f64::NAN, false),
@@ -120,14 +126,14 @@ fn runs(values: impl Iterator<Item = f64>) -> Vec<Line> {
 }
 
 /// Where triangles meet a section.
-pub fn of_mesh(triangles: &[[DVec3; 3]], kind: SectionKind, at: f64) -> Vec<Line> {
+pub(crate) fn of_mesh(triangles: &[[DVec3; 3]], kind: SectionKind, at: f64) -> Vec<Line> {
     let axis = kind.axis();
     let cuts = triangles.iter().filter_map(|triangle| cut(triangle, triangle.map(|corner| corner[axis] - at)));
     cuts.map(|ends| ends.map(|p| kind.flat(p)).to_vec()).collect()
 }
 
 /// Where triangles meet a fence: leg by leg, each cut ending where its leg does.
-pub fn mesh_along(triangles: &[[DVec3; 3]], corners: &[DVec2]) -> Vec<Line> {
+pub(crate) fn mesh_along(triangles: &[[DVec3; 3]], corners: &[DVec2]) -> Vec<Line> {
     let mut lines = Vec::new();
     for (leg, station) in corners.windows(2).zip(stations(corners)) {
         let length = leg[0].distance(leg[1]);

@@ -39,7 +39,7 @@ pub fn axis_title(geometry: &SurveyGeometry, axis: usize) -> &'static str {
 
 /// A number along an axis.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tick {
+pub(crate) struct Tick {
     /// Where: x or y.
     pub at: f64,
     /// The number.
@@ -60,7 +60,7 @@ pub fn round_step(least: f64) -> f64 {
 
 impl Axis {
     /// Round values between two places on the page, `every` points apart or more.
-    pub fn ticks(&self, [from, to]: [f64; 2], every: f64) -> Vec<Tick> {
+    pub(crate) fn ticks(&self, [from, to]: [f64; 2], every: f64) -> Vec<Tick> {
         let per_point = (self.ends[1] - self.ends[0]) / (self.at[1] - self.at[0]);
         if !(per_point.is_finite() && per_point != 0.0) {
             return Vec::new();
@@ -89,13 +89,13 @@ fn edge_ticks(axis: &Axis, seen: [f64; 2], every: f64) -> Vec<Tick> {
 }
 
 /// Room that the numbers and the name of an axis take left of a section.
-pub fn left_margin(axis: &Axis) -> f64 {
+pub(crate) fn left_margin(axis: &Axis) -> f64 {
     let longest = axis.ends.iter().map(|value| width_of(&format!("{value:.0}"), NUMBER_PT)).fold(0.0, f64::max);
     longest + TICK_PT + GAP_PT + NUMBER_PT + 5.0
 }
 
 /// Room that numbers take above a section.
-pub fn top_margin() -> f64 {
+pub(crate) fn top_margin() -> f64 {
     NUMBER_PT + TICK_PT + GAP_PT
 }
 

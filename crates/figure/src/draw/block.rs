@@ -116,7 +116,7 @@ pub fn pixels_per_metre(view: &View, voxel: DVec3) -> f64 {
 }
 
 /// A block with what lies before it.
-pub struct BlockPanel<'a> {
+pub(crate) struct BlockPanel<'a> {
     /// What it shows; the size is found here.
     pub scene: &'a Scene,
     /// Where its samples are.
@@ -141,7 +141,7 @@ pub struct BlockPanel<'a> {
 
 /// A block on its page.
 #[derive(Debug, Clone, PartialEq)]
-pub struct DrawnBlock {
+pub(crate) struct DrawnBlock {
     /// What is drawn.
     pub group: Group,
     /// The scale on paper in the block's middle, points a metre.
@@ -180,7 +180,7 @@ impl BlockPanel<'_> {
     ///
     /// # Errors
     /// What the painter says.
-    pub fn drawn(&self, room: Rect, painter: &mut dyn BlockPainter) -> Result<DrawnBlock, FigureError> {
+    pub(crate) fn drawn(&self, room: Rect, painter: &mut dyn BlockPainter) -> Result<DrawnBlock, FigureError> {
         let mut group = Group::new(GroupKind::Panel, BLOCK);
         let (mut points_per_m, mut points_down, mut compass) = (0.0, 0.0, [DVec2::ZERO; 2]);
         let blends = self.comparison.blends();

@@ -8,7 +8,7 @@ use page::list::{Across, Group, GroupKind, Path, PathItem, Picture, Stroke, Text
 use ttf::RawColour;
 
 /// Height of the strip that holds a bar, points.
-pub const STRIP_PT: f64 = 26.0;
+pub(crate) const STRIP_PT: f64 = 26.0;
 /// Length and height of the bar, points.
 const BAR_PT: [f64; 2] = [110.0, 6.0];
 /// Colours along the bar.
@@ -17,7 +17,7 @@ const STEPS: u32 = 256;
 const GAP_PT: f64 = 10.0;
 
 /// The bar at the left of a strip, with what it shows before it and the ends of its range, and 0 between them, below.
-pub fn drawn(strip: Rect, raw: &RawColour) -> Group {
+pub(crate) fn drawn(strip: Rect, raw: &RawColour) -> Group {
     let mut group = Group::new(GroupKind::Annotation, "colour bar");
     let title = Text::new(DVec2::new(strip.min.x, strip.min.y + 0.5 * BAR_PT[1] + 4.0), raw.volume.clone());
     let title = title.sized(TEXT_PT - 0.5).inked(QUIET_INK).anchored(Across::Start, Upright::Middle);

@@ -41,7 +41,7 @@ const CURVES: [Colour; 3] =
 const SCALE: [f64; 2] = [0.005, 0.995];
 
 /// Wells side by side.
-pub struct CorrelationPanel<'a> {
+pub(crate) struct CorrelationPanel<'a> {
     /// The wells from left to right.
     pub columns: &'a [Column],
     /// How layers are drawn, youngest first, and the library with their patterns.
@@ -93,7 +93,7 @@ impl CorrelationPanel<'_> {
     ///
     /// # Errors
     /// A pattern that does not draw.
-    pub fn drawn(&self, room: Rect) -> Result<Group, FigureError> {
+    pub(crate) fn drawn(&self, room: Rect) -> Result<Group, FigureError> {
         let mut group = Group::new(GroupKind::Panel, "correlation");
         let mut down = Axis { name: self.axis.clone(), ends: self.range, at: [0.0; 2], least_step: 0.0 };
         let surfaces = self.surfaces();

@@ -31,7 +31,7 @@ const PARAGRAPH_PT: f64 = 9.0;
 
 /// A line that a legend explains.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LegendLine {
+pub(crate) struct LegendLine {
     /// What it stands for.
     pub name: String,
     /// What kind of thing that is.
@@ -55,24 +55,24 @@ pub enum Stand {
 
 impl LegendLine {
     /// A line with its name.
-    pub fn new(name: &str, kind: GroupKind, stroke: Stroke) -> Self {
+    pub(crate) fn new(name: &str, kind: GroupKind, stroke: Stroke) -> Self {
         Self { name: name.to_owned(), kind, stroke, stand: Stand::Across }
     }
 
     /// A well.
-    pub fn well(name: &str, stroke: Stroke) -> Self {
+    pub(crate) fn well(name: &str, stroke: Stroke) -> Self {
         Self { stand: Stand::Upright, ..Self::new(name, GroupKind::Well, stroke) }
     }
 
     /// The tops of wells, with half the length of their mark in points, and how that is drawn.
-    pub fn well_top(well: Stroke, (half, mark): (f64, Stroke)) -> Self {
+    pub(crate) fn well_top(well: Stroke, (half, mark): (f64, Stroke)) -> Self {
         Self { stand: Stand::Crossed(half, mark), ..Self::well("Well top", well) }
     }
 }
 
 /// What a legend lists.
 #[derive(Clone, Copy)]
-pub struct Legend<'a> {
+pub(crate) struct Legend<'a> {
     /// Layers, and the library that has their patterns.
     pub layers: Option<(&'a [LayerStyle], &'a TextureLibrary)>,
     /// Horizons, below the layers.
@@ -98,7 +98,7 @@ impl Legend<'_> {
     }
 
     /// Whether there is nothing to list.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.styles().is_empty() && self.horizons.is_empty() && self.lines.is_empty()
     }
 
@@ -162,7 +162,7 @@ impl Legend<'_> {
 
     /// The width that shows all names in a room of this size: for one column no more than `most`, for several no more than
     /// half of the room.
-    pub fn width(&self, room: DVec2, most: f64) -> f64 {
+    pub(crate) fn width(&self, room: DVec2, most: f64) -> f64 {
         let widest = 0.5 * room.x;
         let columns = self.arranged(DVec2::new(widest, room.y)).columns as f64;
         let wanted = self.column(TEXT_PT) * columns + COLUMN_GAP_PT * (columns - 1.0);
@@ -171,7 +171,7 @@ impl Legend<'_> {
 
     /// Columns across a room of this width, and the height of the legend in them. All names stand in letters of full size,
     /// or, where that would be one column, in the smallest, without what stands in brackets.
-    pub fn across(&self, width: f64) -> (usize, f64) {
+    pub(crate) fn across(&self, width: f64) -> (usize, f64) {
         let short = self.names().map(|name| width_of(name.split(" (").next().unwrap_or(name), LEAST_TEXT_PT));
         let short = SWATCH_PT[0] + GAP_PT + short.fold(LEAST_NAME_PT, f64::max) + 1.0;
         let columns = |own: f64| ((width + COLUMN_GAP_PT) / (own + COLUMN_GAP_PT)).floor() as usize;
@@ -194,7 +194,7 @@ impl Legend<'_> {
     ///
     /// # Errors
     /// A pattern that does not draw.
-    pub fn drawn(&self, room: Rect) -> Result<Group, FigureError> {
+    pub(crate) fn drawn(&self, room: Rect) -> Result<Group, FigureError> {
         self.arranged_as(self.arranged(room.size()), room)
     }
 
@@ -202,7 +202,7 @@ impl Legend<'_> {
     ///
     /// # Errors
     /// A pattern that does not draw.
-    pub fn drawn_across(&self, room: Rect, columns: usize) -> Result<Group, FigureError> {
+    pub(crate) fn drawn_across(&self, room: Rect, columns: usize) -> Result<Group, FigureError> {
         self.arranged_as(self.packed(room.height(), columns, 1.0), room)
     }
 

@@ -47,7 +47,7 @@ impl MapFrame {
     }
 
     /// Points a metre.
-    pub fn points_per_m(&self) -> f64 {
+    pub(crate) fn points_per_m(&self) -> f64 {
         self.scale
     }
 
@@ -131,7 +131,7 @@ pub fn marks(lines: &[Vec<DVec2>], frame: &MapFrame) -> Group {
 }
 
 /// A map with all that explains it.
-pub struct MapPanel<'a> {
+pub(crate) struct MapPanel<'a> {
     /// What it is called.
     pub title: String,
     /// What it shows.
@@ -146,7 +146,7 @@ pub struct MapPanel<'a> {
 
 impl MapPanel<'_> {
     /// The panel in its room.
-    pub fn drawn(&self, room: Rect) -> Group {
+    pub(crate) fn drawn(&self, room: Rect) -> Group {
         let mut group = Group::new(GroupKind::Panel, &self.title);
         let body = room.inside([2.0, TITLE_ROW_PT + 2.0, COLUMN_PT, scale::STRIP_PT + 4.0]);
         if !body.is_proper() {

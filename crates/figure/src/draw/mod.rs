@@ -6,7 +6,7 @@
 pub mod annotation;
 pub mod axes;
 pub mod block;
-pub mod colour_bar;
+pub(crate) mod colour_bar;
 pub mod correlation;
 pub mod legend;
 pub mod map;
@@ -22,7 +22,7 @@ pub mod section_wells;
 pub(crate) mod seen;
 pub mod surfaces;
 pub mod swatch;
-pub mod vector_block;
+pub(crate) mod vector_block;
 pub mod water;
 pub mod words;
 

@@ -9,7 +9,7 @@ use survey::SurveyGeometry;
 use ttf::Colour;
 
 /// Side of the square that holds an arrow, points.
-pub const SIDE_PT: f64 = 36.0;
+pub(crate) const SIDE_PT: f64 = 36.0;
 /// From the middle of the square to the farthest point of the needle, and to the middle of its letter, points.
 const NEEDLE_PT: f64 = 9.0;
 const LETTER_PT: f64 = 13.2;
@@ -21,7 +21,7 @@ const STEP: f64 = 0.01;
 /// East and north at a place of a block as they lie on the page: pixels a metre, y down.
 ///
 /// The map's axes are taken through the survey's own, so that mirrored and turned surveys point right.
-pub fn compass(view: &View, geometry: &SurveyGeometry, voxel: DVec3) -> [DVec2; 2] {
+pub(crate) fn compass(view: &View, geometry: &SurveyGeometry, voxel: DVec3) -> [DVec2; 2] {
     let origin = geometry.voxel_from_world(geometry.world_from_voxel(DVec3::ZERO));
     [DVec3::X, DVec3::Y].map(|metre| {
         let step = geometry.voxel_from_world(geometry.world_from_voxel(DVec3::ZERO) + metre) - origin;

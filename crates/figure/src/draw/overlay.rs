@@ -171,7 +171,7 @@ impl OverlayLines {
     }
 
     /// The names of the horizons that have lines here.
-    pub fn seen_horizons(&self) -> impl Iterator<Item = &str> {
+    pub(crate) fn seen_horizons(&self) -> impl Iterator<Item = &str> {
         let all = [&self.horizons, &self.filled, &self.bridges].into_iter().flatten();
         all.filter(|horizon| !horizon.lines.is_empty()).map(|horizon| horizon.name.as_str())
     }

@@ -9,7 +9,7 @@ use render::{Projection, Scene};
 use survey::{SurveyGeometry, VerticalUnit};
 
 /// Height of the strip that holds a scale bar, points.
-pub const STRIP_PT: f64 = 24.0;
+pub(crate) const STRIP_PT: f64 = 24.0;
 /// Part of the width that a bar may take.
 const SHARE: f64 = 0.3;
 /// Height of a bar, points.
@@ -23,7 +23,7 @@ const CAPTION_PITCH_PT: f64 = 9.5;
 const EXAGGERATION: [&str; 2] = ["vertical exaggeration", "V.E."];
 
 /// The largest of 1, 2, 5 × 10ⁿ that is not larger.
-pub fn round_length(longest: f64) -> f64 {
+pub(crate) fn round_length(longest: f64) -> f64 {
     let decade = 10f64.powf(longest.log10().floor());
     let lengths = [5.0, 2.0, 1.0].map(|factor| factor * decade);
     lengths.into_iter().find(|length| *length <= longest).unwrap_or(decade)
@@ -33,7 +33,7 @@ pub fn round_length(longest: f64) -> f64 {
 const UPRIGHT_PT: [f64; 2] = [26.0, 5.0];
 
 /// A length in the unit that it is read in.
-pub fn length_text(length_m: f64) -> String {
+pub(crate) fn length_text(length_m: f64) -> String {
     if length_m >= 1000.0 { format!("{} km", length_m / 1000.0) } else { format!("{length_m} m") }
 }
 
@@ -117,7 +117,7 @@ pub fn exaggeration(factor: f64, geometry: &SurveyGeometry) -> String {
 }
 
 /// What a reader must know to read lengths on a block.
-pub fn block_caption(scene: &Scene, geometry: &SurveyGeometry) -> String {
+pub(crate) fn block_caption(scene: &Scene, geometry: &SurveyGeometry) -> String {
     let mut text = exaggeration(scene.exaggeration, geometry);
     if matches!(scene.camera.projection, Projection::Perspective { .. }) {
         text += "; lengths hold in the middle of the block";

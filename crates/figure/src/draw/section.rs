@@ -136,7 +136,7 @@ fn model_lines(
 }
 
 /// A line as its quality has it.
-pub fn quality_stroke(stroke: Stroke, quality: LineQuality) -> Stroke {
+pub(crate) fn quality_stroke(stroke: Stroke, quality: LineQuality) -> Stroke {
     match quality {
         LineQuality::Certain => stroke.round(),
         LineQuality::Approximate => stroke.dashed(5.0, 3.0),
@@ -198,14 +198,14 @@ impl Default for Zoom {
 
 impl Zoom {
     /// Where the whole section lies when it is seen in `body`.
-    pub fn image_in(&self, body: Rect) -> Rect {
+    pub(crate) fn image_in(&self, body: Rect) -> Rect {
         let size = body.size() * self.factor.max(1.0);
         Rect::sized(body.centre() - DVec2::from_array(self.middle) * size, size)
     }
 }
 
 /// A section with all that explains it.
-pub struct SectionPanel<'a> {
+pub(crate) struct SectionPanel<'a> {
     /// What it is called: "Inline 1250".
     pub title: String,
     /// What it shows.
@@ -232,7 +232,7 @@ pub struct SectionPanel<'a> {
 
 /// How horizons are drawn between patterns.
 #[derive(Debug, Clone)]
-pub struct SectionInk {
+pub(crate) struct SectionInk {
     /// Their colour.
     pub colour: Colour,
     /// Those that are erosional and so drawn heavier.

@@ -19,7 +19,7 @@ const LAYER_SHARE: f64 = 0.25;
 
 /// What the parts of a block are called, youngest first.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct BlockNames<'a> {
+pub(crate) struct BlockNames<'a> {
     /// Layers.
     pub layers: &'a [LayerStyle],
     /// Horizons.

@@ -38,7 +38,7 @@ pub enum Mapped {
 
 impl Mapped {
     /// Whether there is such a thing among so many horizons.
-    pub fn is_among(self, count: usize) -> bool {
+    pub(crate) fn is_among(self, count: usize) -> bool {
         match self {
             Self::Structure(horizon) => horizon < count,
             Self::Thickness(upper, lower) => upper < lower && lower < count,

@@ -68,7 +68,7 @@ impl<'a> Occupancy<'a> {
     }
 
     /// Sets apart the vertices added so far: overlaps with them are counted in [`Overlap::beside`].
-    pub fn set_apart(&mut self) {
+    pub(crate) fn set_apart(&mut self) {
         self.others = self.entries.len();
     }
 

@@ -6,7 +6,7 @@ use glam::Vec2;
 
 /// Two rims of one horizon that face one another across a fault.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pair {
+pub(crate) struct Pair {
     /// Index of the horizon.
     pub horizon: usize,
     /// The middle between them, a point on the fault, voxels.

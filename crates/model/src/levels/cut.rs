@@ -31,7 +31,7 @@ pub struct CutLattice {
 }
 
 /// Unknowns and their weights in a value or a slope.
-pub type Terms = [(u32, f64); 8];
+pub(crate) type Terms = [(u32, f64); 8];
 
 impl CutLattice {
     /// The nodes around a volume, about so many, their spacing the same in metres along each axis where that is not finer
@@ -219,7 +219,7 @@ impl CutLattice {
     }
 
     /// The slope at a voxel position along a metric direction, per metre.
-    pub fn slope_at(&self, block: usize, p: Vec3, direction: DVec3, voxel_from_metric: DMat3) -> Terms {
+    pub(crate) fn slope_at(&self, block: usize, p: Vec3, direction: DVec3, voxel_from_metric: DMat3) -> Terms {
         let along = voxel_from_metric * direction / self.nodes.step.as_dvec3();
         let (node, f) = self.cell(p);
         let corners = self.corners(block, node);

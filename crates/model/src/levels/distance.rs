@@ -203,7 +203,7 @@ pub struct NodeBox {
 
 impl NodeBox {
     /// The nodes at a spacing that cover the box from `low` to `high`.
-    pub fn covering(low: Vec3, high: Vec3, step: Vec3) -> Self {
+    pub(crate) fn covering(low: Vec3, high: Vec3, step: Vec3) -> Self {
         let counts = ((high - low) / step).ceil().to_array().map(|n| n.max(1.0) as usize + 1);
         Self { origin: low, step, size: counts }
     }

@@ -14,7 +14,7 @@ mod shape;
 mod silhouette;
 mod tree;
 
-pub use cut::{CutLattice, Terms, resampled};
+pub use cut::{CutLattice, resampled};
 pub use distance::NodeBox;
 pub use least_squares::Equations;
 pub use oriented::surface_through;

@@ -60,7 +60,7 @@ impl FaultSurface {
 
     /// Whether the fault was interpreted at the place that is reached along the plane's normal: within its rim, which
     /// counts as part of it, so that a section through the last stick shows the fault.
-    pub fn is_interpreted_at(&self, p: DVec3) -> bool {
+    pub(crate) fn is_interpreted_at(&self, p: DVec3) -> bool {
         self.extent_at(p) >= -RIM_CELLS * self.spacing_m
     }
 

@@ -78,7 +78,7 @@ impl Path {
     }
 
     /// The rectangle that it is, if it is one as [`Self::rect`] makes them.
-    pub fn as_rect(&self) -> Option<Rect> {
+    pub(crate) fn as_rect(&self) -> Option<Rect> {
         let [Segment::Move(min), Segment::Line(_), Segment::Line(max), ..] = self.segments[..] else { return None };
         let rect = Rect::new(min, max);
         (*self == Self::rect(rect)).then_some(rect)

@@ -231,7 +231,7 @@ impl Text {
     }
 
     /// The left end of its baseline, before it is turned about [`Text::at`].
-    pub fn baseline_start(&self) -> DVec2 {
+    pub(crate) fn baseline_start(&self) -> DVec2 {
         let left = match self.anchor.across {
             Across::Start => 0.0,
             Across::Middle => -0.5 * self.width(),

@@ -34,7 +34,7 @@ const BESIDE: usize = 2;
 /// Places on the page nearer than this are one, points.
 const ON_PAGE_PT: f64 = 1e-6;
 /// Longest side of a page, pixels.
-pub const MOST_SIDE_PX: u32 = 32_768;
+pub(crate) const MOST_SIDE_PX: u32 = 32_768;
 
 /// Draws a page at a resolution, dots an inch.
 ///

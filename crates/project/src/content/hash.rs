@@ -11,7 +11,7 @@ use survey::{Fault, Horizon, TriangleMesh, Well};
 ///
 /// # Errors
 /// Data are missing or damaged.
-pub fn hash_stored(volume: &StoredVolume) -> Result<String, StoreError> {
+pub(crate) fn hash_stored(volume: &StoredVolume) -> Result<String, StoreError> {
     let mut hash = blake3::Hasher::new();
     hash.update(bytemuck::cast_slice(&volume.size(0).map(|count| count as u64)));
     hash.update(volume.type_name().as_bytes());
@@ -22,7 +22,7 @@ pub fn hash_stored(volume: &StoredVolume) -> Result<String, StoreError> {
 }
 
 /// BLAKE3 of a horizon's sheets, or of its surface of any shape.
-pub fn hash_horizon(horizon: &Horizon) -> String {
+pub(crate) fn hash_horizon(horizon: &Horizon) -> String {
     let mut hash = blake3::Hasher::new();
     for sheet in &horizon.sheets {
         let block = sheet.block.map_or(u64::MAX, u64::from);
@@ -57,7 +57,7 @@ fn add_mesh(hash: &mut blake3::Hasher, mesh: &TriangleMesh) {
 }
 
 /// BLAKE3 of i, j, k, layer and block at all samples, and of how many there are along each axis.
-pub fn hash_parameterization(volumes: &ParameterizationVolumes) -> String {
+pub(crate) fn hash_parameterization(volumes: &ParameterizationVolumes) -> String {
     let mut hash = blake3::Hasher::new();
     hash.update(bytemuck::cast_slice(&volumes.i.size().map(|count| count as u64)));
     for values in [&volumes.i, &volumes.j, &volumes.k] {
@@ -73,7 +73,7 @@ pub fn hash_parameterization(volumes: &ParameterizationVolumes) -> String {
 ///
 /// # Errors
 /// A value cannot be written as JSON.
-pub fn hash_well(well: &Well) -> Result<String, serde_json::Error> {
+pub(crate) fn hash_well(well: &Well) -> Result<String, serde_json::Error> {
     let nameless = Well { name: String::new(), ..well.clone() };
     Ok(blake3::hash(&serde_json::to_vec(&nameless)?).to_hex().to_string())
 }

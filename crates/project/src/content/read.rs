@@ -70,7 +70,7 @@ fn check_volume(root: &Path, entry: &VolumeEntry, stored: &StoredVolume) -> Resu
 ///
 /// # Errors
 /// Those of [`open_recorded`], or cancelled.
-pub fn read_volume(
+pub(crate) fn read_volume(
     root: &Path,
     entry: &VolumeEntry,
     frame: &SurveyGeometry,
@@ -83,7 +83,7 @@ pub fn read_volume(
 ///
 /// # Errors
 /// Those of [`open_recorded`], or cancelled; at a coarser level the samples are not compared with what was recorded.
-pub fn read_level(
+pub(crate) fn read_level(
     root: &Path,
     entry: &VolumeEntry,
     frame: &SurveyGeometry,
@@ -126,7 +126,7 @@ pub fn read_fault(root: &Path, entry: &FaultEntry) -> Result<Fault, ProjectError
 /// # Errors
 /// Data are missing or damaged, [`ProjectError::OtherContent`] if they are not those that were recorded, or the user
 /// cancelled.
-pub fn read_parameterization(
+pub(crate) fn read_parameterization(
     root: &Path,
     entry: &ParameterizationEntry,
     progress: &Progress,
@@ -141,7 +141,7 @@ pub fn read_parameterization(
 ///
 /// # Errors
 /// It is missing, [`ProjectError::OtherContent`] if it is not what was recorded.
-pub fn texture_path(root: &Path, entry: &TextureEntry) -> Result<PathBuf, ProjectError> {
+pub(crate) fn texture_path(root: &Path, entry: &TextureEntry) -> Result<PathBuf, ProjectError> {
     let path = at_hand(root, &entry.file);
     if !entry.hash.is_empty() {
         compare(&path, Noun::Texture, &entry.name, &entry.hash, hash_file(&path)?)?;

@@ -48,12 +48,12 @@ impl<'a> ModelInputs<'a> {
 }
 
 /// The key of a model: a hash of everything that it depends on.
-pub fn model_key(document: &Document, model: &ModelSettings) -> String {
+pub(crate) fn model_key(document: &Document, model: &ModelSettings) -> String {
     key_of(&ModelInputs::of(document, model))
 }
 
 /// The key of a parameterization: a hash of everything that it depends on.
-pub fn parameterization_key(document: &Document, model: &ModelSettings, settings: &ParamSettings) -> String {
+pub(crate) fn parameterization_key(document: &Document, model: &ModelSettings, settings: &ParamSettings) -> String {
     #[derive(Serialize)]
     struct Inputs<'a> {
         revision: [u32; 2],
@@ -312,7 +312,10 @@ pub fn volumes_path(root: &Path) -> PathBuf {
 ///
 /// # Errors
 /// It could not be written; an earlier one is then still there.
-pub fn keep_volumes(root: &Path, write: impl FnOnce(&Path) -> Result<(), ProjectError>) -> Result<(), ProjectError> {
+pub(crate) fn keep_volumes(
+    root: &Path,
+    write: impl FnOnce(&Path) -> Result<(), ProjectError>,
+) -> Result<(), ProjectError> {
     let scratch = Scratch::begin(root)?;
     write(&scratch.path(VOLUMES))?;
     scratch.publish(VOLUMES)
@@ -325,13 +328,18 @@ pub fn holds_volumes(root: &Path, key: &str, size: [usize; 3], progress: &Progre
 }
 
 /// Arrays that were read, as the sampled parameterization.
-pub fn voxels_of(volumes: ParameterizationVolumes) -> VoxelParameterization {
+pub(crate) fn voxels_of(volumes: ParameterizationVolumes) -> VoxelParameterization {
     let ParameterizationVolumes { i, j, k, layer, block } = volumes;
     VoxelParameterization { size: i.size(), i, j, k, layer, block }
 }
 
 /// The sampled parameterization of this size, if the stored one was computed from the same input.
-pub fn load_volumes(root: &Path, key: &str, size: [usize; 3], progress: &Progress) -> Option<VoxelParameterization> {
+pub(crate) fn load_volumes(
+    root: &Path,
+    key: &str,
+    size: [usize; 3],
+    progress: &Progress,
+) -> Option<VoxelParameterization> {
     let stored = StoredParameterization::open(&volumes_path(root)).ok()?;
     if stored.key() != key || size != stored.size() {
         return None;

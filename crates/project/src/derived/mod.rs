@@ -21,10 +21,8 @@ mod scratch;
 
 pub use blocks::FaultBlocks;
 pub(crate) use blocks::blocks_key;
-pub use grids::{
-    holds_volumes, keep_grids, keep_volumes, load_grids, load_volumes, model_key, parameterization_key, volumes_path,
-    voxels_of,
-};
+pub use grids::{holds_volumes, keep_grids, load_grids, volumes_path};
+pub(crate) use grids::{keep_volumes, load_volumes, model_key, parameterization_key, voxels_of};
 
 pub(crate) use kept::verify_kept;
 pub(crate) use scratch::{RESUMABLE, Scratch, abandoned, remove_leftovers, remove_resumable};
@@ -32,12 +30,12 @@ pub(crate) use scratch::{RESUMABLE, Scratch, abandoned, remove_leftovers, remove
 use serde::Serialize;
 
 /// The key of a result that is computed from `inputs`, which hold numbers and strings only: these always serialise.
-pub fn key_of(inputs: &impl Serialize) -> String {
+pub(crate) fn key_of(inputs: &impl Serialize) -> String {
     hash_of(inputs).to_hex()[..32].to_owned()
 }
 
 /// The same as a number, never 0.
-pub fn number_of(inputs: &impl Serialize) -> u64 {
+pub(crate) fn number_of(inputs: &impl Serialize) -> u64 {
     let [a, b, c, d, e, f, g, h, ..] = *hash_of(inputs).as_bytes();
     u64::from_le_bytes([a, b, c, d, e, f, g, h]) | 1
 }

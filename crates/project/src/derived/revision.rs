@@ -5,19 +5,19 @@
 //! result of each method with its revision, and fails when one changes without the other.
 
 /// The structural model: fault blocks, extension of horizons, contacts.
-pub const MODEL: u32 = 3;
+pub(crate) const MODEL: u32 = 3;
 
 /// The parameterization.
-pub const PARAMETERIZATION: u32 = 9;
+pub(crate) const PARAMETERIZATION: u32 = 9;
 
 /// Horizon candidates: extrema, growing, surface trees, distances.
-pub const EXTRACTION: u32 = 2;
+pub(crate) const EXTRACTION: u32 = 2;
 
 /// Proposed faults.
 pub const PROPOSALS: u32 = 1;
 
 /// Faults found from the ends of reflections.
-pub const FOUND_FAULTS: u32 = 1;
+pub(crate) const FOUND_FAULTS: u32 = 1;
 
 #[cfg(test)]
 mod tests;

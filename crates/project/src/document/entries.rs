@@ -142,7 +142,7 @@ impl HorizonEntry {
     }
 
     /// Gives it a colour, where it keeps its own.
-    pub fn set_colour(&mut self, colour: Colour) {
+    pub(crate) fn set_colour(&mut self, colour: Colour) {
         match &mut self.assembly {
             Some(log) => log.colour = colour,
             None => self.colour = Some(colour),

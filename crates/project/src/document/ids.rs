@@ -179,7 +179,7 @@ impl Document {
 
     /// Makes a change after which other things exist, or have other names: references follow what they mean. Those to
     /// what is gone are dropped with what hangs on them; returns what held them.
-    pub fn by_ids<T>(&mut self, change: impl FnOnce(&mut Self) -> T) -> (T, Vec<String>) {
+    pub(crate) fn by_ids<T>(&mut self, change: impl FnOnce(&mut Self) -> T) -> (T, Vec<String>) {
         let before = self.index();
         self.translate(CalledBy::Name);
         let done = change(self);
@@ -205,7 +205,7 @@ impl Document {
 
     /// The references to what the project does not have, each with what holds it; `is_pattern` knows the patterns of the
     /// library, which have no entries.
-    pub fn dangling(&self, is_pattern: impl Fn(&str) -> bool) -> Vec<String> {
+    pub(crate) fn dangling(&self, is_pattern: impl Fn(&str) -> bool) -> Vec<String> {
         let mut document = self.clone();
         let index = document.index();
         let mut found = Vec::new();

@@ -27,7 +27,7 @@ impl Document {
 
     /// Puts a horizon at `position` (0 = youngest). It gets a colour of its own unless it has one, and the others keep
     /// those in which they were drawn until now.
-    pub fn insert_horizon(&mut self, position: usize, mut entry: HorizonEntry) {
+    pub(crate) fn insert_horizon(&mut self, position: usize, mut entry: HorizonEntry) {
         if entry.own_colour().is_none() {
             entry.colour = Some(self.next_colour());
         }
@@ -65,7 +65,7 @@ impl Document {
     }
 
     /// Puts `entry` in place of the horizon at `old`, at another position; the layer above comes along.
-    pub fn move_horizon(&mut self, old: usize, position: usize, entry: HorizonEntry) {
+    pub(crate) fn move_horizon(&mut self, old: usize, position: usize, entry: HorizonEntry) {
         self.by_ids(|document| {
             let (before, layer) = document.take_out(old);
             document.put_in(position, HorizonEntry { id: before.id, ..entry }, layer);
@@ -76,7 +76,7 @@ impl Document {
     ///
     /// # Errors
     /// The name cannot be used or is taken by another layer.
-    pub fn name_layer(&mut self, position: usize, name: &str) -> Result<(), ProjectError> {
+    pub(crate) fn name_layer(&mut self, position: usize, name: &str) -> Result<(), ProjectError> {
         let layers = self.layers();
         if layers[position] != name {
             if layers[position].to_lowercase() != name.to_lowercase() {

@@ -24,7 +24,6 @@ pub use ids::{Id, Renamed};
 pub use origin::{AttributeKind, Chooser, Origin, Uninterpreted};
 use param::KDefinition;
 pub use picks::{Assembly, Drawn, DrawnEntry, FaultSticks, PickEntry};
-pub use references::{Reference, ReferenceHolder, ReferenceKind, VisitReference};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -269,7 +268,7 @@ impl Document {
     }
 
     /// What the part of each fault in the model depends on: its triangles, at which fault it ends, how far it grows.
-    pub fn fault_shapes(&self) -> Vec<String> {
+    pub(crate) fn fault_shapes(&self) -> Vec<String> {
         let ends_at = |name: &String| self.faults.iter().position(|fault| fault.name == *name);
         let shape = |fault: &FaultEntry| {
             format!("{} {:?} {}", fault.hash, fault.truncated_by.as_ref().and_then(ends_at), fault.grown_m)
@@ -281,7 +280,7 @@ impl Document {
     ///
     /// # Errors
     /// [`ProjectError::Unknown`] or [`ProjectError::CircularTruncation`].
-    pub fn check_truncation(&self) -> Result<(), ProjectError> {
+    pub(crate) fn check_truncation(&self) -> Result<(), ProjectError> {
         for fault in &self.faults {
             let mut path = vec![fault.name.clone()];
             let mut next = fault.truncated_by.as_deref();
@@ -301,7 +300,7 @@ impl Document {
     ///
     /// # Errors
     /// [`ProjectError::BadGrowth`].
-    pub fn check_growth(&self) -> Result<(), ProjectError> {
+    pub(crate) fn check_growth(&self) -> Result<(), ProjectError> {
         match self.faults.iter().find(|fault| !(0.0..=MAX_COORDINATE).contains(&fault.grown_m)) {
             Some(fault) => Err(ProjectError::BadGrowth { fault: fault.name.clone(), grown_m: fault.grown_m }),
             None => Ok(()),
@@ -328,7 +327,7 @@ impl Document {
     /// # Errors
     /// [`ProjectError::BadName`]; [`ProjectError::Duplicate`], also if only the case differs, because file systems and
     /// people do not distinguish such names.
-    pub fn check_new_name(&self, noun: Noun, name: &str) -> Result<(), ProjectError> {
+    pub(crate) fn check_new_name(&self, noun: Noun, name: &str) -> Result<(), ProjectError> {
         let bad = |fact| Err(ProjectError::BadName { noun, name: name.to_owned(), fact });
         if name.trim().is_empty() {
             return bad("it is empty");

@@ -12,7 +12,7 @@ use ttf::LayerTtf;
 
 /// What holds a reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ReferenceHolder<'a> {
+pub(crate) enum ReferenceHolder<'a> {
     /// The style of the whole project.
     Style,
     /// The style of a layer.
@@ -54,7 +54,7 @@ impl fmt::Display for ReferenceHolder<'_> {
 
 /// How a place refers to something.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ReferenceKind {
+pub(crate) enum ReferenceKind {
     /// CalledBy its name; if the thing goes, so does what hangs on the reference.
     Name,
     /// CalledBy its name, as the record of what was done: it outlives the thing.
@@ -65,7 +65,7 @@ pub enum ReferenceKind {
 
 /// A place that refers to something.
 #[derive(Debug, Clone, Copy)]
-pub struct Reference<'a> {
+pub(crate) struct Reference<'a> {
     /// What it can refer to; of two things of one name it means that of the first kind.
     pub nouns: &'static [Noun],
     /// How.
@@ -75,7 +75,7 @@ pub struct Reference<'a> {
 }
 
 /// Looks at a reference and may change it; `false` drops it with what hangs on it.
-pub type VisitReference<'v> = dyn FnMut(Reference<'_>, &mut String) -> bool + 'v;
+pub(crate) type VisitReference<'v> = dyn FnMut(Reference<'_>, &mut String) -> bool + 'v;
 
 pub(super) const VOLUME: &[Noun] = &[Noun::Volume];
 pub(super) const HORIZON: &[Noun] = &[Noun::Horizon];
@@ -116,7 +116,7 @@ fn keep<T>(slot: &mut Option<T>, stays: impl FnOnce(&mut T) -> bool) {
 
 impl Document {
     /// Shows `visit` every reference of the project, in a fixed order.
-    pub fn visit_references(&mut self, visit: &mut VisitReference<'_>) {
+    pub(crate) fn visit_references(&mut self, visit: &mut VisitReference<'_>) {
         let Self {
             version: _,
             step: _,

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// A copy of the state to change, and a place to write new data to. If it is dropped without being kept, it removes
 /// what was written.
 #[derive(Debug)]
-pub struct Draft {
+pub(crate) struct Draft {
     root: PathBuf,
     /// The state that the command leaves behind.
     pub document: Document,
@@ -23,7 +23,7 @@ impl Draft {
     }
 
     /// The project's folder.
-    pub fn root(&self) -> &Path {
+    pub(crate) fn root(&self) -> &Path {
         &self.root
     }
 
@@ -40,7 +40,7 @@ impl Draft {
     ///
     /// # Errors
     /// The folder to write to cannot be made.
-    pub fn generation(
+    pub(crate) fn generation(
         &mut self,
         kind: &'static str,
         name: &str,

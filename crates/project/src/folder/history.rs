@@ -22,7 +22,7 @@ use system::file;
 
 /// Number of steps in the history; the oldest are dropped first. Long enough for a day's work, short enough that
 /// removed volumes do not fill the disk for ever.
-pub const HISTORY_LIMIT: u32 = 200;
+pub(crate) const HISTORY_LIMIT: u32 = 200;
 
 /// One step of the history.
 #[derive(Debug, Clone, Serialize, Deserialize)]

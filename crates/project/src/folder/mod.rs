@@ -10,11 +10,12 @@ mod lock;
 mod output;
 pub(crate) mod storage;
 
-pub use draft::Draft;
-pub use history::{HISTORY_LIMIT, Step};
+pub(crate) use draft::Draft;
+pub use history::Step;
 pub use lock::DEFAULT_WAIT;
 pub use output::refuse_inside_project;
-pub use storage::{at_hand, open_own};
+pub(crate) use storage::at_hand;
+pub use storage::open_own;
 
 pub(crate) use lock::{CREATING, Lock, forget_creation};
 pub(crate) use storage::IMPORTING;

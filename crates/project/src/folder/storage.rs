@@ -90,7 +90,7 @@ pub(crate) fn begin(root: &Path, file: &str) -> Result<PathBuf, ProjectError> {
 
 /// The path at which `file` can be read now: what the present command has written and not yet published lies in
 /// `unfinished/`.
-pub fn at_hand(root: &Path, file: &str) -> PathBuf {
+pub(crate) fn at_hand(root: &Path, file: &str) -> PathBuf {
     let (path, unfinished) = (root.join(file), unfinished(root, file));
     if !path.exists() && unfinished.exists() { unfinished } else { path }
 }

@@ -80,7 +80,7 @@ impl ReportedOverlap {
 }
 
 /// A conflict whose place is in line numbers.
-pub type ReportedConflict = Conflict<[i32; 2]>;
+pub(crate) type ReportedConflict = Conflict<[i32; 2]>;
 
 /// The conflict in line numbers.
 fn in_lines(conflict: Conflict, geometry: &SurveyGeometry) -> ReportedConflict {
@@ -190,7 +190,7 @@ pub fn selection(name: &str, log: &Assembly, candidates: &Candidates) -> Result<
 ///
 /// # Errors
 /// A pick lies above the root of its tree.
-pub fn picked_selection(log: &Assembly, forest: &Forest) -> Result<Selection, AssemblyError> {
+pub(crate) fn picked_selection(log: &Assembly, forest: &Forest) -> Result<Selection, AssemblyError> {
     let mut nodes = Vec::with_capacity(log.picks.len());
     for pick in &log.picks {
         nodes.push((node_above(forest, pick.leaf, pick.up)?, pick.operation));

@@ -77,7 +77,11 @@ impl Candidates {
     ///
     /// # Errors
     /// As [`Candidates::load`].
-    pub fn for_picks(facts: Facts<'_>, places: &[[f64; 3]], progress: &Progress) -> Result<Arc<Self>, ProjectError> {
+    pub(crate) fn for_picks(
+        facts: Facts<'_>,
+        places: &[[f64; 3]],
+        progress: &Progress,
+    ) -> Result<Arc<Self>, ProjectError> {
         let stored = StoredCandidates::open(&extraction::candidates_path(facts.root, facts.document)?)?;
         match facts.held(&AllOf(&stored))? {
             Some(held) => Ok(held),

@@ -71,7 +71,7 @@ fn key_at(path: &Path) -> Option<String> {
 ///
 /// # Errors
 /// [`ProjectError::NotExtracted`] if the state names none or it is missing, [`ProjectError::Store`] if it is damaged.
-pub fn candidates_path(root: &Path, document: &Document) -> Result<PathBuf, ProjectError> {
+pub(crate) fn candidates_path(root: &Path, document: &Document) -> Result<PathBuf, ProjectError> {
     let present = root.join(storage::DERIVED).join(PRESENT);
     let Some(entry) = &document.extraction else {
         return if present.exists() { Ok(present) } else { Err(ProjectError::NotExtracted) };
@@ -167,7 +167,7 @@ pub fn forest(candidates: &StoredCandidates, progress: &Progress) -> Result<Fore
 ///
 /// # Errors
 /// Data are damaged, or the user cancelled.
-pub fn check_forest(candidates: &StoredCandidates, progress: &Progress) -> Result<(), ProjectError> {
+pub(crate) fn check_forest(candidates: &StoredCandidates, progress: &Progress) -> Result<(), ProjectError> {
     let (surfaces, nodes) = (candidates.read_surfaces(progress)?, candidates.read_nodes(progress)?);
     Forest::check_tables(candidates.forest_counts()?, surfaces, nodes, |rows| {
         progress.check()?;

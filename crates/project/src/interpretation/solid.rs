@@ -32,7 +32,7 @@ const SPACED_BYTES: f64 = 36.0;
 ///
 /// # Errors
 /// [`memory::NotEnough`].
-pub fn check_coordinates(size: [usize; 3], settings: &ParamSettings) -> Result<u64, memory::NotEnough> {
+pub(crate) fn check_coordinates(size: [usize; 3], settings: &ParamSettings) -> Result<u64, memory::NotEnough> {
     let voxels = size.iter().map(|&count| count as f64).product::<f64>();
     let bytes = voxels * SPACED_BYTES / f64::from(settings.level_spacing);
     memory::check("the coordinates of layers", &[bytes as usize], 1)
@@ -40,7 +40,7 @@ pub fn check_coordinates(size: [usize; 3], settings: &ParamSettings) -> Result<u
 
 /// The settings with which a project is parameterized: the flow of layers does not follow what is smaller than a
 /// pattern's tile.
-pub fn param_settings(document: &Document) -> ParamSettings {
+pub(crate) fn param_settings(document: &Document) -> ParamSettings {
     let flow_wave_m = document.geometry.as_ref().map_or(0.0, |geometry| TILE_MM * metres_per_mm(geometry));
     let voxels = document.geometry.as_ref().map_or(0.0, |geometry| geometry.size().iter().product::<usize>() as f64);
     let spacing = ParamSettings::default().level_spacing;
@@ -55,14 +55,14 @@ pub fn metres_per_mm(geometry: &SurveyGeometry) -> f64 {
 }
 
 /// Lengths of the block along x and y, m.
-pub fn extent_m(geometry: &SurveyGeometry) -> [f64; 2] {
+pub(crate) fn extent_m(geometry: &SurveyGeometry) -> [f64; 2] {
     let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1).max(1) as f64);
     [geometry.inline_vector.length() * nx, geometry.crossline_vector.length() * ny]
 }
 
 /// The model of an interpretation.
 #[derive(Debug, Clone, Copy)]
-pub struct SolidModel;
+pub(crate) struct SolidModel;
 
 impl Query for SolidModel {
     const WHAT: &'static str = "model";

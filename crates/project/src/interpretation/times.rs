@@ -207,7 +207,7 @@ pub(crate) fn time_volume(document: &Document) -> Result<&VolumeEntry, ProjectEr
 ///
 /// # Errors
 /// [`ProjectError::NoTime`], data are damaged, or the user cancelled.
-pub fn read_time(
+pub(crate) fn read_time(
     root: &Path,
     document: &Document,
     progress: &Progress,

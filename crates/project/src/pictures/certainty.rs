@@ -25,7 +25,7 @@ pub struct PickedShare {
 
 impl PickedShare {
     /// Whether less than half was picked.
-    pub fn is_sparse(&self) -> bool {
+    pub(crate) fn is_sparse(&self) -> bool {
         self.share < SPARSE
     }
 

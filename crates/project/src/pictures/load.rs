@@ -83,7 +83,7 @@ impl Rock {
 ///
 /// # Errors
 /// Data are damaged, the interpretation does not make a solid model, or the user cancelled.
-pub fn structural_model(
+pub(crate) fn structural_model(
     facts: Facts<'_>,
     progress: &Progress,
 ) -> Result<Option<(Arc<StructuralModel>, Stage)>, ProjectError> {
@@ -214,7 +214,7 @@ impl Rock {
 
     /// The pairs of layers that touch in the block or follow one another in the column, as positions among the layers,
     /// youngest first. Where a scene shows the ground, the first layer is left out as air.
-    pub fn neighbours(&self, scene: &Scene) -> Vec<[usize; 2]> {
+    pub(crate) fn neighbours(&self, scene: &Scene) -> Vec<[usize; 2]> {
         let youngest = self.model.layer_count() - 1;
         let touching = self.model.touching_layers().into_iter();
         let touching = touching.map(|[deep, high]| [high, deep].map(|n| youngest - usize::from(n)));
@@ -507,7 +507,7 @@ impl Loaded {
     }
 
     /// Whether samples were asked for that were not read; what was drawn then lacks them.
-    pub fn has_missed(&self) -> bool {
+    pub(crate) fn has_missed(&self) -> bool {
         self.volumes.iter().any(LoadedVolume::has_missed)
     }
 

@@ -70,7 +70,7 @@ impl Painter {
     }
 
     /// Whether the processor draws, which needs no more of a volume than the samples that it takes.
-    pub fn is_processor(&self) -> bool {
+    pub(crate) fn is_processor(&self) -> bool {
         self.renderer.is_none()
     }
 

@@ -178,7 +178,7 @@ impl ShownCandidates {
     }
 
     /// Ids of the leaves of a horizon, or of its sheets; empty for a horizon that was not asked for.
-    pub fn leaves_of(&self, horizon: &str) -> Vec<u32> {
+    pub(crate) fn leaves_of(&self, horizon: &str) -> Vec<u32> {
         let picked = self.picked.get(horizon).cloned();
         picked.unwrap_or_else(|| self.sheets.get(horizon).copied().into_iter().collect())
     }

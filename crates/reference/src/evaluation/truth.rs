@@ -62,7 +62,7 @@ impl TruthIndex {
     }
 
     /// All reflectors of the model: those above the unconformity, the unconformity, those below.
-    pub fn reflectors(&self) -> &[Reflector] {
+    pub(crate) fn reflectors(&self) -> &[Reflector] {
         &self.reflectors
     }
 
@@ -82,7 +82,7 @@ impl TruthIndex {
     }
 
     /// Trace (x·crosslines + y) of an event.
-    pub fn trace_of(&self, event: usize) -> usize {
+    pub(crate) fn trace_of(&self, event: usize) -> usize {
         self.starts.partition_point(|&start| start <= event) - 1
     }
 

@@ -22,7 +22,7 @@ use ttf::{TtfTables, linear_from_srgb};
 /// Largest distance stored, bricks.
 pub const FARTHEST: u8 = 15;
 /// Stands for several layers, or an unknown layer.
-pub const MIXED: u8 = 255;
+pub(crate) const MIXED: u8 = 255;
 
 /// The content of a brick, before distances are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,7 +76,7 @@ impl Bricks {
     /// The first sample of a line, at or after number `n`, that lies in a visible brick of the surroundings
     /// (`shift` 0) or of the cut-outs (`shift` 8); `end` if there is none.
     #[inline(always)]
-    pub fn first_shown(&self, line: &SampleLine, mut n: u32, end: u32, shift: u32) -> u32 {
+    pub(crate) fn first_shown(&self, line: &SampleLine, mut n: u32, end: u32, shift: u32) -> u32 {
         while n < end {
             let brick = self.at(line.at + line.per * n as f32);
             let distance = (self.word(brick) >> shift & 255) as i32;
@@ -97,7 +97,7 @@ impl Bricks {
 
 /// Evenly spaced samples on a straight line, voxels.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct SampleLine {
+pub(crate) struct SampleLine {
     /// The first sample.
     pub at: Vec3,
     /// The offset from one sample to the next.
@@ -107,7 +107,7 @@ pub struct SampleLine {
 
 impl SampleLine {
     /// A line from its first sample and the offset to the next.
-    pub fn new(at: Vec3, per: Vec3) -> Self {
+    pub(crate) fn new(at: Vec3, per: Vec3) -> Self {
         Self { at, per, inverse: per.recip() }
     }
 
@@ -158,7 +158,7 @@ fn distances(size: [usize; 3], marked: Vec<bool>) -> Vec<u8> {
 
 /// The layer of each brick, found without a lookup of every voxel in the model.
 #[derive(Debug)]
-pub struct LayerMap {
+pub(crate) struct LayerMap {
     size: [usize; 3],
     layers: Vec<u8>,
 }
@@ -173,7 +173,7 @@ const BEND: f32 = 0.75;
 impl LayerMap {
     /// The layers of a model: a brick lies in a single layer if it lies in a single block (no fault is within
     /// reach) and no sheet of that block crosses it.
-    pub fn new(model: &StructuralModel) -> Self {
+    pub(crate) fn new(model: &StructuralModel) -> Self {
         let size = model.size().map(|n| n.saturating_sub(1).div_ceil(BRICK).max(1));
         let metric = model.metric();
         let half_diagonal_m = (metric * glam::DVec3::splat(BRICK as f64 * 0.5)).length();
@@ -210,7 +210,7 @@ impl LayerMap {
     }
 
     /// The layer of a brick, or [`MIXED`].
-    pub fn layer(&self, [x, y, z]: [usize; 3]) -> u8 {
+    pub(crate) fn layer(&self, [x, y, z]: [usize; 3]) -> u8 {
         self.layers[(x * self.size[1] + y) * self.size[2] + z]
     }
 }

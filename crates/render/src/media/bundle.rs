@@ -32,14 +32,14 @@ use glam::{Mat3, Vec3};
 use system::wide::{Wide, widest};
 
 /// Number of rays in a bundle.
-pub const RAYS: usize = 64;
+pub(crate) const RAYS: usize = 64;
 /// Number of samples that a ray takes at a time.
 const LANES: usize = 8;
 const NUMBERS: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// Integrates the media along rays, each between two distances. Fast if neighbours in the list are neighbours
 /// in the picture.
-pub fn gather_all(
+pub(crate) fn gather_all(
     field: &MediaField,
     light: Option<&LightVolume>,
     solid: &Solid,

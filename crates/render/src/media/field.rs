@@ -142,7 +142,7 @@ impl<'a> MediaField<'a> {
 
     /// The single medium, if the scene has no horizons, isosurfaces or further media, and layers do not
     /// change that medium.
-    pub fn only_medium(&self) -> Option<&FieldMedium<'a>> {
+    pub(crate) fn only_medium(&self) -> Option<&FieldMedium<'a>> {
         let [medium] = &self.media[..] else { return None };
         let only = self.horizons.is_none() && self.isosurfaces.is_empty() && medium.layers.is_none();
         only.then_some(medium)

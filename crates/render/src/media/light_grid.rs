@@ -10,7 +10,7 @@ const MARGIN: f64 = 3.0;
 
 /// The positions of slices and cells, and the variance of the blur between slices.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LightGrid {
+pub(crate) struct LightGrid {
     /// Number of cells to the right, of cells upwards, and of slices. In depth there is one value more than
     /// slices.
     pub size: [usize; 3],
@@ -34,7 +34,7 @@ pub struct LightGrid {
 
 impl LightGrid {
     /// The grid for a box.
-    pub fn new(occlusion: &Occlusion, view: &View, roaming_box: &VoxelBox, unit_m: f64) -> Self {
+    pub(crate) fn new(occlusion: &Occlusion, view: &View, roaming_box: &VoxelBox, unit_m: f64) -> Self {
         let (linear, shift) = view.eye_from_voxel();
         let perspective = view.is_perspective();
         let eyes = roaming_box.corners().map(|c| linear * c + shift);
@@ -69,7 +69,7 @@ impl LightGrid {
     }
 
     /// Weight of each neighbour along an axis at a slice: half of the variance there.
-    pub fn side_weight(&self, slice: usize) -> f32 {
+    pub(crate) fn side_weight(&self, slice: usize) -> f32 {
         let ratio = if self.perspective { self.near.max(1e-9) / self.depth(slice as f64 + 0.5) } else { 1.0 };
         (0.5 * self.variance * (ratio * ratio) as f32).min(0.25)
     }
@@ -90,7 +90,7 @@ pub enum Asked {
 
 /// The map from voxel positions to cell coordinates (integers at cell centres) and fronts of slices. In a
 /// perspective, x and y are in cells times depth, measured from the axis.
-pub fn cells_from_voxel(view: &View, grid: &LightGrid) -> (Mat3, Vec3) {
+pub(crate) fn cells_from_voxel(view: &View, grid: &LightGrid) -> (Mat3, Vec3) {
     let (linear, shift) = view.eye_from_voxel();
     let scale = DVec3::new(1.0 / grid.cell, 1.0 / grid.cell, 1.0 / grid.slice);
     let origin = if grid.perspective {

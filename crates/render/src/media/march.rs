@@ -22,7 +22,7 @@ use crate::visible::{Ray, Solid};
 use glam::Vec3;
 
 /// Transmittance at which a ray ends (early ray termination).
-pub const SPENT: f32 = 1.0e-3;
+pub(crate) const SPENT: f32 = 1.0e-3;
 
 /// The result of a march.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -134,7 +134,7 @@ fn exit_t(ray: &Ray, brick: [i32; 3], around: i32) -> f32 {
 }
 
 /// The first visible point on a ray before `stop`: the distance along the ray, and the zone.
-pub fn first_seen(field: &MediaField, solid: &Solid, ray: &Ray, stop: f32) -> Option<(f32, Zone)> {
+pub(crate) fn first_seen(field: &MediaField, solid: &Solid, ray: &Ray, stop: f32) -> Option<(f32, Zone)> {
     let along = field.display_from_voxel * ray.direction;
     let mut found = None;
     stretches(solid, ray, [f32::MIN, stop], |stretch| {

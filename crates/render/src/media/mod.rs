@@ -17,13 +17,13 @@
 //! volume. [`bricks`] is for empty-space skipping.
 
 pub mod bricks;
-pub mod bundle;
+pub(crate) mod bundle;
 pub mod field;
 mod horizons;
-pub mod interleaved;
+pub(crate) mod interleaved;
 pub mod isosurface;
 pub mod light;
-pub mod light_grid;
+pub(crate) mod light_grid;
 mod lit;
 pub mod march;
 pub mod medium;
@@ -37,8 +37,9 @@ mod stretches;
 pub mod table;
 mod windows;
 
+pub(crate) use settings::MAX_MEDIA;
 pub use settings::{
-    Colouring, EmptySpace, Faces, Isosurface, IsosurfaceSource, LayerOpacity, MAX_HORIZONS, MAX_ISOSURFACES, MAX_MEDIA,
-    Media, Medium, MediumColour, Paint, PickedHorizon, Scope, white_ramp,
+    Colouring, EmptySpace, Faces, Isosurface, IsosurfaceSource, LayerOpacity, Media, Medium, MediumColour, Paint,
+    PickedHorizon, Scope, white_ramp,
 };
 pub use shading::{Interleaved, Occlusion, Phong, Shading};

@@ -17,15 +17,15 @@ use crate::inputs::SLACK;
 use glam::{Vec2, Vec3, Vec4};
 
 /// Values below this stand for missing data (NaN and dead traces).
-pub const NO_DATA_BELOW: f32 = -1.0e30;
+pub(crate) const NO_DATA_BELOW: f32 = -1.0e30;
 /// Value of missing samples.
 pub const NO_DATA: f32 = -3.0e38;
 /// Number of positions that are read at once.
-pub const BATCH: usize = 64;
+pub(crate) const BATCH: usize = 64;
 
 /// The samples of a volume, z fastest, with [`NO_DATA`] where they are missing.
 #[derive(Clone, Copy)]
-pub struct VolumeSamples<'s> {
+pub(crate) struct VolumeSamples<'s> {
     values: &'s [f32],
     size: [usize; 3],
     /// Offset from a sample to the next along each axis; 0 along an axis with a single sample.
@@ -34,7 +34,7 @@ pub struct VolumeSamples<'s> {
 }
 
 /// Positions in index space, coordinate by coordinate.
-pub struct IndexPositions {
+pub(crate) struct IndexPositions {
     /// x, y and z.
     pub axes: [[f32; BATCH]; 3],
 }
@@ -47,7 +47,7 @@ impl Default for IndexPositions {
 
 impl<'s> VolumeSamples<'s> {
     /// Samples of a volume of this size.
-    pub fn new(values: &'s [f32], size: [usize; 3]) -> Self {
+    pub(crate) fn new(values: &'s [f32], size: [usize; 3]) -> Self {
         let step = |axis: usize, stride: usize| if size[axis] > 1 { stride } else { 0 };
         Self {
             values,
@@ -59,7 +59,7 @@ impl<'s> VolumeSamples<'s> {
 
     /// The value at a position; below [`NO_DATA_BELOW`] if there is none.
     #[inline(always)]
-    pub fn value(&self, index: Vec3) -> f32 {
+    pub(crate) fn value(&self, index: Vec3) -> f32 {
         if !self.contains(index) {
             return NO_DATA;
         }
@@ -73,7 +73,7 @@ impl<'s> VolumeSamples<'s> {
 
     /// The values at the first `count` positions.
     #[inline(always)]
-    pub fn values(&self, places: &IndexPositions, count: usize, values: &mut [f32; BATCH]) {
+    pub(crate) fn values(&self, places: &IndexPositions, count: usize, values: &mut [f32; BATCH]) {
         let mut starts = [0u32; BATCH];
         let mut fractions = [[0.0f32; BATCH]; 3];
         // Upper limit of each value: none inside the volume, [`NO_DATA`] outside.
@@ -134,7 +134,7 @@ impl<'s> VolumeSamples<'s> {
 
     /// Central differences: the value one sample ahead minus the value one sample behind, along each axis.
     #[inline(always)]
-    pub fn differences(&self, index: Vec3) -> Vec3 {
+    pub(crate) fn differences(&self, index: Vec3) -> Vec3 {
         let cell = |axis: usize| index[axis] as i32;
         let [x, y, z] = [cell(0), cell(1), cell(2)];
         let inside = |cell: i32, axis: usize| cell >= 1 && cell as usize + 2 < self.size[axis];

@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 use ttf::{Colour, RgbaFunction, RgbaStop};
 
 /// Largest number of media in a scene, cut-outs and surroundings together.
-pub const MAX_MEDIA: usize = 4;
+pub(crate) const MAX_MEDIA: usize = 4;
 /// Largest number of horizons that a scene shows by their leaves.
-pub const MAX_HORIZONS: usize = 255;
+pub(crate) const MAX_HORIZONS: usize = 255;
 /// Largest number of isosurfaces in a scene.
-pub const MAX_ISOSURFACES: usize = 4;
+pub(crate) const MAX_ISOSURFACES: usize = 4;
 
 /// The volume rendering of a scene.
 ///

@@ -7,9 +7,9 @@ use super::samples::whole;
 use ttf::{RgbaFunction, linear_from_srgb};
 
 /// Number of entries.
-pub const ENTRIES: usize = 2048;
+pub(crate) const ENTRIES: usize = 2048;
 /// Extinction of an opaque value: a ten-thousandth of a unit transmits less than half.
-pub const OPAQUE: f32 = 1.0e4;
+pub(crate) const OPAQUE: f32 = 1.0e4;
 
 /// −ln(1 − α₀), limited to [`OPAQUE`].
 ///
@@ -81,7 +81,7 @@ impl FunctionTable {
 
     /// The indices of the entries of many values; meaningless for missing values.
     #[inline(always)]
-    pub fn entries_of(&self, values: &[f32], entries: &mut [u32]) {
+    pub(crate) fn entries_of(&self, values: &[f32], entries: &mut [u32]) {
         const LAST: f32 = (ENTRIES - 1) as f32;
         for (entry, value) in entries.iter_mut().zip(values) {
             let place = (value - self.low) * self.scale + 0.5;

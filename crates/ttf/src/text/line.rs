@@ -151,7 +151,7 @@ fn words_of(text: &str, run: Range<usize>, faces: &Faces) -> Vec<(usize, Range<u
 
 impl Line {
     /// The glyphs by their faces, as they follow one another.
-    pub fn by_face(&self) -> impl Iterator<Item = (usize, &[Glyph])> {
+    pub(crate) fn by_face(&self) -> impl Iterator<Item = (usize, &[Glyph])> {
         self.glyphs.chunk_by(|a, b| a.face == b.face).map(|glyphs| (glyphs[0].face, glyphs))
     }
 

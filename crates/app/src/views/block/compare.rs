@@ -14,7 +14,7 @@ pub fn compare(session: &Session) -> Compare {
 
 /// The rectangles of the compared pictures. Blocks are wider than high, so in a narrow view two of them lie one above
 /// the other.
-pub fn panes(compare: Compare, rect: Rect) -> Vec<Rect> {
+pub(crate) fn panes(compare: Compare, rect: Rect) -> Vec<Rect> {
     match compare {
         Compare::SideBySide => {
             let (first, second) = if is_narrow(rect) {
@@ -44,7 +44,7 @@ pub fn clip(compare: Compare, index: usize, rect: Rect, wipe: f32) -> Rect {
 }
 
 /// Paints the dividing line and the captions of compared pictures.
-pub fn rule(ui: &Ui, compare: Compare, whole: Rect, wipe: f32) {
+pub(crate) fn rule(ui: &Ui, compare: Compare, whole: Rect, wipe: f32) {
     let painter = ui.painter_at(whole);
     let thin = Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color);
     let (at, align) = match compare {

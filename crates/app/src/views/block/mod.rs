@@ -7,7 +7,8 @@ mod compare;
 mod hand;
 mod sticks;
 
-pub use compare::{clip, compare, panes, rule};
+pub use compare::{clip, compare};
+pub(crate) use compare::{panes, rule};
 
 use super::lasso::{self, LassoLine};
 use super::overlay::Overlay;
@@ -28,11 +29,11 @@ use render::{Background, Faces, Media, Scene};
 const REACH: f32 = 11.0;
 
 /// Background of volumes that are rendered in white.
-pub const BEHIND_VOLUMES: Color32 = Color32::from_rgb(0x2c, 0x33, 0x3a);
+pub(crate) const BEHIND_VOLUMES: Color32 = Color32::from_rgb(0x2c, 0x33, 0x3a);
 
 /// The view.
 #[derive(Default)]
-pub struct BlockView {
+pub(crate) struct BlockView {
     panes: Vec<Option<TextureHandle>>,
     /// The pixels of the pictures, left to right.
     pixels: Vec<Option<ColorImage>>,
@@ -53,22 +54,22 @@ pub struct BlockView {
 
 impl BlockView {
     /// The device that draws the pictures.
-    pub fn device(&self) -> &str {
+    pub(crate) fn device(&self) -> &str {
         &self.device
     }
 
     /// Whether the picture shown is the final one of the present request.
-    pub fn is_settled(&self) -> bool {
+    pub(crate) fn is_settled(&self) -> bool {
         self.is_final && self.shown == self.number
     }
 
     /// The number of the picture that is shown: later ones have larger numbers.
-    pub fn picture_number(&self) -> u64 {
+    pub(crate) fn picture_number(&self) -> u64 {
         self.shown
     }
 
     /// Copies the picture to the clipboard, on white; of two compared pictures, the illustrated one.
-    pub fn copy(&self, ctx: &eframe::egui::Context) {
+    pub(crate) fn copy(&self, ctx: &eframe::egui::Context) {
         let Some(mut image) = self.pixels.iter().flatten().next().cloned() else { return };
         for pixel in &mut image.pixels {
             let [r, g, b, alpha] = pixel.to_array();
@@ -79,7 +80,7 @@ impl BlockView {
     }
 
     /// Takes over a picture that was drawn.
-    pub fn receive(&mut self, ctx: &eframe::egui::Context, drawn: Drawn) {
+    pub(crate) fn receive(&mut self, ctx: &eframe::egui::Context, drawn: Drawn) {
         if drawn.number < self.shown || drawn.pane >= self.panes.len() {
             return;
         }
@@ -101,7 +102,7 @@ impl BlockView {
     }
 
     /// Shows the block in all the room there is; returns what is under the cursor.
-    pub fn show(
+    pub(crate) fn show(
         &mut self,
         ui: &mut Ui,
         session: &Session,
@@ -259,7 +260,7 @@ fn pane_px(pane: Rect) -> [u32; 2] {
 }
 
 /// Whether the block has the dark background, because volumes are white.
-pub fn is_dark(session: &Session) -> bool {
+pub(crate) fn is_dark(session: &Session) -> bool {
     is_clear(session) || session.view.panel != Panel::Interpret && session.view.scene.media.faces == Faces::None
 }
 

@@ -25,7 +25,7 @@ const REACH: f32 = 10.0;
 
 /// The panel, and the changes being made in it.
 #[derive(Default)]
-pub struct Functions {
+pub(crate) struct Functions {
     histograms: HashMap<String, Histogram>,
     draft: Option<RawColour>,
     sent: bool,
@@ -36,19 +36,19 @@ pub struct Functions {
 
 impl Functions {
     /// The colours being changed, until they become a command.
-    pub fn draft(&self) -> Option<&RawColour> {
+    pub(crate) fn draft(&self) -> Option<&RawColour> {
         self.draft.as_ref()
     }
 
     /// Applies the changes being made to a copy of the project's state.
-    pub fn draft_of(&self, document: &mut Document) {
+    pub(crate) fn draft_of(&self, document: &mut Document) {
         if let Some(raw) = &self.draft {
             document.style.raw = Some(raw.clone());
         }
     }
 
     /// Shows the colours of raw data and the textures by value.
-    pub fn show(
+    pub(crate) fn show(
         &mut self,
         ui: &mut Ui,
         session: &Session,

@@ -47,12 +47,12 @@ pub struct Layers {
 
 impl Layers {
     /// The draft of a style.
-    pub fn draft(&self) -> Option<&LayerStyle> {
+    pub(crate) fn draft(&self) -> Option<&LayerStyle> {
         self.draft.as_ref().map(|(_, style)| style)
     }
 
     /// Applies the draft to a copy of the project's state.
-    pub fn draft_of(&self, document: &mut Document) {
+    pub(crate) fn draft_of(&self, document: &mut Document) {
         if let Some((layer, style)) = &self.draft
             && document.layers().contains(layer)
         {
@@ -304,6 +304,6 @@ fn boundary(
 }
 
 /// A contact's name.
-pub fn contact_name(contact: Contact) -> &'static str {
+pub(crate) fn contact_name(contact: Contact) -> &'static str {
     if contact == Contact::Truncated { "intrusive, cut by erosion" } else { contact.word() }
 }

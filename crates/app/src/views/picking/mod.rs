@@ -23,7 +23,7 @@ use survey::SurveyGeometry;
 
 /// The panel, with the text being typed in it.
 #[derive(Default)]
-pub struct PickingPanel {
+pub(crate) struct PickingPanel {
     candidates: CandidatesPanel,
     horizons: HorizonList,
     faults: FaultsPanel,
@@ -33,7 +33,7 @@ pub struct PickingPanel {
 
 impl PickingPanel {
     /// Shows the panel.
-    pub fn show(
+    pub(crate) fn show(
         &mut self,
         ui: &mut Ui,
         state: &State,

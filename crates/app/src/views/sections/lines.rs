@@ -12,13 +12,13 @@ use std::borrow::Cow;
 use survey::SurveyGeometry;
 
 /// The colour of a horizon: its own, or else the default of its place in the list.
-pub fn horizon_colour(own: Option<ttf::Colour>, index: usize) -> Color32 {
+pub(crate) fn horizon_colour(own: Option<ttf::Colour>, index: usize) -> Color32 {
     let [r, g, b] = figure::style::horizon_colour(own, index).rgb;
     Color32::from_rgb(r, g, b)
 }
 
 /// The colour that an entry is drawn in.
-pub fn entry_colour(entry: &HorizonEntry, index: usize) -> Color32 {
+pub(crate) fn entry_colour(entry: &HorizonEntry, index: usize) -> Color32 {
     horizon_colour(entry.own_colour(), index)
 }
 
@@ -49,7 +49,7 @@ pub(super) fn visible<'a>(session: &Session, lines: &'a [CutLine]) -> Cow<'a, [C
 }
 
 /// The name of the axis across, before its first number.
-pub fn name_across(ui: &Ui, whole: Rect, body: Rect, name: &str) {
+pub(crate) fn name_across(ui: &Ui, whole: Rect, body: Rect, name: &str) {
     let at = pos2(body.left() - 15.0, body.top() - 4.0);
     let colour = ui.visuals().text_color().gamma_multiply(0.8);
     ui.painter_at(whole).text(at, Align2::RIGHT_BOTTOM, name, FontId::proportional(9.5), colour);

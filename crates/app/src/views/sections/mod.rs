@@ -8,7 +8,7 @@ mod freehand;
 mod lines;
 mod wells;
 
-pub use lines::{entry_colour, horizon_colour, name_across};
+pub(crate) use lines::{entry_colour, name_across};
 
 use super::lasso::{self, LassoLine};
 use super::overlay::{Overlay, stick_point};

@@ -11,7 +11,7 @@ mod followed;
 use super::orders::snapshot;
 use super::running::Running;
 use super::{Event, Outbox, compute_apart, keep_working, spawn};
-use crate::state::picking::{Pick, voxel_of};
+use crate::state::picking::Pick;
 use crate::state::{Notice, PickingStep, PickingTask, Place, Snapshot};
 use figure::interpretation::{DrawnInterpretation, FaultMesh, PickedSheets, SheetHole, TraceSheet};
 use followed::Followed;
@@ -120,7 +120,7 @@ impl Interpreted {
     }
 
     /// The horizons alone.
-    pub fn horizons_seen(&self) -> DrawnInterpretation<'_> {
+    pub(crate) fn horizons_seen(&self) -> DrawnInterpretation<'_> {
         self.seen(|_| false)
     }
 }
@@ -172,7 +172,7 @@ impl Picks {
     }
 
     /// Reads what this state of a project needs and has not been read yet.
-    pub fn follow(&self, root: PathBuf, document: Document) {
+    pub(crate) fn follow(&self, root: PathBuf, document: Document) {
         let _ = self.orders.send(Order::Follow(root, Box::new(document)));
     }
 
@@ -442,11 +442,6 @@ fn proposed(root: &Path, document: &Document, geometry: &SurveyGeometry) -> (Vec
         (proposal, fault)
     });
     (open.collect(), geometry.vertical.unit.symbol().to_owned())
-}
-
-/// The voxel position at which an overlap is worst.
-pub fn voxel_of_overlap(geometry: &SurveyGeometry, overlap: &ReportedOverlap) -> DVec3 {
-    voxel_of(geometry, overlap.at)
 }
 
 #[cfg(test)]

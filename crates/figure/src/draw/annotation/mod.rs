@@ -44,7 +44,7 @@ const PROBE_PX: f64 = 8.0;
 
 /// What is to be written on a block.
 #[derive(Clone, Copy)]
-pub struct BlockAnnotation<'a> {
+pub(crate) struct BlockAnnotation<'a> {
     /// Which kinds.
     pub wanted: &'a [Annotation],
     /// Where its samples are.
@@ -82,7 +82,7 @@ impl BlockAnnotation<'_> {
     }
 
     /// Where in its room the picture of a block lies, so that axes stand beside it.
-    pub fn pane(&self, room: Rect, scene: &Scene) -> Rect {
+    pub(crate) fn pane(&self, room: Rect, scene: &Scene) -> Rect {
         let is_beside =
             self.wants(Annotation::Axes) || self.wants(Annotation::Layers) || self.wants(Annotation::Faults);
         if !is_beside {
@@ -132,7 +132,7 @@ impl BlockAnnotation<'_> {
     }
 
     /// Everything that is written, for a picture of `scene` that fills `pane` of a room.
-    pub fn drawn(&self, room: Rect, pane: Rect, scene: &Scene, dpi: f64) -> Group {
+    pub(crate) fn drawn(&self, room: Rect, pane: Rect, scene: &Scene, dpi: f64) -> Group {
         let view = scene.view(self.geometry);
         let placed = Placed { scene, view, pane, points_per_px: POINTS_PER_INCH / dpi };
         let mut free = LabelRoom::new(room);
