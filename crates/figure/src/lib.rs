@@ -11,7 +11,7 @@
 //! | [`correlation`] | wells as columns of layers, to be joined by lines |
 //! | [`interpretation`] | what an interpreter sees, as borrowed data |
 //! | [`draw`] | builders: from such data to groups of items |
-//! | [`spec`], [`make`](mod@make) | what a figure shows, and the one way it is made |
+//! | `spec`, [`make`](mod@make) | what a figure shows, and the one way it is made |
 //! | [`style`] | sizes and colours that all figures share |
 //!
 //! Spaces: voxels; (s, t) of a section, voxels from its first sample; points of the page (1/72 inch, y

@@ -8,7 +8,7 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`error`], [`placement`] | what can go wrong; where a volume of another size lies |
+//! | [`error`], `placement` | what can go wrong; where a volume of another size lies |
 //! | [`document`] | the state: what `project.toml` says |
 //! | [`folder`] | how a state, its history and its data lie on disk, and the one place that deletes |
 //! | [`content`], [`styles`] | volumes, horizons, faults, wells and patterns read by the names of a project |

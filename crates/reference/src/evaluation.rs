@@ -60,7 +60,7 @@ pub struct SurfaceScore {
     pub on_any: usize,
     /// Count of vertices on the majority reflector.
     pub on_majority: usize,
-    /// The reflector with most of its vertices, an index into [`TruthIndex::reflectors`]; `None` when no
+    /// The reflector with most of its vertices, an index into `TruthIndex::reflectors`; `None` when no
     /// vertex lies on one.
     #[serde(skip)]
     pub majority: Option<usize>,

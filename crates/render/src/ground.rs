@@ -5,7 +5,7 @@
 //! advances by a step that cannot cross a sheet: with `gap` the vertical distance to the nearest sheet and s
 //! the steepest slope of the ground, `step = gap / (|d_z| + s·|d_xy|)`. Here s is the steepest slope in the cell of the
 //! map and the cells around it, as long as the step stays in them. The distance to the nearest fault
-//! limits a step, too, and no step is shorter than [`SHORTEST_STEP`]. The step that ends in rock is refined: by the
+//! limits a step, too, and no step is shorter than `SHORTEST_STEP`. The step that ends in rock is refined: by the
 //! secant method if it crosses a single sheet of one block, and by bisection otherwise. Where the ray crosses
 //! a fault into rock, it hits the fault scarp, whose normal is that of the fault.
 //!

@@ -15,7 +15,7 @@ pub enum FaceData {
     Rock,
     /// The same, and over it the horizon candidates in the colours of their leaves.
     Leaves,
-    /// Distance to the nearest candidate: white on it, darker with distance, black beyond [`BLACK_AT`]
+    /// Distance to the nearest candidate: white on it, darker with distance, black beyond `BLACK_AT`
     /// (P-horiz, figure 4).
     Distance,
     /// How much patterns are distorted ([`crate::distortion`]).

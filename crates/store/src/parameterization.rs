@@ -41,9 +41,9 @@ pub struct ParameterizationVolumes {
     pub j: Volume<f32>,
     /// k, 0 on a layer's bottom and 1 on its top; NaN outside.
     pub k: Volume<f32>,
-    /// Layer, 0 = deepest; [`NO_ID`] = none.
+    /// Layer, 0 = deepest; `u16::MAX` = none.
     pub layer: Volume<u16>,
-    /// Fault block; [`NO_ID`] = none.
+    /// Fault block; `u16::MAX` = none.
     pub block: Volume<u16>,
 }
 

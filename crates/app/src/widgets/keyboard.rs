@@ -2,7 +2,7 @@
 //!
 //! Enter in a dialogue presses its main button, wherever the typing was, unless another button has the focus or a list
 //! is open. Escape gives up the innermost of what is open: a list, then what was typed into a field, then the dialogue;
-//! [`Listener`] tells the shortcuts which keys are theirs.
+//! `Listener` tells the shortcuts which keys are theirs.
 
 use eframe::egui::{Context, Event, Id, Key, Popup, TextEdit, Ui};
 

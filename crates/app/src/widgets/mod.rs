@@ -1,11 +1,11 @@
 //! Parts of the window that know of no project.
 //!
-//! - [`theme`]: the look of the window;
+//! - `theme`: the look of the window;
 //! - [`form`]: the rows of forms;
-//! - [`canvas`]: paints groups of a `page::DisplayList` through egui;
-//! - [`event_order`]: a click counts where it was made, and a notch of the wheel is a line;
-//! - [`histogram`] and [`opacity_curve`]: the values of a volume, and an RGBA function drawn over them;
-//! - [`obstacle`] and [`percent`]: controls that say why they do nothing, and shares shown in percent;
+//! - `canvas`: paints groups of a `page::DisplayList` through egui;
+//! - `event_order`: a click counts where it was made, and a notch of the wheel is a line;
+//! - [`histogram`] and `opacity_curve`: the values of a volume, and an RGBA function drawn over them;
+//! - `obstacle` and [`percent`]: controls that say why they do nothing, and shares shown in percent;
 //! - [`dialogue`]: a dialogue in the middle of the window;
 //! - [`keyboard`]: what Enter and Escape do in every dialogue and field, and names changed in place;
 //! - [`page`]: a figure's page as it will be printed, on which labels are dragged;

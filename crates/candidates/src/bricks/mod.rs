@@ -3,7 +3,7 @@
 //! A *stage* is a function of bricks. Its tasks, one for each brick (or one for the whole survey, where only summaries
 //! are handled), read named arrays that earlier stages wrote ([`NamedArrays`]), and write named arrays of their own.
 //! Tasks of a stage know nothing of one another, each runs on one thread, and may be done in any order, in any process
-//! and more than once. [`Bricks::run`] does all of them in order; a cluster calls [`Bricks::run_task`] for each of
+//! and more than once. [`Bricks::run`] does all of them in order; a cluster calls `Bricks::run_task` for each of
 //! [`Bricks::stages`] and waits between stages.
 //!
 //! Growing is defined as a set ([`crate::grow`]), so that a brick with a large enough halo decides what it owns as the

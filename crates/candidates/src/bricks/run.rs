@@ -121,7 +121,7 @@ impl Bricks<'_> {
     /// it read has been removed: a cluster repeats tasks whose answer was lost with a machine.
     ///
     /// # Errors
-    /// As [`Bricks::run_task`].
+    /// As `Bricks::run_task`.
     pub fn do_task(&self, stage: Stage, task: usize, progress: &Progress) -> Result<(), InterpError> {
         let done = done(stage);
         if self.arrays.is_whole(&done, usize::MAX) || self.arrays.is_whole(&done, task) {

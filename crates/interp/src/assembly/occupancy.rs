@@ -12,7 +12,7 @@ use std::ops::Range;
 pub struct Overlap {
     /// Count of vertices that share trace and fault block with an earlier vertex.
     pub traces: usize,
-    /// Count of those that share it with a vertex added before [`Occupancy::set_apart`].
+    /// Count of those that share it with a vertex added before `Occupancy::set_apart`.
     pub beside: usize,
     /// The largest distance between two such vertices, samples.
     pub apart: f32,

@@ -42,7 +42,7 @@ pub(crate) const MOST_SIDE_PX: u32 = 32_768;
 /// transparent where nothing is drawn.
 ///
 /// # Errors
-/// [`PageError::PageSize`] where that is nothing or more than [`MOST_SIDE_PX`].
+/// [`PageError::PageSize`] where that is nothing or more than `MOST_SIDE_PX`.
 pub fn raster(list: &DisplayList, dpi: f64) -> Result<RgbaImage, PageError> {
     let scale = dpi / POINTS_PER_INCH;
     let [width, height] = size_px(list, dpi)?;

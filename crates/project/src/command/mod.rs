@@ -1,6 +1,6 @@
 //! Everything that changes a project, as one serialisable enum. A command states what is wanted, not how it is done.
 //!
-//! A command reads files and the present state, writes new data through the [`Draft`] and leaves the new state in it.
+//! A command reads files and the present state, writes new data through the `Draft` and leaves the new state in it.
 //! It overwrites nothing and can fail at any point: [`crate::Project::apply`] then discards the draft. Undo needs
 //! nothing from a command, because every state is kept in the history.
 

@@ -1,7 +1,7 @@
 //! The present extraction as picks need it: its trees and its key.
 //!
 //! A caller that makes several picks holds the result of [`Candidates::load`]. A single command takes
-//! [`Candidates::for_picks`]: of a large extraction, the surfaces that were picked or lie near a place are read alone.
+//! `Candidates::for_picks`: of a large extraction, the surfaces that were picked or lie near a place are read alone.
 //! The others are empty there.
 
 use super::extraction;

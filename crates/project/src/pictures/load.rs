@@ -308,7 +308,7 @@ pub enum Extent<'a> {
     Whole,
     /// What the processor needs to draw the scene once: of large volumes, the samples on faces and ground alone, so that
     /// pictures of a volume of any size have its own resolution; and no layer coordinates where measured data hide the
-    /// rock. [`Loaded::has_missed`] says whether that was enough.
+    /// rock. `Loaded::has_missed` says whether that was enough.
     Faces,
     /// Measured data alone, whatever horizons there are, so that nobody waits for a model: the raw volume, the wells and
     /// the part of the extraction that the scene shows. With places, of large volumes only the samples there.

@@ -9,7 +9,7 @@ use synth::{Reflector, SynthTruth};
 pub struct TruthEvent {
     /// Fractional sample index.
     pub z: f32,
-    /// Index into [`TruthIndex::reflectors`].
+    /// Index into `TruthIndex::reflectors`.
     pub reflector: u16,
     /// Fault block in which it lies.
     pub block: u16,
@@ -66,7 +66,7 @@ impl TruthIndex {
         &self.reflectors
     }
 
-    /// Index of a reflector in [`TruthIndex::reflectors`]; `None` for a reflector of another truth.
+    /// Index of a reflector in `TruthIndex::reflectors`; `None` for a reflector of another truth.
     pub fn reflector_index(&self, reflector: Reflector) -> Option<usize> {
         self.reflectors.iter().position(|&other| other == reflector)
     }

@@ -9,7 +9,7 @@
 //!
 //! Voxel space of the survey; brick (bx, by, bz) spans [8·bx, 8·bx + 8] along x, and so on. Each brick is one
 //! 32-bit word: the distance for the surroundings in bits 0–7, for the cut-outs in bits 8–15, and in bits
-//! 16–23 the layer if the brick lies in a single one, else [`MIXED`].
+//! 16–23 the layer if the brick lies in a single one, else `MIXED`.
 
 use super::prepared::BRICK;
 use super::{LayerOpacity, Medium, MediumColour};
@@ -29,7 +29,7 @@ pub(crate) const MIXED: u8 = 255;
 pub struct BrickContent {
     /// Whether the brick is visible in the surroundings, and in the cut-outs.
     pub shows: [bool; 2],
-    /// The layer if there is a single one, else [`MIXED`].
+    /// The layer if there is a single one, else `MIXED`.
     pub layer: u8,
 }
 

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! so a homogeneous medium absorbs exactly 1 − e^(−κℓ). Steps in empty bricks are skipped. A ray ends early
-//! when its transmittance falls below [`SPENT`]. Voxel space; t in voxels along the ray.
+//! when its transmittance falls below `SPENT`. Voxel space; t in voxels along the ray.
 
 use super::Faces;
 use super::field::{Matter, MediaField};

@@ -40,7 +40,7 @@ impl<'a> FieldMedium<'a> {
         Self { volume, prepared, table, zone, layers: None, scale, offset }
     }
 
-    /// Value at a voxel position, interpolated trilinearly; below [`super::samples::NO_DATA_BELOW`] if there
+    /// Value at a voxel position, interpolated trilinearly; below `NO_DATA_BELOW` if there
     /// is none.
     #[inline(always)]
     pub fn sample(&self, p: Vec3) -> f32 {

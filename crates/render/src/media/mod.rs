@@ -13,7 +13,7 @@
 //! with the extinctions as weights. Light is linear; the sum is sRGB-encoded at the end.
 //!
 //! With occlusion shading, [`light`] propagates occlusion and emission from slice to slice before the picture
-//! is drawn, and [`march`] reads the result. [`bundle`] marches many rays at once if there is only one
+//! is drawn, and [`march`] reads the result. `bundle` marches many rays at once if there is only one
 //! volume. [`bricks`] is for empty-space skipping.
 
 pub mod bricks;

@@ -10,7 +10,7 @@
 //! needed. Three interpolated values ahead and three behind are computed from them.
 //!
 //! Index space: the sample indices of the volume. A value that needs a missing sample ([`NO_DATA`]) lies far
-//! below [`NO_DATA_BELOW`]. Positions outside the volume are missing, and a difference with a missing end
+//! below `NO_DATA_BELOW`. Positions outside the volume are missing, and a difference with a missing end
 //! counts as zero.
 
 use crate::inputs::SLACK;

@@ -1,6 +1,6 @@
 //! RGBA functions of media as tables: linear colour and extinction at evenly spaced values.
 //!
-//! A lookup takes the nearest of [`ENTRIES`] entries, so that it is a single load on the GPU. The error in
+//! A lookup takes the nearest of `ENTRIES` entries, so that it is a single load on the GPU. The error in
 //! the value is at most 1/4096 of the domain.
 
 use super::samples::whole;
@@ -11,7 +11,7 @@ pub(crate) const ENTRIES: usize = 2048;
 /// Extinction of an opaque value: a ten-thousandth of a unit transmits less than half.
 pub(crate) const OPAQUE: f32 = 1.0e4;
 
-/// −ln(1 − α₀), limited to [`OPAQUE`].
+/// −ln(1 − α₀), limited to `OPAQUE`.
 ///
 /// ```
 /// use render::media::table::{absorbed, extinction};
