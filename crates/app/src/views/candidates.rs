@@ -4,7 +4,7 @@ use crate::state::picking::{PickingStep, Tool, free_name};
 use crate::state::{Action, Session};
 use crate::widgets::form;
 use crate::widgets::obstacle::{needs, unless};
-use crate::work::{Interpreted, RunningLine};
+use crate::work::{Interpreted, Job, RunningLine};
 use eframe::egui::{Align, Button, ComboBox, DragValue, Grid, Layout, ProgressBar, Ui};
 use interp::{ExtractSettings, Extremum, Method};
 use project::command::{AttributeKind, Command, ComputeAttribute, ComputeTime};
@@ -29,7 +29,7 @@ impl CandidatesPanel {
         running: &[RunningLine],
         actions: &mut Vec<Action>,
     ) {
-        if let Some(line) = running.iter().find(|line| line.title == "Extracting") {
+        if let Some(line) = running.iter().find(|line| line.job == Job::Extraction) {
             ui.label(if line.stage.is_empty() { "extracting" } else { &line.stage });
             ui.horizontal(|ui| {
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

@@ -191,14 +191,14 @@ impl ShareView {
         });
         if let Some(line) = running {
             ui.horizontal(|ui| {
-                if ui.button("Stop").on_hover_text(format!("Stop: {}", line.title)).clicked() {
+                if ui.button("Stop").on_hover_text(format!("Stop: {}", line.job)).clicked() {
                     line.progress.cancel();
                 }
                 ui.add(ProgressBar::new(line.share().unwrap_or(0.0)).desired_width(110.0));
                 ui.label(if line.stage.is_empty() {
-                    format!("{}…", line.title)
+                    format!("{}…", line.job)
                 } else {
-                    format!("{}: {}", line.title, line.stage)
+                    format!("{}: {}", line.job, line.stage)
                 });
             });
         }

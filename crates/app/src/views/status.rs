@@ -33,7 +33,7 @@ pub fn show(
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             for line in running {
-                if ui.button("Stop").on_hover_text(format!("Stop: {}", line.title)).clicked() {
+                if ui.button("Stop").on_hover_text(format!("Stop: {}", line.job)).clicked() {
                     line.progress.cancel();
                 }
                 let bar = match line.share() {
@@ -42,7 +42,7 @@ pub fn show(
                 };
                 ui.add(bar.desired_width(110.0));
                 let text =
-                    if line.stage.is_empty() { line.title.clone() } else { format!("{}: {}", line.title, line.stage) };
+                    if line.stage.is_empty() { line.job.to_string() } else { format!("{}: {}", line.job, line.stage) };
                 ui.label(text);
             }
             if let Some((index, notice)) = state.notices_at(Place::Foot).last() {

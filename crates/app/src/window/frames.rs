@@ -27,7 +27,7 @@ impl FrameTimes {
         let since_last = self.last.replace(start).map(|last| start - last);
         let Some(since_last) = since_last else { return };
         let ms = |seconds: f64| 1000.0 * seconds;
-        let titles: Vec<&str> = under_way.iter().map(|line| line.title.as_str()).collect();
+        let titles: Vec<String> = under_way.iter().map(|line| line.job.to_string()).collect();
         // A full disk ends the table, but not the work.
         let _ = writeln!(
             self.out,

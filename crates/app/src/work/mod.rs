@@ -28,7 +28,7 @@ pub use map::Maps;
 pub use picks::{Interpreted, InterpretedHorizon, Picks, ShownFault, ShownPick, sheet};
 pub(crate) use picture::Touch;
 pub use picture::{Drawing, Drawn, PictureRequest};
-pub use running::{Running, RunningLine};
+pub use running::{Job, Running, RunningLine};
 pub use share::SharePreview;
 pub(crate) use slice::CutOf;
 pub use slice::{SliceRequest, Slices};
@@ -252,7 +252,7 @@ impl Work {
         let title = title.to_owned();
         let theirs = outbox.clone();
         spawn("a background task", &theirs, move || {
-            let (line, progress) = running.begin(&title, place, outbox.wake.clone());
+            let (line, progress) = running.begin(title, place, outbox.wake.clone());
             match job(&progress, &outbox) {
                 Err(notice) if progress.check().is_ok() => outbox.send(Event::Told(notice)),
                 _ => {}

@@ -44,7 +44,7 @@ pub(super) fn start(outbox: Outbox, running: Running) -> Sender<Order> {
         let mut times: Option<Arc<Times>> = None;
         while let Ok(order) = orders.recv() {
             let (place, root) = (order.place(), order.root());
-            let (guard, progress) = running.begin(&order.title(), place, outbox.wake.clone());
+            let (guard, progress) = running.begin(order.title(), place, outbox.wake.clone());
             if let Some(needed) = times_for(&order, &progress) {
                 times.replace(needed);
             }

@@ -3,6 +3,7 @@
 use super::Wake;
 use crate::state::Place;
 use state::fields;
+use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -12,13 +13,40 @@ use survey::{Note, Progress};
 /// Smallest interval at which progress wakes the window.
 const WAKE_EVERY: Duration = Duration::from_millis(100);
 
+/// What is done.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Job {
+    /// Horizon candidates are extracted.
+    Extraction,
+    /// Faults are proposed.
+    FaultProposals,
+    /// Anything else, in words.
+    Other(String),
+}
+
+impl fmt::Display for Job {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Extraction => "Extracting",
+            Self::FaultProposals => "Proposing faults",
+            Self::Other(title) => title,
+        })
+    }
+}
+
+impl<T: Into<String>> From<T> for Job {
+    fn from(title: T) -> Self {
+        Self::Other(title.into())
+    }
+}
+
 /// A job under way.
 #[derive(Clone)]
 pub struct RunningLine {
     /// A number that no other job has.
     pub id: u64,
-    /// Its title.
-    pub title: String,
+    /// What it does.
+    pub job: Job,
     /// Where its failure would be shown.
     pub place: Place,
     /// Its present stage.
@@ -48,13 +76,13 @@ pub struct Running {
 
 impl Running {
     /// Adds a job; it is listed for as long as the guard lives.
-    pub fn begin(&self, title: &str, place: Place, wake: Wake) -> (RunningGuard, Progress) {
+    pub fn begin(&self, job: impl Into<Job>, place: Place, wake: Wake) -> (RunningGuard, Progress) {
         let id = self.next.fetch_add(1, Ordering::Relaxed);
         let sink = Sink { id, running: self.clone(), wake, woke: Mutex::new(Instant::now()) };
         let progress = Progress::new(Arc::new(sink));
         let line = RunningLine {
             id,
-            title: title.to_owned(),
+            job: job.into(),
             place,
             stage: String::new(),
             steps: [0; 2],
@@ -148,7 +176,7 @@ mod tests {
         progress.begin("ones", 10);
         progress.warn("slowly");
         let line = running.lines().remove(0);
-        assert_eq!((line.title.as_str(), line.stage.as_str(), line.share()), ("count", "ones", Some(0.0)));
+        assert_eq!((line.job.to_string(), line.stage.as_str(), line.share()), ("count".to_owned(), "ones", Some(0.0)));
         line.progress.cancel();
         assert!(progress.check().is_err());
         assert_eq!(guard.warnings(), ["slowly"]);

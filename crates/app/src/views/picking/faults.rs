@@ -4,7 +4,7 @@ use super::{go, palette};
 use crate::state::{Action, PickingStep, Session, Tool};
 use crate::views::named::colour;
 use crate::widgets::obstacle::{needs, unless};
-use crate::work::{Interpreted, RunningLine};
+use crate::work::{Interpreted, Job, RunningLine};
 use eframe::egui::{Button, Label, TextEdit, Ui};
 use interp::faults::Proposal;
 use project::command::{AcceptFault, Command};
@@ -81,7 +81,7 @@ impl FaultsPanel {
                 ui.add(Label::new(&entry.name).truncate()).on_hover_text(format!("{}: {}", entry.name, entry.origin));
             });
         }
-        let is_looking = running.iter().any(|line| line.title == "Proposing faults");
+        let is_looking = running.iter().any(|line| line.job == Job::FaultProposals);
         let can = !session.document.horizons.is_empty() && !is_looking;
         let hint = "A fault is proposed wherever horizons are offset (Q)";
         let why =

@@ -9,7 +9,7 @@
 mod followed;
 
 use super::orders::snapshot;
-use super::running::Running;
+use super::running::{Job, Running};
 use super::{Event, Outbox, compute_apart, keep_working, spawn};
 use crate::state::picking::Pick;
 use crate::state::{Notice, PickingStep, PickingTask, Place, Snapshot};
@@ -192,7 +192,7 @@ impl Picks {
         let told = outbox.clone();
         match task {
             PickingTask::Extract(volume, settings) => spawn("the extraction", &told, move || {
-                let (guard, progress) = running.begin("Extracting", Place::Interpret, outbox.wake.clone());
+                let (guard, progress) = running.begin(Job::Extraction, Place::Interpret, outbox.wake.clone());
                 let done = compute_apart(|| {
                     let mut project = Project::open(&root)?.waiting(DEFAULT_WAIT);
                     project.apply(
@@ -215,7 +215,7 @@ impl Picks {
                 let _ = orders.send(Order::Renew);
             }),
             PickingTask::ProposeFaults => spawn("fault proposals", &told, move || {
-                let (guard, progress) = running.begin("Proposing faults", Place::Interpret, outbox.wake.clone());
+                let (guard, progress) = running.begin(Job::FaultProposals, Place::Interpret, outbox.wake.clone());
                 let done = compute_apart(|| {
                     let mut project = Project::open(&root)?.waiting(DEFAULT_WAIT);
                     let effect = project.apply(&Command::ProposeFaults(ProposeFaults::default()), &progress)?;
