@@ -2,7 +2,7 @@
 //! samples.
 //!
 //! A [`Query`] is one question, and its key is a hash of everything that the answer depends on. [`Facts::get`] looks for
-//! the answer in memory, then beside the project, and otherwise computes and stores it.
+//! the answer in memory, and otherwise asks the query, which may have it beside the project.
 //!
 //! In memory an answer is found for as long as anyone holds it. Beyond that, the answers used last are kept within one
 //! budget ([`keep_within`]): the window has one, and a program that carries out one command has none, so that nothing
@@ -33,9 +33,6 @@ pub struct Facts<'a> {
 pub trait Query {
     /// What is asked for, in words; no other query has the same.
     const WHAT: &'static str;
-    /// What the answer is computed from. Reading it compares it with the hashes that were recorded: a stored answer is
-    /// found by these, and must not stand for data that were changed since.
-    type Inputs;
     /// The answer.
     type Answer: Send + Sync + 'static;
 
@@ -45,30 +42,13 @@ pub trait Query {
     /// The state does not have what the question is about.
     fn key(&self, facts: Facts<'_>) -> Result<String, ProjectError>;
 
-    /// Reads what the answer is computed from.
+    /// The answer: the one that is stored beside the project, if there is an intact one, or else computed, and then stored.
+    /// What it is computed from is read in either case: reading compares data with the hashes that were recorded, by which a
+    /// stored answer is found, and it must not stand for data that were changed since.
     ///
     /// # Errors
-    /// Data are damaged, or the user cancelled.
-    fn inputs(&self, facts: Facts<'_>, progress: &Progress) -> Result<Self::Inputs, ProjectError>;
-
-    /// The answer that is stored beside the project, if there is an intact one.
-    fn stored(&self, _facts: Facts<'_>, _key: &str, _inputs: &Self::Inputs) -> Option<Self::Answer> {
-        None
-    }
-
-    /// Computes the answer.
-    ///
-    /// # Errors
-    /// It cannot be computed, does not fit into memory, or the user cancelled.
-    fn compute(
-        &self,
-        facts: Facts<'_>,
-        inputs: Self::Inputs,
-        progress: &Progress,
-    ) -> Result<Self::Answer, ProjectError>;
-
-    /// Stores a computed answer beside the project; warns if that fails.
-    fn store(&self, _facts: Facts<'_>, _key: &str, _answer: &Self::Answer, _progress: &Progress) {}
+    /// Data are damaged, it cannot be computed, does not fit into memory, or the user cancelled.
+    fn compute(&self, facts: Facts<'_>, progress: &Progress) -> Result<Self::Answer, ProjectError>;
 
     /// The memory that an answer takes, bytes.
     fn bytes(answer: &Self::Answer) -> usize;
@@ -90,15 +70,7 @@ impl<'a> Facts<'a> {
         if let Some(known) = table().find(&place) {
             return Ok(known);
         }
-        let inputs = query.inputs(self, progress)?;
-        let answer = match query.stored(self, &key, &inputs) {
-            Some(stored) => stored,
-            None => {
-                let computed = query.compute(self, inputs, progress)?;
-                query.store(self, &key, &computed, progress);
-                computed
-            }
-        };
+        let answer = query.compute(self, progress)?;
         let (bytes, answer) = (Q::bytes(&answer), Arc::new(answer));
         let displaced = table().put(place, &answer, bytes);
         // Freeing it may take a while, during which the table is not locked.
@@ -218,25 +190,16 @@ mod tests {
 
     impl Query for Zeros {
         const WHAT: &'static str = "zeros";
-        type Inputs = usize;
         type Answer = Vec<u8>;
 
         fn key(&self, _: Facts<'_>) -> Result<String, ProjectError> {
             Ok(self.0.to_string())
         }
 
-        fn inputs(&self, _: Facts<'_>, _: &Progress) -> Result<usize, ProjectError> {
-            Ok(self.0)
-        }
-
-        fn stored(&self, _: Facts<'_>, _: &str, count: &usize) -> Option<Vec<u8>> {
-            (*count == 7).then(|| vec![0; 7])
-        }
-
-        fn compute(&self, _: Facts<'_>, count: usize, progress: &Progress) -> Result<Vec<u8>, ProjectError> {
+        fn compute(&self, _: Facts<'_>, progress: &Progress) -> Result<Vec<u8>, ProjectError> {
             progress.check()?;
             self.1.fetch_add(1, Ordering::Relaxed);
-            Ok(vec![0; count])
+            Ok(vec![0; self.0])
         }
 
         fn bytes(answer: &Vec<u8>) -> usize {
@@ -258,8 +221,6 @@ mod tests {
         // Another project may state the same hash.
         let other = Facts::of(Path::new("b"), &document).get(&Zeros(1, made.clone()), &Progress::silent()).unwrap();
         assert!(!Arc::ptr_eq(&first, &other));
-        // What is stored is not computed.
-        assert_eq!((get(7).len(), made.load(Ordering::Relaxed)), (7, 4));
         // A failure is no answer.
         let cancelled = Progress::silent();
         cancelled.cancel();

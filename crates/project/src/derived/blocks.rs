@@ -10,7 +10,7 @@ use glam::{DMat3, DVec3};
 use model::{BlockSignature, FaultNetwork, FaultSurface, Truncation};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};
-use survey::{Fault, HeightField, Progress};
+use survey::{HeightField, Progress};
 
 const BLOCKS: Kind = Kind { prefix: "blocks", magic: b"PGBLOCK\x02", what: "the fault blocks" };
 
@@ -23,31 +23,26 @@ pub struct FaultBlocks;
 
 impl Query for FaultBlocks {
     const WHAT: &'static str = "fault blocks";
-    type Inputs = Vec<Fault>;
     type Answer = FaultNetwork;
 
     fn key(&self, Facts { document, .. }: Facts<'_>) -> Result<String, ProjectError> {
         Ok(key_of(&(blocks_key(document), document.names(Noun::Fault))))
     }
 
-    fn inputs(&self, Facts { root, document }: Facts<'_>, _: &Progress) -> Result<Vec<Fault>, ProjectError> {
-        document.faults.iter().map(|entry| content::read_fault(root, entry)).collect()
-    }
-
-    fn stored(&self, facts: Facts<'_>, _: &str, faults: &Vec<Fault>) -> Option<FaultNetwork> {
-        if faults.is_empty() {
-            return Some(FaultNetwork::none());
+    fn compute(&self, facts: Facts<'_>, progress: &Progress) -> Result<FaultNetwork, ProjectError> {
+        let Facts { root, document } = facts;
+        if document.faults.is_empty() {
+            return Ok(FaultNetwork::none());
         }
-        let blocks = BLOCKS.load(facts.root, &blocks_key(facts.document), read)?;
-        Some(blocks.named(facts.document.names(Noun::Fault)))
-    }
-
-    fn compute(&self, facts: Facts<'_>, faults: Vec<Fault>, progress: &Progress) -> Result<FaultNetwork, ProjectError> {
-        Ok(FaultNetwork::build(facts.document.frame()?, &faults, progress)?)
-    }
-
-    fn store(&self, facts: Facts<'_>, _: &str, blocks: &FaultNetwork, progress: &Progress) {
-        BLOCKS.keep(facts.root, &blocks_key(facts.document), progress, |out| write(out, blocks));
+        let faults = document.faults.iter().map(|entry| content::read_fault(root, entry));
+        let faults = faults.collect::<Result<Vec<_>, _>>()?;
+        let key = blocks_key(document);
+        if let Some(blocks) = BLOCKS.load(root, &key, read) {
+            return Ok(blocks.named(document.names(Noun::Fault)));
+        }
+        let blocks = FaultNetwork::build(document.frame()?, &faults, progress)?;
+        BLOCKS.keep(root, &key, progress, |out| write(out, &blocks));
+        Ok(blocks)
     }
 
     fn bytes(blocks: &FaultNetwork) -> usize {

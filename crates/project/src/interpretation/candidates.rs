@@ -36,18 +36,13 @@ struct AllOf<'a>(&'a StoredCandidates);
 
 impl Query for AllOf<'_> {
     const WHAT: &'static str = "horizon candidates";
-    type Inputs = ();
     type Answer = Candidates;
 
     fn key(&self, _: Facts<'_>) -> Result<String, ProjectError> {
         Ok(self.0.info().key.clone())
     }
 
-    fn inputs(&self, _: Facts<'_>, _: &Progress) -> Result<(), ProjectError> {
-        Ok(())
-    }
-
-    fn compute(&self, _: Facts<'_>, (): (), progress: &Progress) -> Result<Candidates, ProjectError> {
+    fn compute(&self, _: Facts<'_>, progress: &Progress) -> Result<Candidates, ProjectError> {
         let (key, max_distance) = (self.0.info().key.clone(), self.0.info().max_distance);
         Ok(Candidates { forest: extraction::forest(self.0, progress)?, key, max_distance })
     }

@@ -6,9 +6,7 @@ use crate::document::HorizonEntry;
 use crate::error::ProjectError;
 use crate::facts::{Facts, Query};
 use interp::reassembly::{VoxelSheet, from_horizon};
-use model::FaultNetwork;
-use std::sync::Arc;
-use survey::{Horizon, Progress};
+use survey::Progress;
 
 /// The sheets of a horizon.
 #[derive(Debug, Clone, Copy)]
@@ -16,23 +14,15 @@ pub struct HorizonSheets<'a>(pub &'a HorizonEntry);
 
 impl Query for HorizonSheets<'_> {
     const WHAT: &'static str = "sheets of a horizon";
-    type Inputs = (Horizon, Arc<FaultNetwork>);
     type Answer = Vec<VoxelSheet>;
 
     fn key(&self, facts: Facts<'_>) -> Result<String, ProjectError> {
         Ok(key_of(&(&self.0.file, &self.0.hash, blocks_key(facts.document))))
     }
 
-    fn inputs(&self, facts: Facts<'_>, progress: &Progress) -> Result<Self::Inputs, ProjectError> {
-        Ok((content::read_horizon(facts.root, self.0, progress)?, facts.get(&FaultBlocks, progress)?))
-    }
-
-    fn compute(
-        &self,
-        facts: Facts<'_>,
-        (horizon, blocks): Self::Inputs,
-        _: &Progress,
-    ) -> Result<Vec<VoxelSheet>, ProjectError> {
+    fn compute(&self, facts: Facts<'_>, progress: &Progress) -> Result<Vec<VoxelSheet>, ProjectError> {
+        let horizon = content::read_horizon(facts.root, self.0, progress)?;
+        let blocks = facts.get(&FaultBlocks, progress)?;
         Ok(from_horizon(&horizon, facts.document.frame()?, &blocks))
     }
 

@@ -7,7 +7,7 @@ use crate::error::{Noun, ProjectError};
 use crate::facts::{Facts, Query};
 use model::{ModelSettings, StructuralModel};
 use param::ParamSettings;
-use survey::{Fault, Horizon, Progress, SurveyGeometry};
+use survey::{Progress, SurveyGeometry};
 use system::memory;
 
 /// Memory that the model takes at least for each horizon at each trace.
@@ -66,7 +66,6 @@ pub(crate) struct SolidModel;
 
 impl Query for SolidModel {
     const WHAT: &'static str = "model";
-    type Inputs = (Vec<Horizon>, Vec<Fault>);
     type Answer = StructuralModel;
 
     fn key(&self, Facts { document, .. }: Facts<'_>) -> Result<String, ProjectError> {
@@ -75,22 +74,18 @@ impl Query for SolidModel {
         Ok(derived::key_of(&(derived::model_key(document, &ModelSettings::default()), names)))
     }
 
-    fn inputs(&self, Facts { root, document }: Facts<'_>, progress: &Progress) -> Result<Self::Inputs, ProjectError> {
+    fn compute(
+        &self,
+        Facts { root, document }: Facts<'_>,
+        progress: &Progress,
+    ) -> Result<StructuralModel, ProjectError> {
         if document.horizons.is_empty() {
             return Err(ProjectError::NoLayers);
         }
         let horizons = document.horizons.iter().map(|entry| content::read_horizon(root, entry, progress));
-        let horizons = horizons.collect::<Result<_, _>>()?;
+        let horizons = horizons.collect::<Result<Vec<_>, _>>()?;
         let faults = document.faults.iter().map(|entry| content::read_fault(root, entry));
-        Ok((horizons, faults.collect::<Result<_, _>>()?))
-    }
-
-    fn compute(
-        &self,
-        Facts { document, .. }: Facts<'_>,
-        (horizons, faults): Self::Inputs,
-        progress: &Progress,
-    ) -> Result<StructuralModel, ProjectError> {
+        let faults = faults.collect::<Result<Vec<_>, _>>()?;
         let (geometry, settings) = (document.frame()?, ModelSettings::default());
         let [inlines, crosslines, _] = geometry.size();
         memory::check("the model of the survey", &[inlines, crosslines, horizons.len()], MODEL_BYTES)?;

@@ -41,7 +41,6 @@ struct TimesOf<'a>(&'a VolumeEntry);
 
 impl Query for TimesOf<'_> {
     const WHAT: &'static str = "geologic time";
-    type Inputs = (Volume<f32>, Arc<Candidates>, Arc<FaultNetwork>);
     type Answer = Times;
 
     fn key(&self, facts: Facts<'_>) -> Result<String, ProjectError> {
@@ -49,21 +48,12 @@ impl Query for TimesOf<'_> {
         Ok(key_of(&(&self.0.file, &self.0.hash, extraction, blocks_key(facts.document))))
     }
 
-    fn inputs(&self, facts: Facts<'_>, progress: &Progress) -> Result<Self::Inputs, ProjectError> {
+    fn compute(&self, facts: Facts<'_>, progress: &Progress) -> Result<Times, ProjectError> {
         let frame = facts.document.frame()?;
         memory::check("geologic time and all reflections", &frame.size(), HELD_BYTES)?;
         let candidates = Candidates::load(facts, progress)?;
         let tau = content::read_volume(facts.root, self.0, frame, progress)?;
-        Ok((tau, candidates, facts.get(&FaultBlocks, progress)?))
-    }
-
-    fn compute(
-        &self,
-        _: Facts<'_>,
-        (tau, candidates, blocks): Self::Inputs,
-        _: &Progress,
-    ) -> Result<Times, ProjectError> {
-        let cuts = Cut::of_network(&blocks, tau.size());
+        let cuts = Cut::of_network(&*facts.get(&FaultBlocks, progress)?, tau.size());
         let reflections = Reflections::new(&candidates.forest.surfaces, &cuts);
         Ok(Times { tau, reflections, cuts })
     }

@@ -110,44 +110,31 @@ struct SolidRock;
 
 impl Query for SolidRock {
     const WHAT: &'static str = "rock";
-    type Inputs = (Arc<StructuralModel>, Stage);
     type Answer = Rock;
 
     fn key(&self, Facts { document, .. }: Facts<'_>) -> Result<String, ProjectError> {
         Ok(derived::parameterization_key(document, &ModelSettings::default(), &solid::param_settings(document)))
     }
 
-    fn inputs(&self, facts: Facts<'_>, progress: &Progress) -> Result<Self::Inputs, ProjectError> {
+    fn compute(&self, facts: Facts<'_>, progress: &Progress) -> Result<Rock, ProjectError> {
+        let Facts { root, document } = facts;
         let (model, stage) = structural_model(facts, progress)?.ok_or(ProjectError::NoLayers)?;
-        solid::check_coordinates(model.size(), &solid::param_settings(facts.document))?;
-        Ok((model, stage))
-    }
-
-    fn stored(&self, facts: Facts<'_>, key: &str, (model, stage): &Self::Inputs) -> Option<Rock> {
-        let kept = derived::load_grids(facts.root, key).filter(|kept| is_of(kept, model))?;
-        Some(Rock::new(model.clone(), kept, key.to_owned(), vec![stage.clone()]))
-    }
-
-    fn compute(
-        &self,
-        facts: Facts<'_>,
-        (model, stage): Self::Inputs,
-        progress: &Progress,
-    ) -> Result<Rock, ProjectError> {
-        let (start, settings) = (Instant::now(), solid::param_settings(facts.document));
-        let computed = match &facts.document.parameterization {
+        let (key, settings) = (self.key(facts)?, solid::param_settings(document));
+        solid::check_coordinates(model.size(), &settings)?;
+        if let Some(kept) = derived::load_grids(root, &key).filter(|kept| is_of(kept, &model)) {
+            return Ok(Rock::new(model, kept, key, vec![stage]));
+        }
+        let start = Instant::now();
+        let computed = match &document.parameterization {
             None => Parameterization::compute(&*model, &settings, progress)?,
             Some(entry) => {
-                let arrays = derived::voxels_of(content::read_parameterization(facts.root, entry, progress)?);
+                let arrays = derived::voxels_of(content::read_parameterization(root, entry, progress)?);
                 Parameterization::of_volumes(&*model, &arrays, &settings, progress)?.0
             }
         };
         let stages = vec![stage, Stage::new("parameterization", start.elapsed())];
-        Ok(Rock::new(model, computed, self.key(facts)?, stages))
-    }
-
-    fn store(&self, facts: Facts<'_>, key: &str, rock: &Rock, progress: &Progress) {
-        derived::keep_grids(facts.root, key, &rock.parameterization, progress);
+        derived::keep_grids(root, &key, &computed, progress);
+        Ok(Rock::new(model, computed, key, stages))
     }
 
     fn bytes(rock: &Rock) -> usize {
@@ -166,24 +153,15 @@ struct Packed(Arc<Rock>);
 
 impl Query for Packed {
     const WHAT: &'static str = "packed volume";
-    type Inputs = VoxelParameterization;
     type Answer = PackedVolume;
 
     fn key(&self, _: Facts<'_>) -> Result<String, ProjectError> {
         Ok(self.0.key.clone())
     }
 
-    fn inputs(&self, facts: Facts<'_>, progress: &Progress) -> Result<VoxelParameterization, ProjectError> {
-        self.0.voxels(facts.root, facts.document.frame()?.size(), progress)
-    }
-
-    fn compute(
-        &self,
-        facts: Facts<'_>,
-        voxels: VoxelParameterization,
-        _: &Progress,
-    ) -> Result<PackedVolume, ProjectError> {
+    fn compute(&self, facts: Facts<'_>, progress: &Progress) -> Result<PackedVolume, ProjectError> {
         let (size, model) = (facts.document.frame()?.size(), &self.0.model);
+        let voxels = self.0.voxels(facts.root, size, progress)?;
         Ok(PackedVolume::from_voxels(&voxels, size, model.layer_count(), model.block_count()))
     }
 

@@ -210,18 +210,13 @@ struct Trees<'a>(&'a StoredCandidates);
 
 impl Query for Trees<'_> {
     const WHAT: &'static str = "trees of candidates";
-    type Inputs = ();
     type Answer = Forest;
 
     fn key(&self, _: Facts<'_>) -> Result<String, ProjectError> {
         Ok(self.0.info().key.clone())
     }
 
-    fn inputs(&self, _: Facts<'_>, _: &Progress) -> Result<(), ProjectError> {
-        Ok(())
-    }
-
-    fn compute(&self, _: Facts<'_>, (): (), progress: &Progress) -> Result<Forest, ProjectError> {
+    fn compute(&self, _: Facts<'_>, progress: &Progress) -> Result<Forest, ProjectError> {
         Ok(Forest::of_nodes(self.0.read_nodes(progress)?)?)
     }
 
@@ -250,7 +245,6 @@ struct ShownVoxels<'a> {
 
 impl Query for ShownVoxels<'_> {
     const WHAT: &'static str = "distances and leaves";
-    type Inputs = CandidateBox;
     type Answer = CandidateBox;
 
     fn key(&self, _: Facts<'_>) -> Result<String, ProjectError> {
@@ -259,22 +253,14 @@ impl Query for ShownVoxels<'_> {
         Ok(derived::key_of(&(extraction, sheets, self.size, self.farthest)))
     }
 
-    fn inputs(&self, _: Facts<'_>, progress: &Progress) -> Result<CandidateBox, ProjectError> {
-        match self.extraction {
+    fn compute(&self, _: Facts<'_>, progress: &Progress) -> Result<CandidateBox, ProjectError> {
+        let mut voxels = match self.extraction {
             Some(stored) => {
                 memory::check("horizon candidates at every sample", &self.size, CANDIDATE_BYTES)?;
-                Ok(stored.read(0, progress)?)
+                stored.read(0, progress)?
             }
-            None => Ok(horizon_distance::nothing_near(self.size)),
-        }
-    }
-
-    fn compute(
-        &self,
-        _: Facts<'_>,
-        mut voxels: CandidateBox,
-        progress: &Progress,
-    ) -> Result<CandidateBox, ProjectError> {
+            None => horizon_distance::nothing_near(self.size),
+        };
         if let Some(Sheets { rock, which, first_id }) = &self.sheets {
             let model = &rock.model;
             horizon_distance::add_horizons(model, which, *first_id, self.farthest, &mut voxels, progress)?;

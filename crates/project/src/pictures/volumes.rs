@@ -97,18 +97,13 @@ struct SamplesAt<'a> {
 
 impl Query for SamplesAt<'_> {
     const WHAT: &'static str = "samples";
-    type Inputs = ();
     type Answer = LoadedSamples;
 
     fn key(&self, _: Facts<'_>) -> Result<String, ProjectError> {
         Ok(derived::key_of(&(&self.entry.file, &self.entry.hash, self.level)))
     }
 
-    fn inputs(&self, _: Facts<'_>, _: &Progress) -> Result<(), ProjectError> {
-        Ok(())
-    }
-
-    fn compute(&self, facts: Facts<'_>, (): (), progress: &Progress) -> Result<LoadedSamples, ProjectError> {
+    fn compute(&self, facts: Facts<'_>, progress: &Progress) -> Result<LoadedSamples, ProjectError> {
         let frame = facts.document.frame()?;
         content::read_level(facts.root, self.entry, frame, self.level, progress).map(LoadedSamples::Whole)
     }

@@ -52,31 +52,22 @@ pub struct Wells;
 
 impl Query for Wells {
     const WHAT: &'static str = "wells";
-    type Inputs = Vec<Well>;
     type Answer = Vec<LoadedWell>;
 
     fn key(&self, Facts { document, .. }: Facts<'_>) -> Result<String, ProjectError> {
         Ok(derived::key_of(&(&document.wells, document.frame()?)))
     }
 
-    fn inputs(&self, Facts { root, document }: Facts<'_>, _: &Progress) -> Result<Vec<Well>, ProjectError> {
-        document.wells.iter().map(|entry| content::read_well(root, entry)).collect()
-    }
-
-    fn compute(
-        &self,
-        Facts { document, .. }: Facts<'_>,
-        wells: Vec<Well>,
-        _: &Progress,
-    ) -> Result<Vec<LoadedWell>, ProjectError> {
+    fn compute(&self, Facts { root, document }: Facts<'_>, _: &Progress) -> Result<Vec<LoadedWell>, ProjectError> {
         let geometry = document.frame()?;
-        let placed = document.wells.iter().zip(wells).map(|(entry, well)| {
+        let placed = document.wells.iter().map(|entry| {
+            let well = content::read_well(root, entry)?;
             let place = |top: &Top| Some((well.voxel_at_md(top.md_m, geometry)?, top.name.clone()));
             let (tops, top_names) = well.tops.iter().filter_map(place).unzip();
             let (path, log) = (well.path_in_voxels(geometry), shown_log(&well, geometry));
-            LoadedWell { name: entry.name.clone(), colour: entry.colour, path, tops, top_names, log }
+            Ok(LoadedWell { name: entry.name.clone(), colour: entry.colour, path, tops, top_names, log })
         });
-        Ok(placed.collect())
+        placed.collect()
     }
 
     fn bytes(wells: &Vec<LoadedWell>) -> usize {
