@@ -47,7 +47,7 @@ files() {
     "$PETROGLYPH" animate "$project" "$files/turn.png" --frames 3 --size 160x120
     "$PETROGLYPH" review "$project" "$files/review.html" --density 200
     "$PETROGLYPH" export "$project" "$files/model.glb" --model --density 200
-    "$PETROGLYPH" export "$project" "$files/horizon.zmap" --horizon Bravo --format zmap
+    "$PETROGLYPH" export "$project" "$files/horizon.dat" --horizon Bravo --format opendtect
     "$PETROGLYPH" export "$project" "$files/fault.ts" --fault "Normal fault" --format tsurf
     "$PETROGLYPH" info "$project" --json > "$files/info.json"
 }
