@@ -15,9 +15,9 @@
 //! = 1 on a top may still read as the layer above, which is a property of the paper's packing.
 //!
 //! # Lookup
-//! Plain trilinear interpolation is wrong in every cell that straddles a boundary. [`PackedVolume::lookup_extrapolated`] follows 3.4. The paper does not define the id
-//! of the lookup position, where interpolation is what fails; ours is the id of the nearest corner. Corners
-//! with another id are invalid. Each of them gets a value extrapolated linearly from its two neighbours in +x
+//! Plain trilinear interpolation is wrong in every cell that straddles a boundary.
+//! [`PackedVolume::lookup_extrapolated`] follows 3.4. The paper does not define the id of the lookup position, where
+//! interpolation is what fails; ours is the id of the nearest corner. Corners with another id are invalid. Each of them gets a value extrapolated linearly from its two neighbours in +x
 //! if both have the id of the position, else from those in −x, +y, −y, +z, −z. Where none works the stored
 //! value is used (the paper's "erroneous interpolation").
 //!

@@ -430,6 +430,9 @@ pub fn drawn<T, E: From<ProjectError>>(
     if !loaded.has_missed() {
         return Ok((made, loaded));
     }
+    // The first try makes room for the second, which finds the rock in memory.
+    let _rock = loaded.rock.clone();
+    drop((made, loaded));
     let extent = if let Extent::Data(_) = request.extent { Extent::Data(None) } else { Extent::Whole };
     let loaded = load(facts, &request.of(extent), progress)?;
     Ok((draw(&loaded)?, loaded))

@@ -2,9 +2,9 @@
 //! as sheets.
 //!
 //! One thread holds the present extraction and what was made of it, so that a click takes milliseconds: of the next state
-//! it asks for the same facts, and what has not changed is found in memory. Orders are carried out in turn, except that of several states to follow, or selections to
-//! draw, only the last counts. Extracting and proposing faults take long and run on threads and processors of their
-//! own. Places are voxels unless stated otherwise.
+//! it asks for the same facts, and what has not changed is found in memory. Orders are carried out in turn, except that
+//! of several states to follow, or selections to draw, only the last counts. Extracting and proposing faults take long
+//! and run on threads and processors of their own. Places are voxels unless stated otherwise.
 
 mod followed;
 

@@ -18,7 +18,8 @@ pub struct NamedConfusion {
 }
 
 /// The layers that touch in the block or follow one another in the column and cannot be told apart by a colour-blind
-/// reader, in greyscale or photocopied; none where the scene shows no patterns. `layers` are the styles of all, youngest first.
+/// reader, in greyscale or photocopied; none where the scene shows no patterns. `layers` are the styles of all, youngest
+/// first.
 ///
 /// # Errors
 /// The patterns of the project cannot be read.
