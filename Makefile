@@ -69,7 +69,7 @@ test: setup
 
 check: setup
 	cargo fmt --all --check
-	cargo clippy --workspace --all-targets --locked --features fuzz/documents,fuzz/data -- -D warnings
+	cargo clippy --workspace --all-targets --locked --features fuzz/libfuzzer,fuzz/documents,fuzz/data -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
 
 accuracy: setup

@@ -197,7 +197,7 @@ use super::raw::{RawSurface, ReadContext};
 use super::table::{self, LineCut};
 use super::text::{self, SourceFile};
 use super::write::{self, TableNode};
-use super::{Codec, Format, FormatError};
+use super::{Codec, Format, FormatError, HorizonWriter};
 use std::io::Write;
 use survey::geometry::SurveyGeometry;
 use survey::horizon::Horizon;
@@ -209,7 +209,7 @@ pub(super) const CODEC: Codec = Codec {
     detect,
     read_horizon: Some(read),
     read_fault: None,
-    write_horizon: Some(write_horizon),
+    write_horizon: Some(HorizonWriter::of(write_horizon)),
     write_fault: None,
 };
 
@@ -238,7 +238,6 @@ fn write_horizon(out: &mut dyn Write, horizon: &Horizon, geometry: &SurveyGeomet
         Edit("crates/files/src/lib.rs", "\nmod plain;", "mod placement;"),
         Edit("crates/files/src/lib.rs", "\n    /// The lines and the place of every node.\n    Plain,", "    Dxf,"),
         Edit("crates/files/src/lib.rs", "\n    plain::CODEC,", "    tsurf::CODEC,"),
-        Edit("src/cli/args/interpretation.rs", "tsurf, zmap, plain or cps3", "tsurf, zmap or cps3", instead=True),
     ],
     ["petroglyph"],
     [["-p", "files", "--lib", "round_trips"]],

@@ -11,9 +11,13 @@ use std::sync::LazyLock;
 use store::{
     CandidateWriter, ParameterizationVolumes, StoredCandidates, StoredParameterization, StoredVolume, VolumeInfo,
 };
+use survey::candidates::CandidateSink as _;
 use survey::{CandidateInfo, ForestTables, Progress, Volume};
 
-type Done = Result<(), Box<dyn std::error::Error>>;
+type Done = Result<(), Box<dyn std::error::Error + Send + Sync>>;
+
+/// Its path, and its bytes.
+type StoredFile = (PathBuf, Vec<u8>);
 
 /// What is kept in groups of files.
 const GROUPS: [&str; 4] = ["volume", "horizon", "candidates", "parameterization"];
@@ -21,7 +25,7 @@ const GROUPS: [&str; 4] = ["volume", "horizon", "candidates", "parameterization"
 static KIND: LazyLock<String> = LazyLock::new(|| std::env::var("FUZZ_FORMAT").unwrap_or_default());
 
 /// The group, its files, and what they hold.
-static GROUP: LazyLock<(PathBuf, Vec<(PathBuf, Vec<u8>)>)> = LazyLock::new(|| {
+static GROUP: LazyLock<(PathBuf, Vec<StoredFile>)> = LazyLock::new(|| {
     let path = fuzz::folder().join(format!("petroglyph-fuzz-{}.zarr", std::process::id()));
     write(&KIND, &path).unwrap_or_else(|error| panic!("{error}"));
     let files = files_of(&path);
@@ -29,8 +33,7 @@ static GROUP: LazyLock<(PathBuf, Vec<(PathBuf, Vec<u8>)>)> = LazyLock::new(|| {
 });
 
 fn write(kind: &str, path: &Path) -> Done {
-    let (silent, geometry, size) = (Progress::silent(), fuzz::survey(), [4, 3, 5]);
-    let mut small = geometry.clone();
+    let (silent, mut small, size) = (Progress::silent(), fuzz::survey(), [4, 3, 5]);
     (small.inlines.count, small.crosslines.count, small.vertical.count) = (size[0], size[1], size[2]);
     match kind {
         "volume" => {
@@ -65,7 +68,7 @@ fn write(kind: &str, path: &Path) -> Done {
     Ok(())
 }
 
-fn files_of(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+fn files_of(folder: &Path) -> Vec<StoredFile> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();

@@ -3,7 +3,15 @@
 use super::SegyArgs;
 use super::assembly::{DrawArgs, FaultPickArgs, FaultProposeArgs, FillArgs, ReplayArgs, SmoothArgs, TrackArgs};
 use clap::{Args, Subcommand};
+use files::{Format, SurfaceKind};
 use std::path::PathBuf;
+
+fn written_formats() -> String {
+    let written =
+        Format::all().filter(|format| format.writes(SurfaceKind::Horizon) || format.writes(SurfaceKind::Fault));
+    let written = written.map(Format::name).collect::<Vec<_>>().join(", ");
+    format!("Format of the file: {written} [default: by its extension]")
+}
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ImportArgs {
@@ -380,8 +388,7 @@ pub(in crate::cli) struct ExportArgs {
     /// Write all horizon candidates instead, as CSV with inline, crossline, z, leaf and surface of each point
     #[arg(long, conflicts_with_all = ["horizon", "fault", "format", "volume"])]
     pub(in crate::cli) candidates: bool,
-    /// Format of the file: csv, irap, opendtect, tsurf, zmap or cps3 [default: by its extension]
-    #[arg(long, conflicts_with = "volume")]
+    #[arg(long, conflicts_with = "volume", help = written_formats())]
     pub(in crate::cli) format: Option<String>,
     /// Write the values of these volumes at the horizon's nodes, as CSV
     #[arg(long, value_name = "VOLUME", num_args = 1.., requires = "horizon", conflicts_with_all = ["format", "when_rotated"])]

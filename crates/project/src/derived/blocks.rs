@@ -10,6 +10,7 @@ use glam::{DMat3, DVec3};
 use model::{BlockSignature, FaultNetwork, FaultSurface, Truncation};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};
+use std::path::Path;
 use survey::{HeightField, Progress};
 
 const BLOCKS: Kind = Kind { prefix: "blocks", magic: b"PGBLOCK\x02", what: "the fault blocks" };
@@ -37,11 +38,11 @@ impl Query for FaultBlocks {
         let faults = document.faults.iter().map(|entry| content::read_fault(root, entry));
         let faults = faults.collect::<Result<Vec<_>, _>>()?;
         let key = blocks_key(document);
-        if let Some(blocks) = BLOCKS.load(root, &key, read) {
+        if let Some(blocks) = load_blocks(root, &key) {
             return Ok(blocks.named(document.names(Noun::Fault)));
         }
         let blocks = FaultNetwork::build(document.frame()?, &faults, progress)?;
-        BLOCKS.keep(root, &key, progress, |out| write(out, &blocks));
+        keep_blocks(root, &key, &blocks, progress);
         Ok(blocks)
     }
 
@@ -60,6 +61,16 @@ pub(crate) fn blocks_key(document: &Document) -> String {
         faults: Vec<String>,
     }
     key_of(&Inputs { revision: revision::MODEL, geometry: &document.geometry, faults: document.fault_shapes() })
+}
+
+/// The fault blocks that are stored under a key in the project at `root`, without names, if that file is intact.
+pub fn load_blocks(root: &Path, key: &str) -> Option<FaultNetwork> {
+    BLOCKS.load(root, key, read)
+}
+
+/// Stores fault blocks under a key in the project at `root`. A failure is told, and costs only time later.
+pub fn keep_blocks(root: &Path, key: &str, blocks: &FaultNetwork, progress: &Progress) {
+    BLOCKS.keep(root, key, progress, |out| write(out, blocks));
 }
 
 #[derive(Serialize, Deserialize)]

@@ -19,8 +19,8 @@ mod kept;
 pub mod revision;
 mod scratch;
 
-pub use blocks::FaultBlocks;
 pub(crate) use blocks::blocks_key;
+pub use blocks::{FaultBlocks, keep_blocks, load_blocks};
 pub use grids::{holds_volumes, keep_grids, load_grids, volumes_path};
 pub(crate) use grids::{keep_volumes, load_volumes, model_key, parameterization_key, voxels_of};
 
