@@ -12,13 +12,14 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use survey::Progress;
+use system::file::FileAction;
 
 /// Writes the three files.
 ///
 /// # Errors
 /// The files could not be written, or the user cancelled.
 pub(super) fn write(folder: &Path, model: &StructuralModel, progress: &Progress) -> Result<(), ProjectError> {
-    let fail = |source| ProjectError::io("written", folder, source);
+    let fail = |source| ProjectError::io(FileAction::Written, folder, source);
     fs::create_dir_all(folder).map_err(fail)?;
     let [nx, ny, nz] = model.size();
     let layers = model.layer_count();

@@ -14,6 +14,7 @@ use std::fs;
 use std::path::Path;
 use survey::Progress;
 use synth::{SynthSettings, Synthetic};
+use system::file::FileAction;
 
 /// Signal to noise of the volumes.
 const SNR: f64 = 3.0;
@@ -67,7 +68,7 @@ fn row(side: usize, dump: Option<&Path>, progress: &Progress) -> anyhow::Result<
         let path = folder.join("amplitude.npy");
         fs::create_dir_all(folder)
             .and_then(|()| dump::write_npy(&path, "<f4", &[side; 3], samples))
-            .map_err(|source| ProjectError::io("written", &path, source))?;
+            .map_err(|source| ProjectError::io(FileAction::Written, &path, source))?;
     }
     let before = Memory::begin();
     let found = extract(&volume, &ExtractSettings::default(), progress)?;

@@ -13,6 +13,7 @@ use std::path::Path;
 use std::time::Instant;
 use store::{MEMORY_BYTES, StoredVolume, VolumeInfo, resume_blocks};
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
+use system::file::FileAction;
 
 /// How often each section is read; the shortest time counts, as in `bench/peers.py`.
 const REPEATS: usize = 7;
@@ -79,7 +80,7 @@ pub(super) fn run(side: usize, folder: Option<&Path>, progress: &Progress) -> Re
 
 fn measure(side: usize, kept: &Path, own: &Path, progress: &Progress) -> Result<StoreMeasured, ProjectError> {
     for folder in [kept, own] {
-        fs::create_dir_all(folder).map_err(|source| ProjectError::io("written", folder, source))?;
+        fs::create_dir_all(folder).map_err(|source| ProjectError::io(FileAction::Written, folder, source))?;
     }
     let (file, zarr) = (kept.join("survey.sgy"), own.join("survey.zarr"));
     write_survey(side, &file, progress)?;

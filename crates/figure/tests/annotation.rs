@@ -7,7 +7,7 @@ use figure::{Annotation, BlockPart, Figure, FigureInputs, PageSize, make};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use model::{ModelSettings, StructuralModel};
-use page::list::{DisplayList, Group, Item, Segment, Text};
+use page::list::{DisplayList, Group, GroupKind, Item, Segment, Text};
 use render::{DrawnWell, Ground, Inputs, LabelChange, NamedVolume, Projection, Scene, VoxelBox, Water, pick};
 use survey::well::{Survey as Station, Top, WellPath};
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume, Well};
@@ -205,7 +205,8 @@ fn a_thin_layer_is_named_beside_the_block_with_a_leader() {
     let named = |name: &str| page.texts().into_iter().find(|text| text.text == name).cloned().unwrap();
     assert!(named("Bed 1").letters.is_empty() && !named("Bed 0").letters.is_empty());
     let mut leaders = Vec::new();
-    groups(&page.items, "leader to Bed 1", &mut leaders);
+    groups(&page.items, "Bed 1", &mut leaders);
+    leaders.retain(|group| group.kind == GroupKind::Leader);
     assert_eq!(leaders.len(), 1);
     assert!(survey.closed.horizons.len() == 2);
 }

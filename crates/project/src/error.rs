@@ -14,6 +14,7 @@ use files::well::WellFileError;
 use std::io;
 use std::path::PathBuf;
 use store::StoreError;
+use system::file::FileAction;
 
 /// Why something could not be done with a project. The project is as it was before.
 #[derive(Debug, thiserror::Error)]
@@ -125,8 +126,8 @@ pub enum ProjectError {
     /// Any other failure of the file system.
     #[error("{} could not be {action}", path.display())]
     Io {
-        /// "read", "written", ...
-        action: &'static str,
+        /// What was being done with it.
+        action: FileAction,
         /// The file or folder.
         path: PathBuf,
         /// What the system said.

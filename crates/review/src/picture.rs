@@ -8,6 +8,7 @@ use page::animation::reduced;
 use project::error::ProjectError;
 use std::io;
 use std::path::Path;
+use system::file::FileAction;
 
 /// Quality of JPEG pictures, percent.
 const JPEG_QUALITY: u8 = 82;
@@ -17,7 +18,7 @@ fn failed(error: image::ImageError) -> ProjectError {
 }
 
 fn failed_with(error: io::Error) -> ProjectError {
-    ProjectError::io("written", Path::new("a picture of the review"), error)
+    ProjectError::io(FileAction::Written, Path::new("a picture of the review"), error)
 }
 
 /// A picture as PNG.

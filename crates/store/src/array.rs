@@ -18,6 +18,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use survey::progress::Progress;
 use survey::sample::Sample;
+use system::file::FileAction;
 use zarrs::array::codec::{Crc32cCodec, ZstdCodec};
 use zarrs::array::{
     Array, ArrayBuilder, ArrayCreateError, ArrayError, ArraySubset, BytesToBytesCodecTraits, CodecError, CodecOptions,
@@ -33,11 +34,11 @@ const ZSTD_LEVEL: i32 = 1;
 const COMPLETE: &str = "complete";
 
 /// Converts an error of the library.
-fn explain(error: &ArrayError, action: &'static str, group: &Path, array: &str) -> StoreError {
+fn explain(error: &ArrayError, action: FileAction, group: &Path, array: &str) -> StoreError {
     let storage = match error {
         ArrayError::StorageError(storage) | ArrayError::CodecError(CodecError::StorageError(storage)) => storage,
         ArrayError::CodecError(CodecError::IOError(source)) => return io_error(source, action, group, array),
-        ArrayError::CodecError(codec) if action == "read" => {
+        ArrayError::CodecError(codec) if action == FileAction::Read => {
             return StoreError::damaged(group, array, codec.to_string());
         }
         other => {
@@ -48,24 +49,24 @@ fn explain(error: &ArrayError, action: &'static str, group: &Path, array: &str) 
 }
 
 /// Converts an error of the library's file store.
-fn explain_storage(error: &StorageError, action: &'static str, group: &Path, array: &str) -> StoreError {
+fn explain_storage(error: &StorageError, action: FileAction, group: &Path, array: &str) -> StoreError {
     match error {
         StorageError::IOError(source) => io_error(source, action, group, array),
         StorageError::MissingMetadata(_) => {
             StoreError::MissingArray { path: group.to_owned(), array: array.to_owned() }
         }
-        other if action == "read" => StoreError::damaged(group, array, other.to_string()),
+        other if action == FileAction::Read => StoreError::damaged(group, array, other.to_string()),
         other => StoreError::array(group, action, other.to_string()),
     }
 }
 
 /// Converts a shared system error. An error without a system code while reading comes from a decoder: the
 /// data are damaged.
-fn io_error(source: &std::io::Error, action: &'static str, path: &Path, array: &str) -> StoreError {
+fn io_error(source: &std::io::Error, action: FileAction, path: &Path, array: &str) -> StoreError {
     if let Some(code) = source.raw_os_error() {
         return StoreError::io(action, path, std::io::Error::from_raw_os_error(code));
     }
-    if action == "read" {
+    if action == FileAction::Read {
         let reason = source.to_string();
         return StoreError::damaged(path, array, reason);
     }
@@ -73,17 +74,17 @@ fn io_error(source: &std::io::Error, action: &'static str, path: &Path, array: &
 }
 
 /// The library's view of a folder.
-fn file_store(group: &Path, action: &'static str) -> Result<Arc<FilesystemStore>, StoreError> {
+fn file_store(group: &Path, action: FileAction) -> Result<Arc<FilesystemStore>, StoreError> {
     FilesystemStore::new(group).map(Arc::new).map_err(|error| StoreError::array(group, action, error.to_string()))
 }
 
 /// Writes a group's metadata; `name` is empty for the folder itself.
 pub(crate) fn write_group(group: &Path, name: &str, attributes: Map<String, Value>) -> Result<(), StoreError> {
-    let store = file_store(group, "written")?;
+    let store = file_store(group, FileAction::Written)?;
     let built = GroupBuilder::new().attributes(attributes).build(store, &format!("/{name}"));
-    let fail = |reason: String| StoreError::array(group, "written", reason);
+    let fail = |reason: String| StoreError::array(group, FileAction::Written, reason);
     let built = built.map_err(|error| fail(error.to_string()))?;
-    built.store_metadata().map_err(|error| explain_storage(&error, "written", group, name))
+    built.store_metadata().map_err(|error| explain_storage(&error, FileAction::Written, group, name))
 }
 
 /// Reads a group's attributes.
@@ -92,10 +93,12 @@ pub(crate) fn read_group(group: &Path) -> Result<Map<String, Value>, StoreError>
         return Err(StoreError::Missing { path: group.to_owned() });
     }
     capacity::check_metadata(&group.join("zarr.json"))?;
-    let opened = Group::open(file_store(group, "read")?, "/");
+    let opened = Group::open(file_store(group, FileAction::Read)?, "/");
     match opened {
         Ok(opened) => Ok(opened.attributes().clone()),
-        Err(GroupCreateError::StorageError(StorageError::IOError(source))) => Err(io_error(&source, "read", group, "")),
+        Err(GroupCreateError::StorageError(StorageError::IOError(source))) => {
+            Err(io_error(&source, FileAction::Read, group, ""))
+        }
         Err(error) => Err(StoreError::wrong_kind(group, "a Zarr v3 group", error.to_string())),
     }
 }
@@ -119,8 +122,8 @@ fn build<T: StoredSample>(
     attributes.insert(COMPLETE.to_owned(), Value::Bool(true));
     builder.attributes(attributes);
     builder
-        .build(file_store(group, "written")?, &format!("/{name}"))
-        .map_err(|error| StoreError::array(group, "written", error.to_string()))
+        .build(file_store(group, FileAction::Written)?, &format!("/{name}"))
+        .map_err(|error| StoreError::array(group, FileAction::Written, error.to_string()))
 }
 
 /// Writes the metadata of an array whose chunks are coded by `codec`.
@@ -133,7 +136,7 @@ fn create<T: StoredSample>(
     attributes: Map<String, Value>,
 ) -> Result<Array<FilesystemStore>, StoreError> {
     let array = build(group, name, layout, fill, codec, attributes)?;
-    array.store_metadata().map_err(|error| explain_storage(&error, "written", group, name))?;
+    array.store_metadata().map_err(|error| explain_storage(&error, FileAction::Written, group, name))?;
     Ok(array)
 }
 
@@ -216,7 +219,7 @@ impl<T: StoredSample> ArrayWriter<T> {
         apart: Option<&Path>,
     ) -> Result<Self, StoreError> {
         let folder = apart.unwrap_or(group);
-        std::fs::create_dir_all(folder).map_err(|source| StoreError::io("written", folder, source))?;
+        std::fs::create_dir_all(folder).map_err(|source| StoreError::io(FileAction::Written, folder, source))?;
         let array = build(folder, name, &layout, fill, codec(), Map::new())?;
         let (apart, of) = (apart.map(Path::to_owned), std::marker::PhantomData);
         Ok(Self { group: group.to_owned(), name: name.to_owned(), layout, array, apart, of })
@@ -254,7 +257,7 @@ impl<T: StoredSample> ArrayWriter<T> {
         let options = CodecOptions::default().with_store_empty_chunks(true).with_concurrent_target(1);
         self.array
             .store_chunk_opt(&place, values, &options)
-            .map_err(|error| explain(&error, "written", &self.group, &self.name))?;
+            .map_err(|error| explain(&error, FileAction::Written, &self.group, &self.name))?;
         self.apart.as_ref().map_or(Ok(()), |apart| self.move_into_place(apart, index))
     }
 
@@ -265,7 +268,7 @@ impl<T: StoredSample> ArrayWriter<T> {
         let parent = target.parent().unwrap_or(&self.group);
         std::fs::create_dir_all(parent)
             .and_then(|()| std::fs::rename(apart.join(&file), &target))
-            .map_err(|source| StoreError::io("written", &target, source))
+            .map_err(|source| StoreError::io(FileAction::Written, &target, source))
     }
 }
 
@@ -358,10 +361,12 @@ impl StoredArray {
     pub(super) fn of_metadata(group: &Path, name: &str) -> Result<Self, StoreError> {
         let missing = || StoreError::MissingArray { path: group.to_owned(), array: name.to_owned() };
         capacity::check_metadata(&group.join(name).join("zarr.json"))?;
-        let array = match Array::open(file_store(group, "read")?, &format!("/{name}")) {
+        let array = match Array::open(file_store(group, FileAction::Read)?, &format!("/{name}")) {
             Ok(array) => array,
             Err(ArrayCreateError::MissingMetadata) => return Err(missing()),
-            Err(ArrayCreateError::StorageError(error)) => return Err(explain_storage(&error, "read", group, name)),
+            Err(ArrayCreateError::StorageError(error)) => {
+                return Err(explain_storage(&error, FileAction::Read, group, name));
+            }
             Err(error) => {
                 return Err(StoreError::damaged(group, name, error.to_string()));
             }
@@ -418,7 +423,10 @@ impl StoredArray {
     /// Elements of a file along each axis.
     pub(super) fn file_shape(&self) -> Result<Vec<usize>, StoreError> {
         let first = vec![0; self.shape.len()];
-        let shape = self.array.chunk_shape(&first).map_err(|error| explain(&error, "read", &self.group, &self.name))?;
+        let shape = self
+            .array
+            .chunk_shape(&first)
+            .map_err(|error| explain(&error, FileAction::Read, &self.group, &self.name))?;
         Ok(shape.iter().map(|n| n.get() as usize).collect())
     }
 
@@ -476,7 +484,7 @@ impl StoredArray {
         let ranges: Vec<_> = start.iter().zip(size).map(|(&s, &n)| s as u64..(s + n) as u64).collect();
         self.array
             .retrieve_array_subset(&ArraySubset::new_with_ranges(&ranges))
-            .map_err(|error| explain(&error, "read", &self.group, &self.name))
+            .map_err(|error| explain(&error, FileAction::Read, &self.group, &self.name))
     }
 
     /// All elements, row-major, a layer of files at a time. Memory: the array, and one layer of files.

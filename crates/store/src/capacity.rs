@@ -9,6 +9,7 @@ use super::error::StoreError;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
+use system::file::FileAction;
 
 /// Bytes that zstd makes of one byte at most: a block of 128 KiB takes four.
 const MOST_FROM_A_BYTE: u64 = 32 << 10;
@@ -42,12 +43,12 @@ pub(super) fn check_metadata(path: &Path) -> Result<(), StoreError> {
         Ok(facts) => facts,
         // That they are missing is said by those who need them.
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
-        Err(source) => return Err(StoreError::io("read", path, source)),
+        Err(source) => return Err(StoreError::io(FileAction::Read, path, source)),
     };
     if facts.len() <= system::file::MAX_DOCUMENT_BYTES {
         return Ok(());
     }
-    Err(StoreError::io("read", path, ErrorKind::FileTooLarge.into()))
+    Err(StoreError::io(FileAction::Read, path, ErrorKind::FileTooLarge.into()))
 }
 
 /// Counts the files `depth` folders down, up to `most`.

@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use survey::geometry::GeometryError;
 use survey::progress::Cancelled;
+use system::file::FileAction;
 use system::memory::NotEnough;
 
 /// Why something could not be stored or read back.
@@ -167,8 +168,8 @@ pub enum StoreError {
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// "read", "written", …
-        action: &'static str,
+        /// What was being done with it.
+        action: FileAction,
         /// The system's reason.
         source: io::Error,
     },
@@ -177,8 +178,8 @@ pub enum StoreError {
     Array {
         /// The group.
         path: PathBuf,
-        /// "read" or "written".
-        action: &'static str,
+        /// What was being done with it.
+        action: FileAction,
         /// The library's reason.
         reason: String,
     },
@@ -202,7 +203,7 @@ impl StoreError {
     }
 
     /// An array or a group that the library refused.
-    pub(crate) fn array(group: &Path, action: &'static str, reason: impl Into<String>) -> Self {
+    pub(crate) fn array(group: &Path, action: FileAction, reason: impl Into<String>) -> Self {
         Self::Array { path: group.to_owned(), action, reason: reason.into() }
     }
 
@@ -211,14 +212,14 @@ impl StoreError {
         Self::Damaged { path: group.to_owned(), array: array.to_owned(), reason: reason.into() }
     }
 
-    /// A failure of the file system while `path` was being `action` ("read", "written", …).
-    pub fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
+    /// A failure of the file system while `path` was being read, written or flushed.
+    pub fn io(action: FileAction, path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();
         match source.kind() {
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => Self::DiskFull { path },
             io::ErrorKind::ReadOnlyFilesystem => Self::ReadOnly { path },
-            io::ErrorKind::PermissionDenied if action == "written" => Self::ReadOnly { path },
-            io::ErrorKind::NotFound if action == "read" => Self::Missing { path },
+            io::ErrorKind::PermissionDenied if action == FileAction::Written => Self::ReadOnly { path },
+            io::ErrorKind::NotFound if action == FileAction::Read => Self::Missing { path },
             _ => Self::Io { path, action, source },
         }
     }

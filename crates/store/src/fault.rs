@@ -12,6 +12,7 @@ use survey::fault::Fault;
 use survey::geometry::MAX_COORDINATE;
 use survey::mesh::TriangleMesh;
 use system::file;
+use system::file::FileAction;
 
 /// Kind of the file.
 const KIND: &str = "fault";
@@ -81,8 +82,8 @@ fn list(text: &mut String, name: &str, entries: impl Iterator<Item = String>) {
 /// [`StoreError`] when it is missing, of another kind, newer than this program or damaged.
 pub fn read_fault(path: &Path) -> Result<Fault, StoreError> {
     settle(path);
-    let text =
-        file::read_text(path, file::MAX_INTERPRETATION_BYTES).map_err(|source| StoreError::io("read", path, source))?;
+    let text = file::read_text(path, file::MAX_INTERPRETATION_BYTES)
+        .map_err(|source| StoreError::io(FileAction::Read, path, source))?;
     let wrong = |reason| StoreError::wrong_kind(path, "a fault", reason);
     let document: FaultDocument = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     check_kind(path, "a fault", [KIND, &document.kind], document.version)?;

@@ -7,6 +7,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
 use std::path::Path;
+use system::file::FileAction;
 
 /// The attribute.
 const KEY: &str = "petroglyph";
@@ -16,7 +17,8 @@ pub const VERSION: u64 = 1;
 
 /// Writes the group's own metadata.
 pub(super) fn write_header(group: &Path, kind: &str, facts: &impl Serialize) -> Result<(), StoreError> {
-    let facts = serde_json::to_value(facts).map_err(|error| StoreError::array(group, "written", error.to_string()))?;
+    let facts = serde_json::to_value(facts)
+        .map_err(|error| StoreError::array(group, FileAction::Written, error.to_string()))?;
     let header = json!({ "kind": kind, "version": VERSION, "facts": facts });
     write_group(group, "", Map::from_iter([(KEY.to_owned(), header)]))
 }

@@ -29,6 +29,7 @@ use survey::sample::Sample;
 use survey::sample::SampleType;
 use survey::source::{Block, BlockSource, LineOrder, SourceError};
 use survey::volume::Volume;
+use system::file::FileAction;
 use system::huge_pages::zeroed;
 
 /// The file that marks a folder as being written; it is removed when the volume is complete.
@@ -184,7 +185,7 @@ fn resume(
     progress: &Progress,
     write: impl FnOnce() -> Result<Ingested, StoreError>,
 ) -> Result<Ingested, StoreError> {
-    let fail = |source| StoreError::io("written", path, source);
+    let fail = |source| StoreError::io(FileAction::Written, path, source);
     let marker = path.join(MARKER);
     if path.exists() && fs::read_to_string(&marker).ok().as_deref() != Some(fingerprint) {
         fs::remove_dir_all(path).map_err(fail)?;

@@ -28,6 +28,7 @@ use std::path::Path;
 use std::sync::Arc;
 #[cfg(feature = "remote")]
 use survey::progress::Progress;
+use system::file::FileAction;
 #[cfg(feature = "remote")]
 pub(super) use upload::upload;
 
@@ -58,7 +59,7 @@ impl Link {
         let text = match system::file::read_text(&file, system::file::MAX_DOCUMENT_BYTES) {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-            Err(source) => return Err(StoreError::io("read", &file, source)),
+            Err(source) => return Err(StoreError::io(FileAction::Read, &file, source)),
         };
         let record: Record = serde_json::from_str(&text)
             .map_err(|error| StoreError::wrong_kind(&file, "a link to a volume", error.to_string()))?;
@@ -118,7 +119,8 @@ pub(super) fn copy_small(group: &Path, url: &str, progress: &Progress) -> Result
         sums.push(crc32c::crc32c(&bytes));
         let file = group.join(key);
         let made = file.parent().map_or(Ok(()), std::fs::create_dir_all);
-        made.and_then(|()| std::fs::write(&file, &bytes)).map_err(|source| StoreError::io("written", &file, source))?;
+        made.and_then(|()| std::fs::write(&file, &bytes))
+            .map_err(|source| StoreError::io(FileAction::Written, &file, source))?;
         Ok(bytes)
     };
     let document = |bytes: &[u8], key: &str| -> Result<Value, StoreError> {
@@ -169,5 +171,5 @@ pub(super) fn copy_small(group: &Path, url: &str, progress: &Progress) -> Result
     let record = Record { url: url.trim_end_matches('/').to_owned(), tags, sums };
     let text = serde_json::to_string_pretty(&record).unwrap_or_default();
     let file = group.join(LINK);
-    std::fs::write(&file, text).map_err(|source| StoreError::io("written", &file, source))
+    std::fs::write(&file, text).map_err(|source| StoreError::io(FileAction::Written, &file, source))
 }

@@ -27,6 +27,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use survey::progress::Progress;
 use survey::sample::{Sample, SampleType};
+use system::file::FileAction;
 
 /// Calls a function for the type of samples that is only known while the program runs.
 macro_rules! of_type {
@@ -65,7 +66,7 @@ impl VolumeParts {
     ) -> Result<Self, StoreError> {
         info.geometry.validate().map_err(|source| StoreError::Geometry { path: path.to_owned(), source })?;
         let parts = Self::of(path, info, mask_of(info.geometry.size(), live, info)?, sample_type);
-        let fail = |source| StoreError::io("written", path, source);
+        let fail = |source| StoreError::io(FileAction::Written, path, source);
         fs::create_dir(path).map_err(fail)?;
         fs::write(path.join(MARKER), "parts").map_err(fail)?;
         write_frame(path, info, &parts.levels[0].1, &Progress::silent())?;
@@ -180,7 +181,7 @@ impl VolumeParts {
     /// # Errors
     /// A file was not written, or the disk does not take it.
     pub fn finish(self, ranges: Vec<IndexedRanges>) -> Result<(), StoreError> {
-        let fail = |source| StoreError::io("written", &self.path, source);
+        let fail = |source| StoreError::io(FileAction::Written, &self.path, source);
         let mut ranges = ranges.into_iter();
         for (level, (size, _)) in self.levels.iter().enumerate() {
             let grid = volume_grid(&self.path, level, *size);

@@ -10,6 +10,7 @@ use super::error::StoreError;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use system::file::FileAction;
 use system::file::{create_folders, sync_folder};
 
 /// A target that is being replaced. If it is dropped without [`Replacement::commit`], the target remains as
@@ -38,7 +39,7 @@ impl Replacement {
     /// When the parent cannot be created.
     pub fn of(target: &Path) -> Result<Self, StoreError> {
         if let Some(parent) = target.parent() {
-            create_folders(parent).map_err(|source| StoreError::io("written", parent, source))?;
+            create_folders(parent).map_err(|source| StoreError::io(FileAction::Written, parent, source))?;
         }
         Ok(Self { target: target.to_owned(), partial: partial_of(target) })
     }
@@ -54,7 +55,7 @@ impl Replacement {
     /// When a rename fails: the target is then what it was. When its folder cannot be flushed: the target is new then,
     /// but may be the old one again after a power cut.
     pub fn commit(self) -> Result<(), StoreError> {
-        let fail = |source| StoreError::io("written", &self.target, source);
+        let fail = |source| StoreError::io(FileAction::Written, &self.target, source);
         sync_folders(&self.partial).map_err(fail)?;
         if self.target.is_dir() {
             let replaced = replaced_of(&self.target);
@@ -72,7 +73,7 @@ impl Replacement {
             fs::rename(&self.partial, &self.target).map_err(fail)?;
         }
         if let Some(parent) = self.target.parent() {
-            sync_folder(parent).map_err(|source| StoreError::io("flushed to the disk", parent, source))?;
+            sync_folder(parent).map_err(|source| StoreError::io(FileAction::Flushed, parent, source))?;
         }
         Ok(())
     }
@@ -139,7 +140,7 @@ pub fn replace_file(target: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     let replacement = Replacement::of(target)?;
     File::create(replacement.path())
         .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
-        .map_err(|source| StoreError::io("written", target, source))?;
+        .map_err(|source| StoreError::io(FileAction::Written, target, source))?;
     replacement.commit()
 }
 

@@ -24,6 +24,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 use survey::arrays::NamedArrays;
 use survey::source::SourceError;
+use system::file::FileAction;
 use system::positional::PlacedFile;
 
 /// Bytes of a checksum.
@@ -91,7 +92,7 @@ impl FolderArrays {
     /// # Errors
     /// The folder cannot be made or emptied.
     pub fn open(folder: &Path, is_packed: bool) -> Result<Self, StoreError> {
-        let fail = |source| StoreError::io("written", folder, source);
+        let fail = |source| StoreError::io(FileAction::Written, folder, source);
         // Where a system does not tell, nothing is kept.
         let present = fs::read_to_string(PRESENT_START).unwrap_or_default();
         let noted = fs::read_to_string(folder.join(SYSTEM)).unwrap_or_default();
@@ -114,7 +115,7 @@ impl FolderArrays {
     /// # Errors
     /// There is none.
     pub fn shared(folder: &Path) -> Result<Self, StoreError> {
-        fs::read_dir(folder).map_err(|source| StoreError::io("read", folder, source))?;
+        fs::read_dir(folder).map_err(|source| StoreError::io(FileAction::Read, folder, source))?;
         Ok(Self::at(folder))
     }
 
@@ -152,7 +153,7 @@ impl FolderArrays {
         Ok(content)
     }
 
-    fn fail(&self, action: &'static str, array: &str, part: usize, source: io::Error) -> SourceError {
+    fn fail(&self, action: FileAction, array: &str, part: usize, source: io::Error) -> SourceError {
         if source.kind() == ErrorKind::UnexpectedEof || source.kind() == ErrorKind::NotFound {
             let reason = format!("its part {part} is missing or was cut off");
             return Box::new(StoreError::damaged(&self.folder, array, reason));
@@ -188,7 +189,7 @@ impl NamedArrays for FolderArrays {
         };
         written.and_then(|()| fs::rename(&partial, &path)).map_err(|source| {
             let _ = fs::remove_file(&partial);
-            self.fail("written", array, part, source)
+            self.fail(FileAction::Written, array, part, source)
         })?;
         self.opened().retain(|known| known.part != part || known.array != array);
         Ok(())
@@ -203,13 +204,13 @@ impl NamedArrays for FolderArrays {
     fn length(&self, array: &str, part: usize) -> Result<u64, SourceError> {
         self.content(array, part)
             .and_then(|content| content.length())
-            .map_err(|source| self.fail("read", array, part, source))
+            .map_err(|source| self.fail(FileAction::Read, array, part, source))
     }
 
     fn read(&self, array: &str, part: usize, offset: u64, out: &mut [u8]) -> Result<(), SourceError> {
         self.content(array, part)
             .and_then(|content| content.read_exact_at(offset, out))
-            .map_err(|source| self.fail("read", array, part, source))
+            .map_err(|source| self.fail(FileAction::Read, array, part, source))
     }
 
     fn remove(&self, array: &str) {

@@ -38,6 +38,7 @@ use file::{ABSENT, CHECKSUM, ENTRY};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::PathBuf;
+use system::file::FileAction;
 
 const _: () = assert!(cfg!(target_endian = "little"), "chunks are little-endian and read as they are");
 
@@ -112,7 +113,7 @@ impl ShardGrid {
     ) -> Result<(), StoreError> {
         let length = self.encode(index, samples, first, size, bytes, visit);
         let path = self.folder.join(Self::key(index));
-        let fail = |source| StoreError::io("written", &path, source);
+        let fail = |source| StoreError::io(FileAction::Written, &path, source);
         let own = self.beside_others.then(|| format!("{}.{PARTIAL}", std::process::id()));
         let partial = path.with_extension(own.as_deref().unwrap_or(PARTIAL));
         let written = match fs::write(&partial, &bytes[..length]) {

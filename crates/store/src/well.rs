@@ -10,6 +10,7 @@ use std::fmt::Write;
 use std::path::Path;
 use survey::well::Well;
 use system::file;
+use system::file::FileAction;
 
 /// Kind of the file.
 const KIND: &str = "well";
@@ -75,8 +76,8 @@ fn lay_out(text: &mut String, value: &Value, depth: usize) {
 /// [`StoreError`] when it is missing, of another kind, newer than this program or damaged.
 pub fn read_well(path: &Path) -> Result<Well, StoreError> {
     settle(path);
-    let text =
-        file::read_text(path, file::MAX_INTERPRETATION_BYTES).map_err(|source| StoreError::io("read", path, source))?;
+    let text = file::read_text(path, file::MAX_INTERPRETATION_BYTES)
+        .map_err(|source| StoreError::io(FileAction::Read, path, source))?;
     let wrong = |reason| StoreError::wrong_kind(path, "a well", reason);
     let document: WellDocument = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     check_kind(path, "a well", [KIND, &document.kind], document.version)?;

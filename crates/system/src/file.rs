@@ -9,6 +9,7 @@
 //! ([`sync_folder`]), and that folder is there when the folder above it was ([`create_folders`]).
 
 use crate::memory;
+use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
@@ -19,6 +20,30 @@ pub const MAX_DOCUMENT_BYTES: u64 = 64 << 20;
 
 /// Most bytes of an interpretation: a horizon, a fault, a well, proposals.
 pub const MAX_INTERPRETATION_BYTES: u64 = 1 << 30;
+
+/// What was being done with a file when it failed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FileAction {
+    /// It was read, or asked for.
+    Read,
+    /// It was made, written, renamed or removed.
+    Written,
+    /// It was made sure that a power cut would not undo what was written.
+    Flushed,
+    /// It was locked against other programs.
+    Locked,
+}
+
+impl fmt::Display for FileAction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Read => "read",
+            Self::Written => "written",
+            Self::Flushed => "flushed to the disk",
+            Self::Locked => "locked",
+        })
+    }
+}
 
 /// What the system knows of an ordinary file. Its kind is known before it is opened, since opening a
 /// pipe waits.

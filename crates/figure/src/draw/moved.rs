@@ -9,8 +9,6 @@ use page::list::{DisplayList, Group, GroupKind, Item, POINTS_PER_MM, Path, Segme
 pub use render::LabelChange;
 use ttf::{Colour, Preset};
 
-/// What the groups of leaders are called before the name.
-const LEADER: &str = "leader to ";
 /// Between the name of a map, section or correlation panel and that of a label on it.
 const OF_PANEL: &str = ": ";
 /// The panel of a block, and the group in it of what is written on the block.
@@ -45,7 +43,7 @@ fn found(list: &DisplayList) -> Vec<Movable> {
                 }
             }
             GroupKind::Panel => {
-                for part in group.items.iter().filter_map(as_group).filter(|part| part.kind == GroupKind::Annotation) {
+                for part in group.items.iter().filter_map(as_group).filter(|part| is_written(part)) {
                     match part.name == ON_BLOCK {
                         true => part.items.iter().filter_map(as_group).for_each(|label| gather(label, &mut found)),
                         false => gather(part, &mut found),
@@ -75,13 +73,12 @@ pub fn changed(list: &DisplayList, changes: &[LabelChange], preset: Preset) -> D
 }
 
 fn gather(group: &Group, found: &mut Vec<Movable>) {
-    let label = called(group);
     let places = match is_pinned(group) {
         true => group.items.iter().filter_map(as_text).map(Text::bounds).collect(),
         false => bounds_of(&group.items),
     };
     if let Some(bounds) = places.into_iter().reduce(|a, b| a.around(b.min).around(b.max)) {
-        found.push(Movable { label: label.to_owned(), bounds, letters: letters_of(&group.items) });
+        found.push(Movable { label: group.name.clone(), bounds, letters: letters_of(&group.items) });
     }
     if group.kind == GroupKind::Well {
         group.items.iter().filter_map(as_group).for_each(|top| gather(top, found));
@@ -132,7 +129,7 @@ pub(crate) fn change(items: &mut Vec<Item>, changes: &[LabelChange]) {
         return;
     }
     let is_left = |item: &Item| {
-        let hidden = |group: &Group| changes.iter().any(|change| change.is_hidden && change.label == called(group));
+        let hidden = |group: &Group| changes.iter().any(|change| change.is_hidden && change.label == group.name);
         !as_group(item).is_some_and(|group| is_label(group) && hidden(group))
     };
     items.retain(is_left);
@@ -144,7 +141,7 @@ pub(crate) fn change(items: &mut Vec<Item>, changes: &[LabelChange]) {
         if group.name == ON_BLOCK || group.kind == GroupKind::Well {
             change(&mut group.items, changes);
         }
-        let name = called(group).to_owned();
+        let name = group.name.clone();
         for change in changes.iter().filter(|change| change.label == name) {
             apply(group, change);
         }
@@ -187,11 +184,12 @@ fn is_explanation(group: &Group) -> bool {
 
 /// Whether only the letters of a group move.
 fn is_pinned(group: &Group) -> bool {
-    matches!(group.kind, GroupKind::Well | GroupKind::Fault) || group.name.starts_with(LEADER)
+    matches!(group.kind, GroupKind::Well | GroupKind::Fault | GroupKind::Leader)
 }
 
-fn called(group: &Group) -> &str {
-    group.name.strip_prefix(LEADER).unwrap_or(&group.name)
+/// Whether a group in a block's panel is written on or beside the block.
+fn is_written(group: &Group) -> bool {
+    matches!(group.kind, GroupKind::Annotation | GroupKind::Leader)
 }
 
 fn as_group(item: &Item) -> Option<&Group> {

@@ -20,6 +20,7 @@ pub(crate) use vectors::{KnownPictures, VectorWriter, png, write_vectors};
 use crate::Rect;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use ttf::text::Faces;
 
 /// Points in an inch.
@@ -173,6 +174,14 @@ impl Group {
     pub fn push(&mut self, item: impl Into<Item>) {
         self.items.push(item.into());
     }
+
+    /// What a reader of the file sees as its name.
+    pub(crate) fn title(&self) -> Cow<'_, str> {
+        match self.kind {
+            GroupKind::Leader => format!("leader to {}", self.name).into(),
+            _ => self.name.as_str().into(),
+        }
+    }
 }
 
 /// What a group stands for.
@@ -193,6 +202,8 @@ pub enum GroupKind {
     Well,
     /// What explains the rest: axes, legend, scale bar, title.
     Annotation,
+    /// A name that stands beside what it names, with a line to it; the group is called as that is.
+    Leader,
     /// A part of what the group around it stands for; nobody asks for it by name.
     Part,
 }

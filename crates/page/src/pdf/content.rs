@@ -71,13 +71,18 @@ impl<'a> PageContent<'a> {
         let beside = outer.map_or(&self.roots, |outer| &self.layers[outer].inner);
         let is_same = |index: &usize| {
             let layer = &self.layers[*index];
-            layer.kind == group.kind && layer.name == group.name
+            layer.kind == group.kind && layer.name == group.title()
         };
         if let Some(known) = beside.iter().copied().find(is_same) {
             return known;
         }
         let index = self.layers.len();
-        self.layers.push(Layer { id: self.refs.next(), kind: group.kind, name: group.name.clone(), inner: Vec::new() });
+        self.layers.push(Layer {
+            id: self.refs.next(),
+            kind: group.kind,
+            name: group.title().into_owned(),
+            inner: Vec::new(),
+        });
         match outer {
             Some(outer) => self.layers[outer].inner.push(index),
             None => self.roots.push(index),

@@ -92,7 +92,7 @@ impl VectorWriter for Writer {
         self.body.push_str("<g");
         if group.kind != GroupKind::Part {
             let id = self.id(group);
-            let label = escaped(&group.name);
+            let label = escaped(&group.title());
             let _ = write!(self.body, " id=\"{id}\" inkscape:groupmode=\"layer\" inkscape:label=\"{label}\"");
         }
         if let Some(clip) = &group.clip {
@@ -169,10 +169,10 @@ impl Writer {
             GroupKind::Horizon => "horizon",
             GroupKind::Fault => "fault",
             GroupKind::Well => "well",
-            GroupKind::Annotation | GroupKind::Part => "annotation",
+            GroupKind::Annotation | GroupKind::Leader | GroupKind::Part => "annotation",
         };
         // Letters of every script may stand in an identifier; what else a name holds becomes a hyphen.
-        let letters = group.name.to_lowercase();
+        let letters = group.title().to_lowercase();
         let words: Vec<&str> = letters.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
         let id = [kind].into_iter().chain(words).collect::<Vec<_>>().join("-");
         let used = self.names.entry(id.clone()).or_default();

@@ -13,6 +13,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::time::Duration;
 use survey::Progress;
+use system::file::FileAction;
 
 /// Checks the project in the folder `root` and repairs what can be repaired. Waits for so long while another process
 /// is changing the project.
@@ -84,7 +85,7 @@ fn mend_history(
 ) -> Result<(), ProjectError> {
     let folder = root.join("history");
     if matches!(fs::symlink_metadata(&folder), Err(error) if error.kind() == ErrorKind::NotFound) {
-        fs::create_dir(&folder).map_err(|source| ProjectError::io("written", &folder, source))?;
+        fs::create_dir(&folder).map_err(|source| ProjectError::io(FileAction::Written, &folder, source))?;
         repairs.push(Repair::Made { folder: "history".to_owned() });
         repaired(report, |damage| damage.file == "history");
     }

@@ -10,6 +10,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 use store::StoreError;
 use survey::{Fault, Horizon, Progress, SurveyGeometry};
+use system::file::FileAction;
 use ttf::TextureLibrary;
 
 /// What is wrong with an object; `Ok(Ok(()))` if nothing is.
@@ -103,7 +104,7 @@ fn content_of(root: &Path, object: &Object, progress: &Progress) -> Result<(), P
             let path = root.join(&entry.file);
             TextureLibrary::builtin()?.add_user(&path)?;
             content::texture_path(root, entry)?;
-            let bytes = fs::metadata(&path).map_err(|source| ProjectError::io("read", &path, source))?.len();
+            let bytes = fs::metadata(&path).map_err(|source| ProjectError::io(FileAction::Read, &path, source))?.len();
             match entry.origin {
                 Origin::Imported { bytes: recorded, .. } if bytes != recorded => {
                     Err(damaged(format!("it has {bytes} bytes, and {recorded} were recorded")))

@@ -12,6 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use store::{Ingested, StoreError, VolumeInfo, resume_blocks};
 use survey::{Note, Progress, SurveyGeometry};
+use system::file::FileAction;
 
 /// Reads a volume into the project: a SEG-Y file, or a folder in which a volume is stored as this program stores them
 /// (see `import_stored.rs`). The first volume defines the survey geometry; others must lie in it.
@@ -127,7 +128,7 @@ impl ImportVolume {
         let partial = folder.join(new.file_name().unwrap_or_default());
         keep_only(folder, &partial);
         let done = self.ingest_into(file, geometry, &partial, progress)?;
-        fs::rename(&partial, new).map_err(|source| ProjectError::io("written", new, source))?;
+        fs::rename(&partial, new).map_err(|source| ProjectError::io(FileAction::Written, new, source))?;
         // The folder is empty now; leaving it behind does no harm.
         let _ = fs::remove_dir(folder);
         Ok(done)
@@ -167,7 +168,8 @@ impl ImportVolume {
 
     /// Stands for the file as it was when it was opened, and for what was said about it.
     fn fingerprint(&self, file: &SegyFile) -> Result<String, ProjectError> {
-        let path = fs::canonicalize(&self.path).map_err(|source| ProjectError::io("read", &self.path, source))?;
+        let path =
+            fs::canonicalize(&self.path).map_err(|source| ProjectError::io(FileAction::Read, &self.path, source))?;
         let stamp = file.stamp();
         let modified = stamp.and_then(|stamp| stamp.modified?.duration_since(std::time::UNIX_EPOCH).ok());
         Ok(serde_json::json!({

@@ -18,6 +18,7 @@ use store::{StoreError, StoredSample, StoredVolume, write_blocks};
 use survey::Progress;
 use survey::sample::{Sample, SampleType, SamplesMut};
 use survey::source::{Block, BlockSource, SourceError};
+use system::file::FileAction;
 
 /// Takes the volume of the folder in.
 pub(super) fn execute(
@@ -38,7 +39,7 @@ pub(super) fn execute(
     let info = stored.info().clone();
     let (stored_as, new) = draft.generation("volumes", &name, "zarr")?;
     if change.moved {
-        fs::rename(&change.path, &new).map_err(|source| ProjectError::io("written", &new, source))?;
+        fs::rename(&change.path, &new).map_err(|source| ProjectError::io(FileAction::Written, &new, source))?;
     } else {
         let memory_bytes = change.memory_bytes.unwrap_or_else(memory_budget::half_of_available);
         let mut blocks = StoredBlocks { stored, sample_type };

@@ -66,6 +66,7 @@ use interp::StageSeconds;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use survey::{Note, Progress, SurveyGeometry};
+use system::file::FileAction;
 
 /// A change to a project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -325,7 +326,7 @@ impl Effect {
 
 /// The origin of what was read from a file, as `reading` says.
 fn imported(path: &Path, reading: String) -> Result<Origin, ProjectError> {
-    let facts = std::fs::metadata(path).map_err(|source| ProjectError::io("read", path, source))?;
+    let facts = std::fs::metadata(path).map_err(|source| ProjectError::io(FileAction::Read, path, source))?;
     Ok(Origin::Imported { path: path.to_owned(), bytes: facts.len(), reading })
 }
 

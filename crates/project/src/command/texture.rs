@@ -8,6 +8,7 @@ use crate::styles;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
+use system::file::FileAction;
 
 /// Copies a picture into the project for use as a tile.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -36,7 +37,7 @@ impl AddTexture {
         // The library names a tile after its file, so the name is that of the copy.
         let name = Path::new(&file).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
         draft.document.check_new_name(Noun::Texture, &name)?;
-        fs::copy(&self.path, &new).map_err(|source| ProjectError::io("written", &new, source))?;
+        fs::copy(&self.path, &new).map_err(|source| ProjectError::io(FileAction::Written, &new, source))?;
         draft.document.textures.push(TextureEntry {
             id: Id::default(),
             name: name.clone(),

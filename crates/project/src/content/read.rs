@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use store::{self, ParameterizationVolumes, StoredParameterization, StoredVolume};
 use survey::{Fault, Horizon, Progress, SurveyGeometry, Volume, Well};
 use system::file;
+use system::file::FileAction;
 
 /// Compares the hash of what was read with the one that was recorded; an empty one is not known.
 fn compare(path: &Path, noun: Noun, name: &str, expected: &str, found: String) -> Result<(), ProjectError> {
@@ -151,7 +152,8 @@ pub(crate) fn texture_path(root: &Path, entry: &TextureEntry) -> Result<PathBuf,
 
 /// BLAKE3 of a small file's bytes.
 pub(crate) fn hash_file(path: &Path) -> Result<String, ProjectError> {
-    let bytes = file::read(path, file::MAX_DOCUMENT_BYTES).map_err(|source| ProjectError::io("read", path, source))?;
+    let bytes = file::read(path, file::MAX_DOCUMENT_BYTES)
+        .map_err(|source| ProjectError::io(FileAction::Read, path, source))?;
     Ok(blake3::hash(&bytes).to_hex().to_string())
 }
 

@@ -11,6 +11,7 @@ use crate::folder::storage;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use system::file::FileAction;
 
 /// Folder of all writers, relative to the project.
 const UNFINISHED: &str = "derived/unfinished";
@@ -33,7 +34,7 @@ impl Scratch {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         storage::refuse_links(root)?;
         let all = root.join(UNFINISHED);
-        let fail = |source| ProjectError::io("written", &all, source);
+        let fail = |source| ProjectError::io(FileAction::Written, &all, source);
         remove_leftovers(root);
         let name = format!("{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
         let made = || fs::create_dir_all(&all).and_then(|()| File::create(all.join(lock_of(&name))));
@@ -52,7 +53,7 @@ impl Scratch {
     pub(crate) fn resume(root: &Path, name: &str) -> Result<Option<Self>, ProjectError> {
         storage::refuse_links(root)?;
         let all = root.join(UNFINISHED);
-        let fail = |source| ProjectError::io("written", &all, source);
+        let fail = |source| ProjectError::io(FileAction::Written, &all, source);
         for file in abandoned(root).into_iter().filter(|file| !is_of(file, name)) {
             storage::remove(root, &file);
         }

@@ -3,6 +3,7 @@
 use super::ProjectError;
 use std::io;
 use std::path::Path;
+use system::file::FileAction;
 
 impl From<::time::TimeError> for ProjectError {
     fn from(error: ::time::TimeError) -> Self {
@@ -38,11 +39,11 @@ impl ProjectError {
     }
 
     /// Turns a failure of the file system into an error that the user can act on.
-    pub fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
+    pub fn io(action: FileAction, path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();
         match source.kind() {
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => Self::DiskFull { path },
-            io::ErrorKind::ReadOnlyFilesystem | io::ErrorKind::PermissionDenied if action != "read" => {
+            io::ErrorKind::ReadOnlyFilesystem | io::ErrorKind::PermissionDenied if action != FileAction::Read => {
                 Self::ReadOnly { path }
             }
             _ => Self::Io { action, path, source },

@@ -10,6 +10,7 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 use store::{Replacement, surface_batches};
 use survey::Progress;
+use system::file::FileAction;
 
 /// Writes all candidates as points: inline, crossline, z in the vertical unit, leaf and surface, both numbered from 1.
 /// A point on the border of several leaves is written once, with the smallest of their numbers. Returns the number of
@@ -25,7 +26,7 @@ pub fn write(project: &Project, out: &Path, progress: &Progress) -> Result<usize
     let trees = Forest::of_nodes(stored.read_nodes(progress)?)?;
     let surfaces = stored.read_surfaces(progress)?;
     let frame = document.frame()?;
-    let fail = |source| ProjectError::io("written", out, source);
+    let fail = |source| ProjectError::io(FileAction::Written, out, source);
     let replacement = Replacement::of(out)?;
     let mut file = BufWriter::new(File::create(replacement.path()).map_err(fail)?);
     writeln!(file, "inline,crossline,z,leaf,surface").map_err(fail)?;

@@ -12,6 +12,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 use survey::Progress;
 use system::file;
+use system::file::FileAction;
 
 /// How long a command waits by default for another that is changing the project.
 pub const DEFAULT_WAIT: Duration = Duration::from_secs(10);
@@ -51,7 +52,8 @@ impl Lock {
     /// Takes the lock in the file `name` of the folder `root`, or is refused at once.
     pub(crate) fn take_named(root: &Path, name: &str) -> Result<Self, ProjectError> {
         let path = root.join(name);
-        let file = storage::open_own(root, name).map_err(|source| ProjectError::io("written", &path, source))?;
+        let file =
+            storage::open_own(root, name).map_err(|source| ProjectError::io(FileAction::Written, &path, source))?;
         match file.try_lock() {
             Ok(()) => {
                 let mut lock = Self { file };
@@ -59,7 +61,7 @@ impl Lock {
                 Ok(lock)
             }
             Err(TryLockError::WouldBlock) => Err(ProjectError::Locked { path: root.to_owned(), holder: holder(&path) }),
-            Err(TryLockError::Error(source)) => Err(ProjectError::io("locked", &path, source)),
+            Err(TryLockError::Error(source)) => Err(ProjectError::io(FileAction::Locked, &path, source)),
         }
     }
 

@@ -19,6 +19,7 @@ use crate::folder::handle;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use system::file::FileAction;
 use system::file::{create_folders, sync_folder};
 
 /// The file of the state.
@@ -52,7 +53,7 @@ fn refuse_links_in(root: &Path, relative: &Path) -> Result<(), ProjectError> {
     let facts = match fs::symlink_metadata(&path) {
         Ok(facts) => facts,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-        Err(source) => return Err(ProjectError::io("read", &path, source)),
+        Err(source) => return Err(ProjectError::io(FileAction::Read, &path, source)),
     };
     if facts.is_symlink() {
         return Err(ProjectError::Link { path });
@@ -62,10 +63,10 @@ fn refuse_links_in(root: &Path, relative: &Path) -> Result<(), ProjectError> {
             Ok(entries) => entries,
             // Another process has just removed its unfinished work.
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-            Err(source) => return Err(ProjectError::io("read", &path, source)),
+            Err(source) => return Err(ProjectError::io(FileAction::Read, &path, source)),
         };
         for entry in entries {
-            let entry = entry.map_err(|source| ProjectError::io("read", &path, source))?;
+            let entry = entry.map_err(|source| ProjectError::io(FileAction::Read, &path, source))?;
             refuse_links_in(root, &relative.join(entry.file_name()))?;
         }
     }
@@ -84,7 +85,7 @@ pub(crate) fn unfinished(root: &Path, file: &str) -> PathBuf {
 pub(crate) fn begin(root: &Path, file: &str) -> Result<PathBuf, ProjectError> {
     let path = unfinished(root, file);
     let folder = path.parent().unwrap_or(root);
-    fs::create_dir_all(folder).map_err(|source| ProjectError::io("written", folder, source))?;
+    fs::create_dir_all(folder).map_err(|source| ProjectError::io(FileAction::Written, folder, source))?;
     Ok(path)
 }
 
@@ -126,7 +127,7 @@ pub(crate) fn replace(root: &Path, file: &str, bytes: &[u8]) -> Result<(), Proje
 
 /// Writes `bytes` to `path` and flushes them to the disk.
 fn write_durably(path: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
-    let fail = |source| ProjectError::io("written", path, source);
+    let fail = |source| ProjectError::io(FileAction::Written, path, source);
     let mut file = File::create(path).map_err(fail)?;
     file.write_all(bytes).and_then(|()| file.sync_all()).map_err(fail)
 }
@@ -136,7 +137,7 @@ fn write_durably(path: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
 /// # Errors
 /// It could not be renamed; or, as [`ProjectError::NotFlushed`], it was, but may not be so after a power cut.
 pub(crate) fn rename(from: &Path, to: &Path) -> Result<(), ProjectError> {
-    let fail = |source| ProjectError::io("written", to, source);
+    let fail = |source| ProjectError::io(FileAction::Written, to, source);
     if let Some(parent) = to.parent() {
         create_folders(parent).map_err(fail)?;
     }
@@ -152,7 +153,7 @@ fn flush_names(folder: &Path) -> Result<(), ProjectError> {
 
 /// Flushes a file or everything in a folder to the disk.
 fn sync_tree(path: &Path) -> Result<(), ProjectError> {
-    let fail = |source| ProjectError::io("written", path, source);
+    let fail = |source| ProjectError::io(FileAction::Written, path, source);
     if path.is_dir() {
         for entry in fs::read_dir(path).map_err(fail)? {
             sync_tree(&entry.map_err(fail)?.path())?;
@@ -185,7 +186,7 @@ pub fn open_own(root: &Path, name: &str) -> io::Result<File> {
 /// Reads a text file of the project: an ordinary file of at most [`system::file::MAX_DOCUMENT_BYTES`].
 pub(crate) fn read_text(path: &Path) -> Result<String, ProjectError> {
     system::file::read_text(path, system::file::MAX_DOCUMENT_BYTES)
-        .map_err(|source| ProjectError::io("read", path, source))
+        .map_err(|source| ProjectError::io(FileAction::Read, path, source))
 }
 
 /// The names of a folder's entries, sorted; none if the folder does not exist.

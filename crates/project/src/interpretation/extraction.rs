@@ -22,6 +22,7 @@ use std::path::{Path, PathBuf};
 use store::{CandidateWriter, StoreError, StoredCandidates, StoredVolume};
 use survey::Progress;
 use survey::candidates::ForestCounts;
+use system::file::FileAction;
 
 /// Number of inlines of a stored volume that are read at a time: the edge length of its bricks.
 const SLAB_INLINES: usize = 64;
@@ -288,7 +289,7 @@ pub fn share(
     (memory_bytes, edge): (u64, usize),
     progress: &Progress,
 ) -> Result<Option<SharedExtraction>, ProjectError> {
-    let root = std::path::absolute(root).map_err(|source| ProjectError::io("read", root, source))?;
+    let root = std::path::absolute(root).map_err(|source| ProjectError::io(FileAction::Read, root, source))?;
     let job = Job::of(&root, document, volume, settings)?;
     if find_stored(&root, &job.key, Stored::Verified, progress)?.is_some() {
         return Ok(None);

@@ -21,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use survey::{Progress, SurveyGeometry};
+use system::file::FileAction;
 use system::{file, memory};
 
 /// The proposals, and the state that they were made for.
@@ -301,7 +302,7 @@ fn read(root: &Path, document: &Document, key: &str) -> Option<Proposals> {
 /// They cannot.
 pub(crate) fn verify(path: &Path) -> Result<(), ProjectError> {
     let text = file::read_text(path, file::MAX_INTERPRETATION_BYTES)
-        .map_err(|source| ProjectError::io("read", path, source))?;
+        .map_err(|source| ProjectError::io(FileAction::Read, path, source))?;
     match serde_json::from_str::<Proposals>(&text) {
         Ok(_) => Ok(()),
         Err(error) => Err(ProjectError::Malformed { path: path.to_owned(), detail: error.to_string() }),

@@ -32,6 +32,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use survey::{Progress, SurveyGeometry};
+use system::file::FileAction;
 use system::file::{create_folders, sync_folder};
 
 /// An open project. It is changed by [`Command`]s, each of which can be undone.
@@ -309,7 +310,7 @@ impl NewProject {
         }
         folder::refuse_inside_project(destination)?;
         let root = in_the_making(destination)?;
-        let fail = |source| ProjectError::io("written", destination, source);
+        let fail = |source| ProjectError::io(FileAction::Written, destination, source);
         let is_ours = root.join(CREATING).exists() || storage::names_in(&root).is_empty();
         if root.exists() && !is_ours {
             return Err(ProjectError::Exists { path: root });

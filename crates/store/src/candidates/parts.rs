@@ -24,6 +24,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use survey::candidates::{BEYOND, CandidateInfo, ForestCounts, ForestRows};
 use survey::progress::Progress;
+use system::file::FileAction;
 
 /// Candidates that are being written file by file. All processes state the same.
 #[derive(Debug, Clone)]
@@ -45,7 +46,7 @@ impl CandidateParts {
     /// The disk does not take it.
     pub fn create(&self) -> Result<(), StoreError> {
         let group = &self.path;
-        fs::create_dir_all(group).map_err(|source| StoreError::io("written", group, source))?;
+        fs::create_dir_all(group).map_err(|source| StoreError::io(FileAction::Written, group, source))?;
         write_group(group, "", serde_json::Map::new())?;
         let layout = ArrayLayout::volume(self.size);
         ArrayWriter::create(group, "distance", layout.clone(), BEYOND)?;

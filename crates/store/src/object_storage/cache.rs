@@ -15,6 +15,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::SystemTime;
+use system::file::FileAction;
 
 /// Bytes of a block.
 pub(super) const BLOCK: u64 = 256 << 10;
@@ -68,7 +69,7 @@ impl CachedObjects {
         let tail: String = plain.chars().rev().take(60).collect::<Vec<_>>().into_iter().rev().collect();
         let folder =
             all.join(format!("{:08x}{:08x}-{tail}", crc32c::crc32c(&bytes), crc32c::crc32c(address.as_bytes())));
-        fs::create_dir_all(&folder).map_err(|source| StoreError::io("written", &folder, source))?;
+        fs::create_dir_all(&folder).map_err(|source| StoreError::io(FileAction::Written, &folder, source))?;
         Ok(Self { remote, all, folder, limit, lengths: Mutex::default(), written: Mutex::new(COUNT_EVERY) })
     }
 

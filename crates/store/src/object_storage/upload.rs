@@ -12,6 +12,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use survey::progress::Progress;
+use system::file::FileAction;
 
 /// The object without which there is no volume.
 const HEADER: &str = "zarr.json";
@@ -31,7 +32,7 @@ pub(crate) fn upload(path: &Path, url: &str, progress: &Progress) -> Result<u64,
     let write = |key: &str| -> Result<u64, StoreError> {
         progress.check()?;
         let file = path.join(key);
-        let bytes = fs::read(&file).map_err(|source| StoreError::io("read", &file, source))?;
+        let bytes = fs::read(&file).map_err(|source| StoreError::io(FileAction::Read, &file, source))?;
         let length = bytes.len() as u64;
         // Noted before it is known: a request whose reply is lost may have been carried out.
         taken.lock().unwrap_or_else(PoisonError::into_inner).push(key.to_owned());
@@ -55,7 +56,7 @@ pub(crate) fn upload(path: &Path, url: &str, progress: &Progress) -> Result<u64,
 
 /// Paths of all files in a folder, with `/`.
 fn keys_within(folder: &Path, prefix: &str, found: &mut Vec<String>) -> Result<(), StoreError> {
-    let fail = |source| StoreError::io("read", folder, source);
+    let fail = |source| StoreError::io(FileAction::Read, folder, source);
     for entry in fs::read_dir(folder).map_err(fail)? {
         let entry = entry.map_err(fail)?;
         let key = format!("{prefix}{}", entry.file_name().to_string_lossy());

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
+use system::file::FileAction;
 
 /// Below so many samples a box is read by one thread.
 const WORTH_THREADS: usize = 1 << 15;
@@ -56,9 +57,11 @@ impl Shards {
             Trouble::Io(error) if error.kind() == ErrorKind::NotFound => format!("the file {key} is missing"),
             // What object storage answers has its sentence already.
             Trouble::Io(error) if error.get_ref().is_some_and(|cause| cause.is::<StoreError>()) => {
-                return error.downcast().unwrap_or_else(|error| StoreError::io("read", &self.files.place(&key), error));
+                return error
+                    .downcast()
+                    .unwrap_or_else(|error| StoreError::io(FileAction::Read, &self.files.place(&key), error));
             }
-            Trouble::Io(error) => return StoreError::io("read", &self.files.place(&key), error),
+            Trouble::Io(error) => return StoreError::io(FileAction::Read, &self.files.place(&key), error),
             Trouble::Damage(reason) => format!("the file {key}: {reason}"),
             Trouble::Chunk(number) => {
                 let chunks = self.grid.chunks();

@@ -97,7 +97,7 @@ impl FaceWriter<'_> {
         }
         for Beside { anchors, name, said } in beside {
             let led = leader(&anchors, &said, &self.covered, room);
-            written.extend(led.map(|group| Group { name: called_leader(&name), ..group }.into()));
+            written.extend(led.map(|group| Group { name, ..group }.into()));
         }
         if wanted.queries {
             let horizons = &self.model.stratigraphy().horizons;
@@ -233,17 +233,12 @@ fn dot(at: DVec2) -> [DVec2; 4] {
     [[-half, -half], [half, -half], [half, half], [-half, half]].map(|off| at + DVec2::from_array(off))
 }
 
-/// What the group of a leader is called: by what it names, whatever is written.
-fn called_leader(name: &str) -> String {
-    format!("leader to {name}")
-}
-
 /// A name with a line from a dot on what it names.
 pub(super) fn led([anchor, end]: [DVec2; 2], dot: f64, name: &str, text: Text) -> Group {
     let line = Path::line(&[anchor, end]);
     // In proportion to the dot, so that leaders side by side do not cover the edge behind them.
     let rim = Stroke::new(FRAME_PT + 1.4 * (dot / DOT_PT).powi(4), Ink::glass(Colour::WHITE, RIM_OPACITY));
-    Group::new(GroupKind::Annotation, called_leader(name)).with([
+    Group::new(GroupKind::Leader, name).with([
         PathItem::stroked(line.clone(), rim).into(),
         PathItem::stroked(line, Stroke::new(FRAME_PT, QUIET_INK)).into(),
         PathItem::filled(Path::circle(anchor, dot), INK)

@@ -32,6 +32,7 @@ use std::time::Instant;
 use survey::{Contact, Progress};
 use survey_files::SynthSurvey;
 use synth::SynthSettings;
+use system::file::FileAction;
 
 /// The survey, the patterns and the scene of the demonstration.
 #[derive(Debug, Deserialize)]
@@ -79,7 +80,7 @@ impl fmt::Display for Demonstration {
 /// A file could not be written, there is no device to draw with, or the user cancelled.
 pub fn run(out: &Path, progress: &Progress) -> Result<Demonstration, ProjectError> {
     let look: Look = toml::from_str(include_str!("look.toml")).expect("the look is part of the program");
-    fs::create_dir_all(out).map_err(|source| ProjectError::io("written", out, source))?;
+    fs::create_dir_all(out).map_err(|source| ProjectError::io(FileAction::Written, out, source))?;
     let mut done =
         Demonstration { project: out.join("demo.petro"), pictures: Vec::new(), stages: Vec::new(), steps: Vec::new() };
     let mut stage = Stopwatch::start();
@@ -136,7 +137,7 @@ pub fn run(out: &Path, progress: &Progress) -> Result<Demonstration, ProjectErro
 fn build_project(path: &Path, files: &SynthSurvey, progress: &Progress) -> Result<Project, ProjectError> {
     // A former demonstration is replaced; anything else of that name is not removed.
     if path.join("project.toml").exists() {
-        fs::remove_dir_all(path).map_err(|source| ProjectError::io("written", path, source))?;
+        fs::remove_dir_all(path).map_err(|source| ProjectError::io(FileAction::Written, path, source))?;
     }
     let mut new = Project::create(path, None)?;
     let project = new.project();

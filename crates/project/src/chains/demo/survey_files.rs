@@ -24,6 +24,7 @@ use store::{StoreError, replace_file};
 use survey::{Contact, Fault, Horizon, Progress};
 use synth::{Overturned, SynthDesign, SynthSettings, SynthTruth};
 use system::command_line::CommandLine;
+use system::file::FileAction;
 use system::{file, memory};
 
 /// Files of a synthetic survey.
@@ -143,7 +144,7 @@ pub fn write_files(
 ) -> Result<SynthFiles, ProjectError> {
     let folder = |name: &str| {
         let path = out.join(name);
-        file::create_folders(&path).map_err(|source| StoreError::io("written", &path, source)).map(|()| path)
+        file::create_folders(&path).map_err(|source| StoreError::io(FileAction::Written, &path, source)).map(|()| path)
     };
     let (horizons, faults) = (folder("horizons")?, folder("faults")?);
     let options = WriteOptions::default();
@@ -233,7 +234,7 @@ pub fn write_outcrop(
     let made = Overturned::generate(size, seed)?;
     let folder = |name: &str| {
         let path = out.join(name);
-        file::create_folders(&path).map_err(|source| StoreError::io("written", &path, source)).map(|()| path)
+        file::create_folders(&path).map_err(|source| StoreError::io(FileAction::Written, &path, source)).map(|()| path)
     };
     let (horizons, faults) = (folder("horizons")?, folder("faults")?);
     let last = made.geometry.world_from_voxel(glam::DVec3::from_array(size.map(|n| n as f64 - 1.0)));
