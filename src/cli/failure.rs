@@ -1,9 +1,9 @@
 //! Failures on the terminal: an error in one sentence, and a hint.
 
-use super::asked::Asked;
 use super::plain::{plain, plain_json};
 use super::report::write_out;
 use super::run::Failure;
+use super::subject::Asked;
 use super::{hint, option};
 use project::error::remedy_of;
 use std::error::Error;

@@ -6,10 +6,9 @@
 
 mod animate;
 mod args;
-mod asked;
 mod assembly;
 mod check;
-mod cut;
+mod cuts;
 mod distortion;
 mod draw;
 mod extraction;
@@ -28,6 +27,7 @@ mod request;
 mod review;
 mod run;
 mod segy;
+mod subject;
 mod terminal;
 mod view;
 mod well;
@@ -36,11 +36,11 @@ mod words;
 pub use failure::{Refusal, explain};
 pub use words::{CommandWords, OptionWords, commands};
 
-use asked::Asked;
 use clap::Parser;
 use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
+use subject::Asked;
 use survey::Progress;
 
 /// Runs the program with the arguments of this process.

@@ -1,7 +1,7 @@
 //! Turns the options of a view into changes of a scene.
 
 use super::args::ViewArgs;
-use super::cut::{self, Cut, LineBox, voxel_box};
+use super::cuts::{self, Cut, LineBox, voxel_box};
 use super::request::{Usage, counts, numbers};
 use project::Project;
 use render::{Background, FaceData, Faces, Ground, Lookup, Outlines, PatternSize, Projection, Scene, Unpicked, Water};
@@ -53,7 +53,7 @@ impl TryFrom<ViewArgs> for ViewChanges {
             Some("packed") => Some(Lookup::Packed),
             Some(other) => return Err(format!("--lookup {other}: expected exact or packed")),
         };
-        let cuts = cut::typed(&typed)?;
+        let cuts = cuts::typed(&typed)?;
         let background = match typed.background.as_deref() {
             None => None,
             Some("transparent") => Some(Background::Transparent),
@@ -163,7 +163,7 @@ impl ViewChanges {
         scene.preset = self.preset.unwrap_or(scene.preset);
         scene.samples = self.samples.unwrap_or(scene.samples);
         scene.background = self.background.unwrap_or(scene.background);
-        cut::change(&self.cuts, scene, geometry)
+        cuts::change(&self.cuts, scene, geometry)
     }
 
     /// The same for a view of rock that nobody has composed: where it has a corner cut off, that is the nearest one to the
@@ -171,7 +171,7 @@ impl ViewChanges {
     pub(super) fn with_nearest_cut(mut self, scene: &Scene) -> Self {
         let is_moved = self.azimuth_deg.is_some() || self.roaming_box.is_some();
         if is_moved && self.cuts.is_empty() && !scene.cut_outs.is_empty() && scene.media.faces != Faces::None {
-            self.cuts.push(Cut::Corner { corner: None, share: [cut::CUT_SHARE; 2] });
+            self.cuts.push(Cut::Corner { corner: None, share: [cuts::CUT_SHARE; 2] });
         }
         self
     }
@@ -179,7 +179,7 @@ impl ViewChanges {
     /// The same with wells at the corners of fences found in a project.
     pub(super) fn with_wells(&self, project: &Project) -> anyhow::Result<Self> {
         let mut found = self.clone();
-        cut::find_wells(&mut found.cuts, project)?;
+        cuts::find_wells(&mut found.cuts, project)?;
         Ok(found)
     }
 }

@@ -31,7 +31,7 @@ mod dual;
 mod level;
 mod moments;
 pub(crate) mod prune;
-mod split;
+mod subdivision;
 mod tables;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -44,7 +44,7 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use survey::{Cancelled, Progress};
 
-pub use split::Subtree;
+pub use subdivision::Subtree;
 
 /// Largest count of triangles of a forest: the distance search uses two bits of a leaf id for itself.
 pub(crate) const MAX_TRIANGLES: usize = (1 << 30) - 1;

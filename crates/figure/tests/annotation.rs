@@ -2,7 +2,7 @@
 
 use figure::cut::SectionSource;
 use figure::draw::NamedColour;
-use figure::draw::moved::movable;
+use figure::draw::label_changes::movable;
 use figure::{Annotation, BlockPart, Figure, FigureInputs, PageSize, make};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
@@ -354,14 +354,15 @@ fn labels_stand_where_a_scene_moves_them_and_what_marks_a_place_stays() {
     let before = labels(&plain);
     let by = DVec2::new(4.0, -3.0);
     for label in ["Bed 0", "Bed 2", "F1", "W", "W Top of W", "legend", "axes"] {
-        let place =
-            |labels: &[figure::draw::moved::Movable]| labels.iter().find(|known| known.label == label).unwrap().bounds;
+        let place = |labels: &[figure::draw::label_changes::Movable]| {
+            labels.iter().find(|known| known.label == label).unwrap().bounds
+        };
         let moved = LabelChange { label: label.into(), moved_mm: by.to_array(), ..LabelChange::default() };
         let scene = Scene { labels: vec![moved.clone()], ..plain.clone() };
         let after = labels(&scene);
         let off = place(&after).min - place(&before).min;
         assert!((off - by * 72.0 / 25.4).length() < 1e-6, "{label}: {off}");
-        let others = |all: &[figure::draw::moved::Movable]| {
+        let others = |all: &[figure::draw::label_changes::Movable]| {
             all.iter().filter(|known| known.label != label).cloned().collect::<Vec<_>>()
         };
         assert_eq!(others(&before), others(&after), "{label} alone");

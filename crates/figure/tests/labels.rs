@@ -3,7 +3,7 @@
 use figure::cut::SectionSource;
 use figure::draw::NamedColour;
 use figure::draw::block::Comparison;
-use figure::draw::moved::{Movable, movable};
+use figure::draw::label_changes::{Movable, movable};
 use figure::{
     Annotation, BlockPart, CorrelationPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part,
     SectionKind, SectionPart, make,

@@ -3,7 +3,7 @@
 use figure::cut::SectionSource;
 use figure::draw::NamedColour;
 use figure::draw::block::Comparison;
-use figure::draw::moved::{LabelChange, changed, movable};
+use figure::draw::label_changes::{LabelChange, changed, movable};
 use figure::{
     BlockPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part, SectionKind, SectionPart, make,
 };

@@ -29,15 +29,15 @@
 
 mod bends;
 mod edges;
-mod known;
 mod pairs;
+mod repeats;
 mod surface;
 #[cfg(test)]
 mod tests;
 mod traces;
 
-pub use known::Repeat;
 pub(crate) use pairs::Pair;
+pub use repeats::Repeat;
 
 use crate::reassembly::VoxelSheet;
 use glam::{DVec2, DVec3};
@@ -185,7 +185,7 @@ pub fn propose_faults(
     let [nx, ny, _] = geometry.size();
     let metric = geometry.metric_from_voxel();
     progress.begin("searching for faults", horizons.len() as u64);
-    let mut known = known::Known::of(known, geometry);
+    let mut known = repeats::Known::of(known, geometry);
     let mut found = Vec::new();
     for (h, horizon) in horizons.iter().enumerate() {
         let pieces = edges::HorizonRims::of(horizon.sheets, [nx, ny]);

@@ -10,11 +10,11 @@
 //! keeps offset 0 and is flagged.
 
 use crate::closest::Foot;
+use crate::columns::{Depths, RegionColumns};
 use crate::grid::{PINCHED, RegionGrid};
 use crate::lattice::{COLUMNS, FootLattice, LEVELS, LatticeShape};
 use crate::layer::{Feet, Layer, LayerKind};
 use crate::surface::ColumnFrame;
-use crate::touched::{Depths, RegionColumns};
 use crate::trace::Tracer;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;

@@ -15,8 +15,8 @@
 //!
 //! Memory: 12 bytes a node and one bit for the crease flag.
 
+use crate::columns::RegionColumns;
 use crate::metric::Metric;
-use crate::touched::RegionColumns;
 use crate::tricubic;
 use crate::unfold::Unfolding;
 use crate::weight;

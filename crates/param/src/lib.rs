@@ -84,27 +84,27 @@
 //! ```
 
 pub mod accuracy;
-mod carried;
 mod closest;
+mod columns;
 mod compute;
 mod error;
 mod flow;
+mod foreign;
 mod grid;
-mod imported;
-mod joined;
 mod lattice;
 mod layer;
 mod metric;
 mod model;
 mod nearest;
-mod packed;
+mod packed_volume;
 mod parameterization;
 mod plan;
-mod retraced;
+mod retrace;
 mod settings;
 mod surface;
-mod touched;
+mod tips;
 mod trace;
+mod transport;
 mod tricubic;
 mod unfold;
 mod voxels;
@@ -112,10 +112,10 @@ mod weight;
 
 pub use compute::ComputeCost;
 pub use error::ParamError;
+pub use foreign::Taken;
 pub use grid::{FlatPoint, RegionGrid, SheetRef, SheetSource};
-pub use imported::Taken;
 pub use model::{LayerModel, Region};
-pub use packed::PackedVolume;
+pub use packed_volume::PackedVolume;
 pub use parameterization::Parameterization;
 pub use settings::{KDefinition, ParamSettings};
 pub use unfold::{Unfolded, Unfolding};

@@ -1,12 +1,12 @@
 //! The parameterization of a whole model: one [`RegionGrid`] per layer and fault block.
 
+use crate::columns::{ColumnScan, RegionColumns};
 use crate::compute::{self, ComputeCost};
 use crate::flow;
 use crate::grid::{FlatPoint, RegionGrid, SheetSource};
-use crate::joined::{self, Tips};
 use crate::metric::Metric;
 use crate::plan::{self, Method, Planner};
-use crate::touched::{ColumnScan, RegionColumns};
+use crate::tips::{self, Tips};
 use crate::unfold::{self, Unfolded, Unfolding};
 use crate::{LayerModel, ParamError, ParamSettings, Region};
 use glam::Vec3;
@@ -128,7 +128,7 @@ impl Parameterization {
                 .step_by(layers)
                 .map(|n| planner.is_joined(region(n), methods[n]).then(|| (&touched[n], methods[n])))
                 .collect();
-            joined::join(model, &metric, &mut of_layer, &columns, progress)?;
+            tips::join(model, &metric, &mut of_layer, &columns, progress)?;
         }
         Ok(Self { size, layers, blocks, grids, cost })
     }

@@ -1,14 +1,14 @@
 //! What is computed for each region: its sheets, levels and reference thickness, and the method.
 
+use crate::columns::RegionColumns;
 use crate::flow;
 use crate::flow::calm::calm;
 use crate::flow::harmonic::{Ends, FarBeds, Spacing};
 use crate::grid::{RegionGrid, SheetRef, SheetSource};
-use crate::joined;
 use crate::layer::{Layer, LayerKind};
 use crate::metric::Metric;
 use crate::surface::BicubicSheet;
-use crate::touched::RegionColumns;
+use crate::tips;
 use crate::weight;
 use crate::{KDefinition, LayerModel, ParamSettings, Region};
 use glam::{DMat3, DVec3, Vec3};
@@ -73,7 +73,7 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
             let of_horizon = |horizon: usize| {
                 let drawn: Vec<&HeightField> = (0..blocks as u16).map(|block| model.sheet(horizon, block)).collect();
                 let calm = drawn.par_iter().map(|sheet| calm(sheet, wave)).collect();
-                joined::mean_of_sheets(&drawn, calm, wave.map(|wave| wave * SHARED))
+                tips::mean_of_sheets(&drawn, calm, wave.map(|wave| wave * SHARED))
             };
             (0..layers - 1).into_par_iter().flat_map(of_horizon).map(Arc::new).collect()
         } else {
@@ -165,7 +165,7 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
     }
 
     /// The empty grid of a region, the method that fills it, and the columns that it is filled in. `of_layer` has the columns of each block,
-    /// `companions` the blocks that this one meets beyond tips, and itself ([`joined::Tips::companions`]). `reach` is the
+    /// `companions` the blocks that this one meets beyond tips, and itself ([`tips::Tips::companions`]). `reach` is the
     /// largest of [`Planner::farthest`] over the layer.
     pub(crate) fn plan(
         &self,
@@ -241,8 +241,8 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
             return touched.clone();
         }
         let ([nx, ny, _], steps) = (self.model.size(), self.model.metric());
-        let samples = joined::length_m(self.model) / steps.z_axis.length();
-        touched.grown(joined::GROWN, samples as f32, [nx, ny])
+        let samples = tips::length_m(self.model) / steps.z_axis.length();
+        touched.grown(tips::GROWN, samples as f32, [nx, ny])
     }
 
     /// ln w of the layers between surfaces of any shape in which k is harmonic, `[layer][block]`; none of the others.

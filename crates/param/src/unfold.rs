@@ -14,12 +14,12 @@
 //! ([`model::CutLattice`]).
 //!
 //! That keeps lengths, but least squares weigh them against angles. So it is taken in the middle of the layer alone, and
-//! carried from there along ∇k ([`crate::carried`]).
+//! carried from there along ∇k ([`crate::transport`]).
 //!
 //! Lengths are in metres, u and v are stored in voxels along x and y.
 
-use crate::carried::{self, Held};
 use crate::metric::Metric;
+use crate::transport::{self, Held};
 use crate::tricubic;
 use crate::{LayerModel, Region};
 use glam::{DMat3, DVec3, Vec3};
@@ -111,7 +111,7 @@ pub(crate) fn unfold<M: LayerModel + ?Sized>(
                 [0, 1].map(|which: usize| tricubic::sample(&solved.fields[which][block], p).0 / lengths[which])
             };
             let is_known = |p: Vec3| solved.lattice.is_known(block, p);
-            let in_middle = |p: Vec3| on_lattice(carried::middle(metric, longest, p, |p| rise(p, region), is_known));
+            let in_middle = |p: Vec3| on_lattice(transport::middle(metric, longest, p, |p| rise(p, region), is_known));
             held.fields(region, in_middle, on_lattice)
         };
         let unfoldings = (0..model.block_count()).into_par_iter().map(of_block).collect();

@@ -1,6 +1,6 @@
 //! A page that is looked at before it is written is the page that is written, but for the pixels of its pictures.
 
-use figure::draw::moved::{changed, movable};
+use figure::draw::label_changes::{changed, movable};
 use figure::{Annotation, BlockPart, Figure, MapPart, PageSize, Part};
 use files::ImportOptions;
 use glam::DVec2;

@@ -2,7 +2,7 @@
 
 use crate::arrays::{array, wrong};
 use crate::refusal;
-use crate::stored::{box_of, info_of, live_of};
+use crate::volumes::{box_of, info_of, live_of};
 use crate::work::{long, long_of, on, task};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods};
 use project::command::Command;

@@ -3,13 +3,13 @@
 //!
 //! Space: voxels.
 
+use crate::cache::Kept;
 use crate::camera::ViewRay;
 use crate::error::RenderError;
 use crate::inputs::Inputs;
-use crate::kept::Kept;
 use crate::outline::solid::faces;
 use crate::points::Points;
-use crate::resolved::ResolvedScene;
+use crate::resolved_scene::ResolvedScene;
 use crate::scene::Scene;
 use crate::shade::RayHit;
 use crate::vector::rock_cells;

@@ -5,11 +5,11 @@
 //!
 //! Where a face blends several mappings ([`ttf::FaceFrame`]) each counts with its weight.
 
+use crate::cache::Kept;
 use crate::camera::ViewRay;
 use crate::error::RenderError;
 use crate::inputs::Inputs;
-use crate::kept::Kept;
-use crate::resolved::{ResolvedInterpretation, ResolvedScene};
+use crate::resolved_scene::{ResolvedInterpretation, ResolvedScene};
 use crate::scene::Scene;
 use crate::shade::{RayHit, Start, pixel_shift, stopping_hit};
 use crate::visible::{FaceHit, Ray};

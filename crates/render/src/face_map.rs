@@ -1,6 +1,6 @@
 //! How patterns lie on a plane of the block, and how far they are stretched at a place of it.
 
-use crate::resolved::ResolvedScene;
+use crate::resolved_scene::ResolvedScene;
 use glam::{DMat3, DVec3, Vec3};
 use survey::block::BodyPlane;
 use ttf::{FaceFrame, MappingWeights, Stretch, TtfTables};

@@ -5,7 +5,7 @@ use crate::leaves::FaceData;
 use crate::outline::Outlines;
 use crate::outline::draw::OutlineLines;
 use crate::points::{POINT_BYTES, Points};
-use crate::resolved::ResolvedScene;
+use crate::resolved_scene::ResolvedScene;
 use crate::scene::{Background, PatternSize, Scene};
 use std::sync::{Arc, OnceLock};
 use ttf::Preset;

@@ -20,6 +20,7 @@
 //! - P-horiz: Patel, Bruckner, Viola and Gröller, "Seismic Volume Visualization for Horizon Extraction" (IEEE
 //!   Pacific Visualization 2010).
 
+mod cache;
 pub mod camera;
 pub mod cover;
 pub mod distortion;
@@ -29,19 +30,18 @@ pub mod faces;
 mod gpu;
 pub mod ground;
 pub mod inputs;
-mod kept;
 mod kept_points;
 pub mod leaves;
 pub mod media;
 pub mod outline;
 mod pattern_size;
 pub mod pick;
+pub mod places;
 mod points;
 pub mod reference;
-mod resolved;
+mod resolved_scene;
 pub mod scene;
 mod shade;
-pub mod touched;
 pub mod vector;
 pub mod visible;
 pub mod wells;

@@ -4,11 +4,11 @@
 //! The ray is that of the picture: through the media, to the face, ground or well that stops it. A single ray
 //! is traced on the CPU.
 
+use crate::cache::Kept;
 use crate::error::RenderError;
 use crate::inputs::Inputs;
-use crate::kept::Kept;
 use crate::media::march::first_seen;
-use crate::resolved::ResolvedScene;
+use crate::resolved_scene::ResolvedScene;
 use crate::scene::Scene;
 use crate::shade::{RayHit, Start, stopping_hit};
 use crate::visible::Ray;

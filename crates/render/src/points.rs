@@ -13,7 +13,7 @@ use crate::face_map::FaceMap;
 use crate::ground::GroundHit;
 use crate::inputs::NamedVolume;
 use crate::leaves::{FaceData, cover, distance_tone, leaf_colour};
-use crate::resolved::ResolvedScene;
+use crate::resolved_scene::ResolvedScene;
 use crate::shade::{RayHit, pixel_shift};
 use crate::visible::FaceHit;
 use glam::{Vec3, Vec4};

@@ -4,16 +4,16 @@
 //! ([`crate::visible`]) and its colour. The colours of a pixel are averaged as sRGB-encoded values weighted
 //! by alpha.
 
+use crate::cache::Kept;
 use crate::camera::ViewRay;
 use crate::error::RenderError;
 use crate::inputs::Inputs;
-use crate::kept::Kept;
 use crate::kept_points::{KeptPoints, PicturePoints};
-use crate::media::interleaved::{halves, interleave};
 use crate::media::light::LightVolume;
 use crate::media::light_grid::Asked;
+use crate::media::stripes::{halves, interleave};
 use crate::outline::draw::{OutlineLines, draw as draw_outlines, draw_lines};
-use crate::resolved::ResolvedScene;
+use crate::resolved_scene::ResolvedScene;
 use crate::scene::Scene;
 use crate::shade::{stopping_points, trace};
 use glam::{DVec2, Vec4};

@@ -10,7 +10,7 @@ use crate::media::Faces;
 use crate::media::bundle::gather_all;
 use crate::media::light::LightVolume;
 use crate::points::Points;
-use crate::resolved::{Flat, ResolvedInterpretation, ResolvedScene};
+use crate::resolved_scene::{Flat, ResolvedInterpretation, ResolvedScene};
 use crate::visible::{FaceHit, Ray, SolidSpan, TOUCH};
 use crate::wells::WellHit;
 use glam::{Vec3, Vec4};

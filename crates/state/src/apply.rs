@@ -195,7 +195,7 @@ impl State {
         self.remembered.left = self
             .session
             .as_ref()
-            .map(|session| super::remembered::Left { root: session.root.clone(), view: session.view.clone() });
+            .map(|session| super::last_session::Left { root: session.root.clone(), view: session.view.clone() });
     }
 
     /// A task that needs an open project.

@@ -11,12 +11,12 @@ mod dialogue;
 pub mod faces;
 pub mod fields;
 mod hint;
+pub mod last_session;
 mod notice;
 pub mod picking;
 mod picking_steps;
 #[cfg(test)]
 mod picking_tests;
-pub mod remembered;
 mod session;
 pub mod showing;
 mod view;
@@ -31,9 +31,9 @@ pub use action::{Action, Task};
 pub use dialogue::{
     Choice, DataForm, Dialogue, ExportForm, FileContent, SectionFill, ShareForm, Shown, Target, Written,
 };
+pub use last_session::{Appearance, Remembered};
 pub use notice::{Notice, Place};
 pub use picking::{How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, StickPoint, Tool};
-pub use remembered::{Appearance, Remembered};
 pub use review::ShareKind;
 pub use session::{Session, Snapshot};
 pub use view::{Blended, Compare, Hidden, Layout, Panel, SectionKind, SectionVolumes, StandardView, ViewState};

@@ -24,7 +24,7 @@ mod events;
 mod faulting;
 mod fold;
 mod interpretation;
-mod overturned;
+mod outcrop;
 mod random;
 mod seismic;
 pub mod shapes;
@@ -36,7 +36,7 @@ pub use column::BedSequence;
 pub use events::{Reflector, ReflectorEvent};
 pub use faulting::{Tip, TruthFault};
 pub use fold::{FoldedBeds, Undulation, Wave};
-pub use overturned::{OutcropFault, OutcropTruth, Overturned};
+pub use outcrop::{OutcropFault, OutcropTruth, Overturned};
 pub use seismic::SeismicLines;
 pub use truth::{Sequence, SynthTruth, TruthHorizon};
 

@@ -9,7 +9,7 @@
 //!
 //! Memory: 12 bytes a trace for each seed while it spreads, and 4 bytes afterwards.
 
-use crate::cut::Cut;
+use crate::cuts::Cut;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -106,7 +106,7 @@ fn spread(held: &[usize], depth: &[f32], cuts: &[Cut], [nx, ny]: [usize; 2]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cut::Across;
+    use crate::cuts::Across;
 
     const COUNT: [usize; 2] = [40, 30];
 

@@ -1,10 +1,10 @@
 //! The steps of geologic time, in order.
 
-use crate::cut::Cut;
+use crate::cuts::Cut;
 use crate::error::TimeError;
+use crate::finish::{hide_chaos, hide_unknown, make_monotone, open_jumps, pin};
 use crate::hubs::{Hubs, KNOWN};
 use crate::interpretation::{Interpretation, KnownHorizon, Place};
-use crate::known::{hide_chaos, hide_unknown, make_monotone, open_jumps, pin};
 use crate::links::Links;
 use crate::matches::Timed;
 use crate::merge::merge;

@@ -7,7 +7,7 @@
 //! seed's own patch stays. Nothing is solved for again. Space: voxels.
 
 use crate::claims::{Holding, levels};
-use crate::cut::Cut;
+use crate::cuts::Cut;
 use crate::isochron::crossings;
 use crate::reflections::Reflections;
 use crate::solve::interpolate;

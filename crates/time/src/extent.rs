@@ -11,7 +11,7 @@
 //! decide. A fault has no holes: what lies between two of its cells on a line, or at a depth,
 //! belongs to it. Space: voxels.
 
-use crate::cut::Cut;
+use crate::cuts::Cut;
 use crate::links::Links;
 use crate::solve::interpolate;
 use crate::throws::{Throw, sides};

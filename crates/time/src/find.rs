@@ -9,7 +9,7 @@
 //! throw found where it is certain, its [`extent`] from both, and what it explains is taken away before the next one.
 //! Space: voxels.
 
-use crate::cut::{Across, Cut};
+use crate::cuts::{Across, Cut};
 use crate::extent::{Misfits, extent};
 use crate::hubs::Hubs;
 use crate::links::Links;

@@ -6,7 +6,7 @@
 //! Vertices are kept in the order of the traces, top down. Memory: 20 bytes a vertex; there is about one for every four
 //! voxels of a well-reflecting volume, and fewer elsewhere.
 
-use crate::cut::Cut;
+use crate::cuts::Cut;
 use crate::interpretation::KnownHorizon;
 use interp::{Extremum, Surfaces, UnionFind};
 use rayon::prelude::*;
@@ -281,7 +281,7 @@ impl Hubs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cut::Across;
+    use crate::cuts::Across;
     use interp::Vertex;
 
     #[test]

@@ -9,7 +9,7 @@
 //!
 //! Space: voxels.
 
-use crate::cut::{Across, Cut};
+use crate::cuts::{Across, Cut};
 use std::ops::Range;
 
 /// A point on a trace.

@@ -38,17 +38,17 @@
 mod claims;
 mod coherence;
 mod compute;
-mod cut;
+mod cuts;
 mod error;
 mod event;
 mod extent;
 mod find;
+mod finish;
 mod flatten;
 mod hubs;
 mod interpretation;
 mod isochron;
 pub mod isotonic;
-mod known;
 mod levels;
 mod links;
 mod logs;
@@ -68,7 +68,7 @@ mod vectors;
 mod tests;
 
 pub use compute::{GeologicTime, TimeSettings, geologic_time};
-pub use cut::{Across, Cut};
+pub use cuts::{Across, Cut};
 pub use error::TimeError;
 pub use event::{Event, Node, Seed, Support};
 pub use find::{FoundFault, find_faults};

@@ -4,7 +4,7 @@
 //! them it is taken from the closest and counts little. A link at sample z joins z − p/2 on the first trace with z + p/2
 //! on the second. Where a fault lies between its ends the link has no weight. Memory: 6 bytes a voxel.
 
-use crate::cut::Cut;
+use crate::cuts::Cut;
 use crate::hubs::Hubs;
 use crate::interpretation::KnownHorizon;
 use rayon::prelude::*;

@@ -3,7 +3,7 @@
 //! Near the fault both sides are stacked in τ over stretches of it, and the warp between the two logs says by how much
 //! their times still differ. Ties then join, on every line, the points of one time.
 
-use crate::cut::Cut;
+use crate::cuts::Cut;
 use crate::logs::{Log, Warp};
 use crate::solve::{Tie, interpolate};
 use crate::throws::{FIRST, Side, beside};

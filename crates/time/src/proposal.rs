@@ -1,6 +1,6 @@
 //! Found faults as proposals, beside those that offset horizons give.
 
-use crate::cut::{Across, Cut};
+use crate::cuts::{Across, Cut};
 use crate::find::FoundFault;
 use glam::{DVec2, DVec3};
 use interp::faults::Proposal;

@@ -1,7 +1,7 @@
 //! How fast τ runs down the traces: about 1 through beds that are complete, more where beds are missing. A surface along
 //! which it runs fast is an unconformity, or a condensed bed.
 
-use crate::cut::Cut;
+use crate::cuts::Cut;
 use rayon::prelude::*;
 use survey::Volume;
 

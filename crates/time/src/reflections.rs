@@ -1,6 +1,6 @@
 //! The reflections beside an isochron: the vertices of all candidates, found by trace.
 
-use crate::cut::Cut;
+use crate::cuts::Cut;
 use crate::hubs::Hubs;
 use interp::{Extremum, Surfaces};
 

@@ -6,7 +6,7 @@
 //! apart throws that differ by a reflector, which single traces cannot. The margin is by how much the best throw
 //! correlates better than any that differs from it by more than a few samples. Space: voxels.
 
-use crate::cut::{Across, Cut};
+use crate::cuts::{Across, Cut};
 use crate::links::{DIP_STEP, Links};
 use crate::solve::{Tie, interpolate};
 use rayon::prelude::*;

@@ -1,6 +1,6 @@
 //! The panel on the right: camera, display, block, and named scenes.
 
-use super::named::{NameField, remove};
+use super::names::{NameField, remove};
 use super::{cut_shapes, notices};
 use crate::state::{Action, Panel, Place, Session, StandardView, State};
 use crate::widgets::form::{self, LABELS};

@@ -1,6 +1,6 @@
 //! The volumes, horizons, faults and wells of the project.
 
-use super::named::{self, NameField, colour};
+use super::names::{self, NameField, colour};
 use super::notices;
 use super::picking::{palette, swatch};
 use crate::state::{Action, Blended, Choice, DataForm, Dialogue, Place, SectionVolumes, Session, State, Written};
@@ -85,7 +85,7 @@ impl Data {
                     }
                 }
                 if row.is_removed {
-                    actions.push(named::remove(Noun::Volume, &entry.name));
+                    actions.push(names::remove(Noun::Volume, &entry.name));
                 }
             });
             if is_chosen {
@@ -120,7 +120,7 @@ impl Data {
                     actions.push(Action::Horizon((!is_chosen).then(|| entry.name.clone())));
                 }
                 if row.is_removed {
-                    actions.push(named::remove(Noun::Horizon, &entry.name));
+                    actions.push(names::remove(Noun::Horizon, &entry.name));
                 }
             });
             if is_chosen {
@@ -318,7 +318,7 @@ fn choosable(
         *chosen = (!is_chosen).then(|| name.to_owned());
     }
     if row.is_removed {
-        actions.push(named::remove(noun, name));
+        actions.push(names::remove(noun, name));
     }
 }
 

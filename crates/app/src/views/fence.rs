@@ -4,7 +4,7 @@
 
 use super::lasso;
 use super::overlay::Overlay;
-use super::pointed::{self, Pointed};
+use super::pointer::{self, Pointed};
 use super::sections::name_across;
 use super::texture;
 use crate::state::{Action, Panel, Session};
@@ -86,7 +86,7 @@ impl FenceView {
         let at = place(&corners, f64::from(share.x) * length);
         let voxel = at.extend(f64::from(share.y) * depth);
         lasso::click(ui, &response, session, voxel, actions);
-        Some(pointed::at_voxel(rocks?, voxel.as_vec3(), None))
+        Some(pointer::at_voxel(rocks?, voxel.as_vec3(), None))
     }
 
     /// Paints the fence with its numbers into a rectangle; nothing until it has been cut.

@@ -3,7 +3,7 @@
 //! The preview is the made thing itself, with coarser faces: its triangles turn under the hand, and a press on them
 //! points the arrow of a new note.
 
-use super::{export, named, notices, texture};
+use super::{export, names, notices, texture};
 use crate::state::picking::place_of;
 use crate::state::{Action, Dialogue, Place, Session, ShareForm, ShareKind, State};
 use crate::widgets::dialogue;
@@ -230,7 +230,7 @@ impl ShareView {
                         remove.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                         if remove.on_hover_text(&name).clicked() {
                             let number = index + 1;
-                            actions.push(named::remove(Noun::Note, &number.to_string()));
+                            actions.push(names::remove(Noun::Note, &number.to_string()));
                         }
                         let [inline, crossline, z] = note.at;
                         let place = format!("inline {inline:.0}, crossline {crossline:.0}, {z:.0}");

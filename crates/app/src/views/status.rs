@@ -1,6 +1,6 @@
 //! The status bar: what is under the cursor, and what is under way.
 
-use super::pointed::{self, Pointed};
+use super::pointer::{self, Pointed};
 use crate::state::{Action, Place, State, Tool};
 use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Align, Label, Layout, ProgressBar, Ui};
@@ -17,7 +17,7 @@ pub fn show(
     ui.horizontal(|ui| {
         let session = state.session.as_ref();
         if let (Some(session), Some(pointed)) = (session, pointed) {
-            ui.label(pointed::sentence(pointed, &session.document));
+            ui.label(pointer::sentence(pointed, &session.document));
             if let Some(shown) =
                 interpreted.filter(|shown| shown.key.is_some() && session.view.picking.tool == Tool::Pick)
             {
@@ -26,7 +26,7 @@ pub fn show(
                     holds.map(|horizon| horizon.name.clone())
                 };
                 ui.separator();
-                ui.add(Label::new(pointed::picked(pointed, has)).truncate());
+                ui.add(Label::new(pointer::picked(pointed, has)).truncate());
             }
         } else if let Some(session) = session {
             ui.weak(session.root.display().to_string());

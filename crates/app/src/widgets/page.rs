@@ -8,7 +8,7 @@ use eframe::egui::{
     Button, Color32, ColorImage, CursorIcon, DragValue, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke,
     StrokeKind, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo,
 };
-use figure::draw::moved::{LabelChange, Movable, changed, movable};
+use figure::draw::label_changes::{LabelChange, Movable, changed, movable};
 use glam::DVec2;
 use page::DisplayList;
 use page::list::POINTS_PER_MM;

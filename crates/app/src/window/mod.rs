@@ -10,7 +10,7 @@ mod share;
 
 use super::error::WindowError;
 use super::hold::Hold;
-use super::views::dropped::{self, Dropped};
+use super::views::file_drop::{self, Dropped};
 use super::views::{
     chooser::Chooser, data_file, export, import::Import, print::Page, shortcuts, start::StartPage, status,
 };
@@ -353,7 +353,7 @@ impl Window {
                     self.views.interpretation.show(ctx, &self.state, session, &self.work, path, *kind, actions);
                 }
             }
-            Some(Dialogue::Dropped { path }) => dropped::dialogue(ctx, path, actions),
+            Some(Dialogue::Dropped { path }) => file_drop::dialogue(ctx, path, actions),
             Some(Dialogue::Well { path }) => self.views.well.show(ctx, &self.state, &self.work, path, actions),
             Some(Dialogue::Patterns { layer, interval }) => {
                 if let Some(session) = &self.state.session {

@@ -5,7 +5,7 @@ use crate::hold::Hold;
 use crate::views::{
     block::BlockView, controls::Controls, data::Data, fence::FenceView, functions::Functions,
     interpretation::Interpretation, layers::Layers, map::MapView, overlay::Overlay, patterns::Patterns,
-    picking::PickingPanel, pointed::Pointed, present::Presentation, sections::Sections, share::ShareView, tiles::Tiles,
+    picking::PickingPanel, pointer::Pointed, present::Presentation, sections::Sections, share::ShareView, tiles::Tiles,
     well::WellDialogue,
 };
 use crate::widgets::page::PagePreview;

@@ -5,7 +5,7 @@ use app::widgets::page::PagePreview;
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Ui, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use figure::draw::moved::{changed, movable};
+use figure::draw::label_changes::{changed, movable};
 use glam::DVec2;
 use page::DisplayList;
 use page::list::{Group, GroupKind, Text};

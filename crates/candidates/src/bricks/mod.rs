@@ -33,13 +33,13 @@
 //! The paper's method depends on the order of its seeds and is not available in bricks.
 
 mod breaks;
-mod coded;
 mod components;
 mod dips;
 mod distances;
 mod flood;
 mod patch;
 mod pieces;
+mod row_code;
 mod run;
 mod samples;
 mod stage;

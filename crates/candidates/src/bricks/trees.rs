@@ -5,7 +5,7 @@
 //! tasks know nothing of one another and their size does not matter.
 
 use super::Bricks;
-use super::coded::{self, Stretch};
+use super::row_code::{self, Stretch};
 use super::triangles::{Corner, CornersOfCell, Member, Outline, ring_of};
 use crate::distance::CellTriangle;
 use crate::error::InterpError;
@@ -160,9 +160,9 @@ impl Bricks<'_> {
                     let Vertex { x, y, z } = vertices[v as usize];
                     [v + vertex, x.into(), y.into(), z.to_bits()]
                 };
-                let corners = coded::add(numbers.iter().map(corner), &mut made.corners);
+                let corners = row_code::add(numbers.iter().map(corner), &mut made.corners);
                 let numbered = triangles.iter().map(|corners| corners.map(|v| v + vertex));
-                let code = coded::add(numbered, &mut made.triangles);
+                let code = row_code::add(numbered, &mut made.triangles);
                 made.leaves.push(Leaf { cells, triangles: [first, end], code, corners });
             }
         }

@@ -4,8 +4,8 @@
 //! surface by surface. Vertices are named by their index in the survey until a whole surface is put together.
 
 use super::Bricks;
-use super::coded::{Coder, Stretch};
 use super::patch::Values;
+use super::row_code::{Coder, Stretch};
 use super::tiles::Halo;
 use crate::error::InterpError;
 use crate::grow::assemble::CellTriangles;

@@ -1,7 +1,7 @@
 //! The block on a page: one picture or two compared, surfaces and sticks before them, and which is which.
 
 use super::annotation::BlockAnnotation;
-use super::moved::BLOCK;
+use super::label_changes::BLOCK;
 use super::north;
 use super::overlay;
 use super::surfaces::{self, Cells, OPACITY};

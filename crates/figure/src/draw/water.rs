@@ -7,7 +7,7 @@
 //! cut-outs, are drawn again over it: the picture without water, within their outlines.
 
 use super::block::pixels_per_metre;
-use super::seen::Sight;
+use super::sight::Sight;
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use model::StructuralModel;

@@ -1,7 +1,7 @@
 //! What a figure's legend lists: what is seen on it, and nothing else.
 
 use super::Maker;
-use super::prepared::{Prepared, PreparedSection};
+use super::contents::{Prepared, PreparedSection};
 use crate::annotation::Annotation;
 use crate::cut::CutLine;
 use crate::draw::NamedColour;
@@ -9,7 +9,7 @@ use crate::draw::block::Comparison;
 use crate::draw::legend::{Legend, LegendLine};
 use crate::draw::section::{Zoom, contact_pt, quality_stroke};
 use crate::draw::section_wells::TOP_PT;
-use crate::draw::seen::{Seen, seen};
+use crate::draw::sight::{Seen, seen};
 use crate::draw::water::{colour_on_paper, has_water};
 use crate::spec::{BlockPart, Part};
 use crate::style::{FAULT_PT, HORIZON_PT, INK};

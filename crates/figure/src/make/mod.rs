@@ -1,7 +1,7 @@
 //! From what a figure shows to its page: the one way that figures are made.
 
+mod contents;
 mod legend;
-mod prepared;
 mod rock;
 
 use crate::annotation::Annotation;
@@ -13,15 +13,15 @@ use crate::draw::block::{BlockPainter, BlockPanel, Comparison};
 use crate::draw::correlation::CorrelationPanel;
 use crate::draw::map::{MapPanel, title};
 use crate::draw::section::Marks;
-use crate::draw::{NamedColour, colour_bar, moved, north, scale, words};
+use crate::draw::{NamedColour, colour_bar, label_changes, north, scale, words};
 use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
 use crate::map::{HorizonMap, MapSource, Mapped};
 use crate::spec::{BlockPart, CorrelationPart, FencePart, Figure, MapPart, Part, SectionPart};
+use contents::Prepared;
 use glam::DVec2;
 use page::Rect;
 use page::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH};
-use prepared::Prepared;
 use render::{Background, FaceData, Faces, Scene, Unpicked};
 use survey::{StratigraphicHorizon, SurveyGeometry, Well};
 use ttf::{Colour, LayerStyle, RawColour, TextureLibrary};
@@ -152,11 +152,11 @@ pub fn make(
     for panel in &mut panels {
         match panel {
             // A block was changed as its own scene says.
-            Item::Group(panel) if panel.name != moved::BLOCK => moved::change_panel(panel, &labels),
+            Item::Group(panel) if panel.name != label_changes::BLOCK => label_changes::change_panel(panel, &labels),
             _ => {}
         }
     }
-    moved::change(&mut list.items, &labels);
+    label_changes::change(&mut list.items, &labels);
     // The legend explains what is drawn before it.
     panels.append(&mut list.items);
     list.items = panels;
@@ -326,7 +326,7 @@ impl<'a> Maker<'a> {
             let down = (drawn.points_down, self.geometry.vertical.unit.symbol());
             drawn.group.push(scale::drawn(below, Some(drawn.points_per_m), Some(down), &caption));
         }
-        moved::change(&mut drawn.group.items, &part.scene.labels);
+        label_changes::change(&mut drawn.group.items, &part.scene.labels);
         Ok(drawn.group)
     }
 

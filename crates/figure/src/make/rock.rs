@@ -1,7 +1,7 @@
 //! The rock on a section or a fence, as patterns or half of them, and what is written on it.
 
 use super::Maker;
-use super::prepared::{Place, PreparedSection};
+use super::contents::{Place, PreparedSection};
 use crate::annotation::Annotation;
 use crate::cut::station_of;
 use crate::draw::annotation::room::LabelRoom;

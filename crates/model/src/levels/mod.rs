@@ -4,20 +4,20 @@
 //! comes from triangles as their signed distance ([`distance`]), from the points of a series of horizons as one
 //! function for all of them ([`series`]). Sheets stay the fast path for whatever is a height field.
 
-mod cut;
+mod cut_lattice;
 mod distance;
 mod least_squares;
-mod oriented;
+mod point_normals;
 mod rounding;
 mod series;
 mod shape;
 mod silhouette;
 mod tree;
 
-pub use cut::{CutLattice, resampled};
+pub use cut_lattice::{CutLattice, resampled};
 pub use distance::NodeBox;
 pub use least_squares::Equations;
-pub use oriented::surface_through;
+pub use point_normals::surface_through;
 
 use super::network::FaultNetwork;
 use super::report::{ModelError, ModelNote, SurfaceProblem};
@@ -241,7 +241,9 @@ impl LevelSources<'_> {
                 Some(mesh) => mesh.vertices.iter().map(|&v| self.geometry.voxel_from_world(v).as_vec3()).collect(),
                 None => self.picked_nodes(h),
             };
-            let near = |p: &Vec3| p.cmpge(Vec3::splat(-cut::MARGIN)).all() && p.cmple(last + cut::MARGIN).all();
+            let near = |p: &Vec3| {
+                p.cmpge(Vec3::splat(-cut_lattice::MARGIN)).all() && p.cmple(last + cut_lattice::MARGIN).all()
+            };
             let inside: Vec<Vec3> = all.iter().copied().filter(near).collect();
             let name = self.horizons[h].name.clone();
             if inside.is_empty() {

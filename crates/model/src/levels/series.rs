@@ -11,10 +11,10 @@
 //! as implicit geological modelling does (C. Lajaunie, G. Courrioux, L. Manuel, "Foliation fields and 3D cartography in
 //! geology", Mathematical Geology 29(4), 1997; L. Grose et al., "LoopStructural 1.0", Geosci. Model Dev. 14, 2021). The
 //! order alone tells which side is which, so no normals are needed. τ breaks at faults and is one beyond their tips
-//! ([`super::cut::CutLattice`]). It is solved from coarse to fine, then resampled to the voxels.
+//! ([`super::cut_lattice::CutLattice`]). It is solved from coarse to fine, then resampled to the voxels.
 
 use super::LevelSurface;
-use super::cut::{CutLattice, resampled};
+use super::cut_lattice::{CutLattice, resampled};
 use super::least_squares::Equations;
 use crate::FaultNetwork;
 use glam::{DMat3, Vec3};

@@ -3,7 +3,7 @@
 use super::distance::{DistanceSurface, NodeBox, signed_distance};
 use super::rounding::round_off;
 use super::tree::Tree;
-use super::{LevelSurface, cut::MARGIN};
+use super::{LevelSurface, cut_lattice::MARGIN};
 use crate::report::{ModelError, SurfaceProblem};
 use glam::{DMat3, DVec3, Vec3};
 use rayon::prelude::*;

@@ -6,9 +6,9 @@
 //! Space: points of 1/72 inch from the page's upper left corner, x right, y down. Colours are sRGB and are
 //! composited as they are encoded, as PNG, SVG and PDF viewers do.
 
+mod ink_colours;
 mod path;
 mod picture;
-mod printed;
 mod text;
 mod vectors;
 

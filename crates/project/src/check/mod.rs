@@ -16,7 +16,7 @@
 //! | `objects` | the data files that they name |
 //! | `verify` | whether one data file is what was written |
 //! | `dependants` | what is made of a data file |
-//! | `computed` | derived data |
+//! | `derived_data` | derived data |
 //! | `leftovers` | what no state names |
 //! | `repair` | everything that writes |
 //!
@@ -24,8 +24,8 @@
 //!
 //! Deliberately absent: [`crate::Project`], which opens only what is whole.
 
-mod computed;
 mod dependants;
+mod derived_data;
 mod leftovers;
 mod objects;
 mod repair;
@@ -127,7 +127,7 @@ fn examine(root: &Path, lock: Option<&Lock>, progress: &Progress) -> Result<(Che
         }
     }
     report.data_files = objects.len();
-    computed::check(root, &states, &mut report, progress)?;
+    derived_data::check(root, &states, &mut report, progress)?;
     leftovers::find(root, &states, lock, &mut report);
     find_links(root, &mut report);
     if states.has_changed(root) {

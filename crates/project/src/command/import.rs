@@ -1,6 +1,6 @@
 //! Importing and removing volumes.
 
-use super::{Effect, Noun, ProjectError, import_stored};
+use super::{Effect, Noun, ProjectError, stored_volume};
 use crate::content::volume_facts::{self, Facts};
 use crate::document::{Origin, Polarity};
 use crate::folder::{Draft, IMPORTING};
@@ -15,7 +15,7 @@ use survey::{Note, Progress, SurveyGeometry};
 use system::file::FileAction;
 
 /// Reads a volume into the project: a SEG-Y file, or a folder in which a volume is stored as this program stores them
-/// (see `import_stored.rs`). The first volume defines the survey geometry; others must lie in it.
+/// (see `stored_volume.rs`). The first volume defines the survey geometry; others must lie in it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ImportVolume {
     /// The file or folder.
@@ -72,7 +72,7 @@ impl ImportVolume {
         let name = self.name_in(draft);
         draft.document.check_new_name(Noun::Volume, &name)?;
         if self.path.is_dir() {
-            return import_stored::execute(self, name, draft, progress);
+            return stored_volume::execute(self, name, draft, progress);
         }
         let file = SegyFile::open(&self.path, &self.options, progress)?;
         let geometry = file.geometry()?;

@@ -1,6 +1,6 @@
 //! The fault blocks, stored as `blocks-KEY.bin`: computing them takes longer than everything else that one pick needs.
 
-use super::kept::{Kind, damaged, read_array, read_header, write_header};
+use super::file::{Kind, damaged, read_array, read_header, write_header};
 use super::{key_of, revision};
 use crate::content;
 use crate::document::Document;

@@ -1,6 +1,6 @@
 //! Storage of the parameterization: `grids-KEY.bin` and `parameterization.zarr`.
 
-use super::kept::{Kind, damaged, read_array, read_header, write_header};
+use super::file::{Kind, damaged, read_array, read_header, write_header};
 use super::{Scratch, key_of, revision};
 use crate::document::Document;
 use crate::error::ProjectError;

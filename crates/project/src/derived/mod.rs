@@ -14,8 +14,8 @@
 //! disk is full, the project is read-only) is used all the same.
 
 mod blocks;
+mod file;
 mod grids;
-mod kept;
 pub mod revision;
 mod scratch;
 
@@ -24,7 +24,7 @@ pub use blocks::{FaultBlocks, keep_blocks, load_blocks};
 pub use grids::{holds_volumes, keep_grids, load_grids, volumes_path};
 pub(crate) use grids::{keep_volumes, load_volumes, model_key, parameterization_key, voxels_of};
 
-pub(crate) use kept::verify_kept;
+pub(crate) use file::verify_kept;
 pub(crate) use scratch::{RESUMABLE, Scratch, abandoned, remove_leftovers, remove_resumable};
 
 use serde::Serialize;

@@ -6,8 +6,8 @@
 //! samples, the settings. The number of inlines that are read at a time is not part of it. Candidates lie on
 //! the project's own lattice, so that their voxels are the project's voxels.
 
-use super::bricked::BrickedExtraction;
-pub use super::bricked::{ExtractionPlan, SharedExtraction};
+use super::bricks::BrickedExtraction;
+pub use super::bricks::{ExtractionPlan, SharedExtraction};
 use crate::content;
 use crate::derived::{Scratch, key_of, remove_resumable, revision};
 use crate::document::{Document, VolumeEntry};

@@ -4,7 +4,7 @@
 //! Commands, the window and the demonstration make horizons from picks only through [`assembly`].
 
 pub mod assembly;
-mod bricked;
+mod bricks;
 pub mod candidates;
 pub mod extraction;
 pub(crate) mod finish;

@@ -15,7 +15,7 @@ use glam::Vec3;
 use model::{ModelSettings, StructuralModel};
 use param::{ComputeCost, PackedVolume, Parameterization, RegionGrid, VoxelParameterization};
 use render::distortion::{self, LayerDistortion};
-use render::touched::Places;
+use render::places::Places;
 use render::{DrawnWell, FaceData, Inputs, Lookup, Media, NamedVolume, RenderError, Scene};
 use std::path::Path;
 use std::sync::{Arc, OnceLock};

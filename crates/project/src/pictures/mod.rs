@@ -14,17 +14,17 @@
 mod certainty;
 pub mod figures;
 mod horizon_distance;
+mod lattice;
 pub mod load;
 mod motion;
 mod painter;
-mod sampled;
 pub mod scene;
 mod shown_candidates;
 mod volumes;
 mod wells;
 
 pub use certainty::{PickedShare, sparse_sentences};
+pub use lattice::sampling_threads;
 pub use motion::Motion;
 pub use painter::{Device, Painter, write_png};
-pub use sampled::sampling_threads;
 pub use shown_candidates::{LeafFacts, ShownCandidates};

@@ -9,7 +9,7 @@ use crate::facts::{Facts, Query};
 use crate::placement;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
-use render::touched::Places;
+use render::places::Places;
 use render::{NamedVolume, Samples, VoxelBox};
 use std::ops::Range;
 use std::sync::Arc;

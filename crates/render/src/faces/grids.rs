@@ -13,7 +13,7 @@ use super::layout::GridInfo;
 use crate::error::RenderError;
 use crate::gpu::Gpu;
 use crate::outline::solid::{Face, faces};
-use crate::resolved::{ResolvedScene, shows_depths};
+use crate::resolved_scene::{ResolvedScene, shows_depths};
 use glam::DVec3;
 use model::StructuralModel;
 use param::{Parameterization, RegionGrid, SheetRef, SheetSource};

@@ -3,7 +3,7 @@
 //! A test reads the WGSL with naga and compares every offset.
 
 use crate::face_map::FaceMap;
-use crate::resolved::ResolvedScene;
+use crate::resolved_scene::ResolvedScene;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
 use survey::block::{MAX_BODIES, MAX_PLANES};

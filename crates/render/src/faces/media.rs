@@ -14,7 +14,7 @@ use crate::media::light_grid::{LightGrid, cells_from_voxel};
 use crate::media::medium::{FieldMedium, Zone};
 use crate::media::table::{ENTRIES, FunctionTable};
 use crate::media::{Faces, MAX_MEDIA, Scope, Shading};
-use crate::resolved::ResolvedScene;
+use crate::resolved_scene::ResolvedScene;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Mat3, Vec3};
 use ttf::tables::NONE;

@@ -19,13 +19,13 @@ mod textures;
 mod tile;
 mod volumes;
 
+use crate::cache::Kept;
 use crate::error::RenderError;
 use crate::gpu::Gpu;
 use crate::inputs::Inputs;
-use crate::kept::Kept;
-use crate::media::interleaved::{halves, interleave};
+use crate::media::stripes::{halves, interleave};
 use crate::outline::draw::draw as draw_outlines;
-use crate::resolved::{Flat, MAX_VOLUMES, ResolvedScene};
+use crate::resolved_scene::{Flat, MAX_VOLUMES, ResolvedScene};
 use crate::scene::{Lookup, Scene};
 use ::model::StructuralModel;
 use grids::{GridBuffers, VisibleParts};

@@ -139,7 +139,7 @@ fn constants_are_the_same() {
         ("NO_DATA_BELOW", f64::from(samples::NO_DATA_BELOW)),
         ("SPENT", f64::from(march::SPENT)),
         ("SOFT", f64::from(crate::media::shell::SOFT)),
-        ("BRICK", crate::media::prepared::BRICK as f64),
+        ("BRICK", crate::media::preparation::BRICK as f64),
         ("MIXED", f64::from(crate::media::bricks::MIXED)),
         ("HORIZON_WORDS", HORIZON_WORDS as f64),
         ("HALF_WIDTH", f64::from(leaves::HALF_WIDTH)),

@@ -11,7 +11,7 @@
 //! 32-bit word: the distance for the surroundings in bits 0–7, for the cut-outs in bits 8–15, and in bits
 //! 16–23 the layer if the brick lies in a single one, else `MIXED`.
 
-use super::prepared::BRICK;
+use super::preparation::BRICK;
 use super::{LayerOpacity, Medium, MediumColour};
 use crate::ground::air_layer;
 use glam::Vec3;

@@ -6,9 +6,9 @@
 use super::bricks::{BrickContent, Bricks, LayerAppearance, LayerMap, MIXED};
 use super::horizons::FieldHorizons;
 use super::isosurface::{FieldIsosurface, StratigraphicDepth};
-use super::lit::Lit;
 use super::medium::{FieldMedium, Zone};
-use super::prepared::Preparations;
+use super::phong::Lit;
+use super::preparation::Preparations;
 use super::samples::NO_DATA_BELOW;
 use super::table::{FunctionTable, extinction};
 use super::{EmptySpace, Faces, IsosurfaceSource, Media, Phong, Scope, Shading, white_ramp};

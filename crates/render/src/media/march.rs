@@ -15,7 +15,7 @@ use super::Faces;
 use super::field::{Matter, MediaField};
 use super::light::LightVolume;
 use super::medium::Zone;
-use super::prepared::BRICK;
+use super::preparation::BRICK;
 use super::stretches::{Stretch, stretches};
 use super::table::absorbed;
 use crate::visible::{Ray, Solid};

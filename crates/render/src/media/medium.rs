@@ -2,7 +2,7 @@
 //! linear colours.
 
 use super::bricks::{LayerAppearance, MIXED};
-use super::prepared::Prepared;
+use super::preparation::Prepared;
 use super::samples::VolumeSamples;
 use super::table::FunctionTable;
 use crate::inputs::NamedVolume;

@@ -9,7 +9,7 @@ use super::underlay::underlay;
 use super::{NOMINAL_SIDE_PX, Unpicked};
 use crate::ground::{air_layer, is_air};
 use crate::media::Faces;
-use crate::resolved::{ResolvedInterpretation, ResolvedScene};
+use crate::resolved_scene::{ResolvedInterpretation, ResolvedScene};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use model::section::{LineKind, LineQuality, SectionPlane};

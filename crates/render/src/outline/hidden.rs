@@ -6,7 +6,7 @@
 
 use crate::camera::View;
 use crate::media::march::gather;
-use crate::resolved::ResolvedScene;
+use crate::resolved_scene::ResolvedScene;
 use crate::shade::{Start, first_hit};
 use crate::visible::Ray;
 use glam::{DVec2, DVec3};

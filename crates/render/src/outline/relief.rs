@@ -8,7 +8,7 @@
 use super::NOMINAL_SIDE_PX;
 use super::hidden::{IN_FRONT, covered_by, seen_parts};
 use crate::ground::{air_layer, is_air};
-use crate::resolved::{ResolvedInterpretation, ResolvedScene};
+use crate::resolved_scene::{ResolvedInterpretation, ResolvedScene};
 use glam::{DVec2, DVec3, I64Vec2, Vec3};
 use model::LevelSurface;
 use rayon::prelude::*;

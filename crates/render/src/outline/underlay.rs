@@ -5,7 +5,7 @@
 //! in linear light as the media are.
 
 use super::stroke::stroke_lines;
-use crate::resolved::ResolvedScene;
+use crate::resolved_scene::ResolvedScene;
 use crate::shade::{encoded, linear};
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgba, RgbaImage};

@@ -1,6 +1,6 @@
 //! The faces of a scene as areas: one for each connected piece of a layer.
 
-use super::cut::Outline;
+use super::outline::Outline;
 use super::pattern::{FacePattern, Tile};
 use super::visible::{HiddenParts, SeenFace, hidden_parts, seen_faces, seen_pieces};
 use super::{AreaFill, PatternPart, VectorArea};
@@ -9,7 +9,7 @@ use crate::error::RenderError;
 use crate::ground::air_layer;
 use crate::outline::solid::Face;
 use crate::pattern_size::Frequencies;
-use crate::resolved::{ResolvedInterpretation, ResolvedScene};
+use crate::resolved_scene::{ResolvedInterpretation, ResolvedScene};
 use glam::DVec2;
 use model::Region;
 use model::section::{Section, SectionPlane};

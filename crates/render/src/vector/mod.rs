@@ -14,9 +14,9 @@
 //!
 //! Space: pixels of the scene, x right and y down.
 
-mod cut;
 mod face;
 mod join;
+mod outline;
 mod over;
 mod pattern;
 mod sections;
@@ -26,13 +26,13 @@ mod visible;
 pub use sections::{SeenSection, sections_of, seen_sections};
 pub(crate) use visible::rock_cells;
 
+use crate::cache::Kept;
 use crate::error::RenderError;
 use crate::inputs::Inputs;
-use crate::kept::Kept;
 use crate::leaves::FaceData;
 use crate::media::Faces;
 use crate::outline::draw::OutlineLines;
-use crate::resolved::ResolvedScene;
+use crate::resolved_scene::ResolvedScene;
 use crate::scene::Scene;
 use face::face_areas;
 use glam::DVec2;

@@ -5,7 +5,7 @@
 //! ground costs about a ray a pixel, and faces are never shaded.
 
 use crate::error::RenderError;
-use crate::resolved::ResolvedScene;
+use crate::resolved_scene::ResolvedScene;
 use crate::shade::over_rock;
 use glam::{DVec2, Vec3};
 use image::{Rgba, RgbaImage};

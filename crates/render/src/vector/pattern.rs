@@ -9,7 +9,7 @@
 use super::typical::{most_frequent, typical};
 use super::{PatternPaint, Polyline};
 use crate::face_map::FaceMap;
-use crate::resolved::{ResolvedInterpretation, ResolvedScene};
+use crate::resolved_scene::{ResolvedInterpretation, ResolvedScene};
 use glam::{DMat2, DVec2, Vec3};
 use model::Region;
 use model::section::{SectionPlane, band};

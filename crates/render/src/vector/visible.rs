@@ -7,7 +7,7 @@
 //! Over a relief a piece may be partly air; there nothing is cut off, and what the rock of nearer faces hides is said in
 //! outlines ([`hidden_parts`]).
 
-use super::cut::clipped;
+use super::outline::clipped;
 use crate::camera::View;
 use crate::outline::solid::{Face, faces, is_rock};
 use crate::visible::Solid;

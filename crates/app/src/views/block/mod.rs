@@ -12,7 +12,7 @@ pub(crate) use compare::{panes, rule};
 
 use super::lasso::{self, LassoLine};
 use super::overlay::Overlay;
-use super::pointed::{self, Pointed};
+use super::pointer::{self, Pointed};
 use super::texture;
 use crate::state::faces::{self, Handle};
 use crate::state::{Action, Compare, Lasso, LassoOn, Look, Panel, PickingStep, Session, State, showing};
@@ -165,7 +165,7 @@ impl BlockView {
         let pointed = response
             .hover_pos()
             .filter(|_| !self.hand.is_closed())
-            .and_then(|at| pointed::on_block(rocks?, &shown, size, dvec(at - pane.min)));
+            .and_then(|at| pointer::on_block(rocks?, &shown, size, dvec(at - pane.min)));
         if let (true, Some((how, at)), Some(rocks)) = (is_clear(session), lasso::pick_at(ui, &response, session), rocks)
         {
             // In volume rendering the place that was clicked may lie anywhere behind the face.

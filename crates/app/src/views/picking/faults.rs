@@ -2,7 +2,7 @@
 
 use super::{go, palette};
 use crate::state::{Action, PickingStep, Session, Tool};
-use crate::views::named::colour;
+use crate::views::names::colour;
 use crate::widgets::obstacle::{needs, unless};
 use crate::work::{Interpreted, Job, RunningLine};
 use eframe::egui::{Button, Label, TextEdit, Ui};

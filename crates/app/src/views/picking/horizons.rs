@@ -3,7 +3,7 @@
 use super::go;
 use super::palette::palette;
 use crate::state::{Action, PickingStep, Session};
-use crate::views::named::{NameField, colour, remove};
+use crate::views::names::{NameField, colour, remove};
 use crate::widgets::obstacle::{needs, unless};
 use crate::work::{Interpreted, InterpretedHorizon};
 use eframe::egui::{Button, CollapsingHeader, DragValue, RichText, TextEdit, Ui};

@@ -12,7 +12,7 @@ pub(crate) use lines::{entry_colour, name_across};
 
 use super::lasso::{self, LassoLine};
 use super::overlay::{Overlay, stick_point};
-use super::pointed::{self, Pointed};
+use super::pointer::{self, Pointed};
 use super::texture;
 use crate::state::{
     Action, Lasso, LassoOn, Layout, Panel, PickingStep, SectionKind, SectionVolumes, Session, StickPoint, Tool,
@@ -183,7 +183,7 @@ impl Sections {
         } else {
             lasso::click(ui, &response, session, voxel, actions);
         }
-        Some(pointed::at_voxel(rocks?, voxel.as_vec3(), Some(kind.axis())))
+        Some(pointer::at_voxel(rocks?, voxel.as_vec3(), Some(kind.axis())))
     }
 }
 

@@ -6,7 +6,7 @@
 //! of several states to follow, or selections to draw, only the last counts. Extracting and proposing faults take long
 //! and run on threads and processors of their own. Places are voxels unless stated otherwise.
 
-mod followed;
+mod subject;
 
 use super::orders::snapshot;
 use super::running::{Job, Running};
@@ -14,7 +14,6 @@ use super::{Event, Outbox, compute_apart, keep_working, spawn};
 use crate::state::picking::Pick;
 use crate::state::{Notice, PickingStep, PickingTask, Place, Snapshot};
 use figure::interpretation::{DrawnInterpretation, FaultMesh, PickedSheets, SheetHole, TraceSheet};
-use followed::Followed;
 use glam::DVec3;
 use interp::ExtractReport;
 use interp::assembly::{ClimbSettings, highest_valid, selected_leaves};
@@ -36,6 +35,7 @@ use project::pictures::PickedShare;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
+use subject::Followed;
 use survey::{Fault, Progress, SurveyGeometry};
 use ttf::Colour;
 

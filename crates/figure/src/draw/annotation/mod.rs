@@ -18,8 +18,8 @@ pub(crate) use faces::{FaceLabels, FaceWriter, leader};
 pub(crate) use names::turning;
 pub(crate) use room::{LabelRoom, outlines};
 
-use super::moved::ON_BLOCK;
-use super::seen::Sight;
+use super::label_changes::ON_BLOCK;
+use super::sight::Sight;
 use super::vector_block::BlockNames;
 use crate::annotation::Annotation;
 use crate::convex::{area, within};

@@ -5,7 +5,7 @@
 
 use super::Placed;
 use super::room::LabelRoom;
-use crate::draw::seen::Sight;
+use crate::draw::sight::Sight;
 use crate::style::{FRAME_PT, INK, NUMBER_PT, TEXT_PT};
 use glam::{DVec2, DVec3};
 use page::list::{Across, Group, GroupKind, Ink, Path, PathItem, Stroke, Text, Upright};

@@ -1,7 +1,7 @@
 //! Files that are damaged, or are something else. Whatever the bytes, an error, never a panic.
 
 use super::super::{SegyOptions, SegyProblem, WriteOptions, read, scan, write};
-use super::built::{Built, with_file};
+use super::builder::{Built, with_file};
 use survey::geometry::{SurveyGeometry, VerticalUnit};
 use survey::progress::Progress;
 use survey::volume::Volume;

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::super::{Candidate, KeptDuplicate, LengthUnit, SegyInfo, SegyOptions, SegyProblem, Verdict};
-use super::built::{Built, Trace};
+use super::builder::{Built, Trace};
 use survey::remedy::{Note, Setting};
 
 pub(super) fn has(notes: &[Note], words: &str) -> bool {

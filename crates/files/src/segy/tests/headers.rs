@@ -4,7 +4,7 @@ use super::super::{
     ByteOrder, FileUnit, LengthUnit, LineSource, NumberType, SampleFormat, SegyOptions, SegyProblem, TextEncoding,
     TraceWeight, scan,
 };
-use super::built::{Built, SAMPLES, Trace, with_file};
+use super::builder::{Built, SAMPLES, Trace, with_file};
 use survey::progress::Progress;
 use survey::remedy::{Note, Setting};
 

@@ -1,11 +1,11 @@
 //! Whole files: real ones, round trips, and everything that can be wrong.
 
 mod broken;
-mod built;
+mod builder;
 mod detection;
 mod doubts;
-mod expected;
 mod headers;
 mod numberless;
 mod properties;
+mod reference_reader;
 mod round_trip;

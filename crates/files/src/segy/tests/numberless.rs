@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::super::{LineSource, NumberType, SegyInfo, SegyOptions, SegyProblem};
-use super::built::{Built, Trace};
+use super::builder::{Built, Trace};
 
 const ORIGIN: DVec2 = DVec2::new(605_000.0, 6_073_000.0);
 

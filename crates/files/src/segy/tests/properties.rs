@@ -5,7 +5,7 @@
 use glam::DVec2;
 
 use super::super::{ByteOrder, SampleFormat, SegyOptions, SegyProblem, ibm_from_f32, read, scan};
-use super::built::with_file;
+use super::builder::with_file;
 use survey::progress::Progress;
 
 struct Random(u64);

@@ -1,6 +1,6 @@
 //! Kept parameterizations.
 
-use super::super::kept::KEPT;
+use super::super::file::KEPT;
 use super::*;
 use glam::Vec3;
 use std::fs::{self, File};

@@ -33,7 +33,7 @@ use image::RgbaImage;
 use interpreter::InterpreterPicks;
 use page::FileFormat;
 use page::list::DisplayList;
-use render::touched::Places;
+use render::places::Places;
 use render::vector::{VectorBlock, vectors};
 use render::{FaceData, Faces, Media, RenderError, Scene};
 use std::path::PathBuf;

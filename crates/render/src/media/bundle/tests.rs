@@ -1,11 +1,11 @@
 //! A bundle of rays gives the same result as each ray alone.
 
 use super::*;
+use crate::cache::Kept;
 use crate::inputs::{Inputs, NamedVolume};
-use crate::kept::Kept;
 use crate::media::light_grid::Asked;
 use crate::media::{EmptySpace, LayerOpacity, Media, Medium, MediumColour, Occlusion, Phong};
-use crate::resolved::ResolvedScene;
+use crate::resolved_scene::ResolvedScene;
 use crate::{Camera, Projection, Scene, VoxelBox};
 use glam::DVec2;
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};

@@ -1,13 +1,13 @@
 //! The light does not depend on what is skipped or on the code path that computes it.
 
 use super::*;
+use crate::cache::Kept;
 use crate::inputs::{Inputs, NamedVolume};
-use crate::kept::Kept;
 use crate::media::light::LightVolume;
 use crate::media::light_grid::Asked;
 use crate::media::{LayerOpacity, MediumColour};
 use crate::media::{Media, Medium, Occlusion, Shading, white_ramp};
-use crate::resolved::ResolvedScene;
+use crate::resolved_scene::ResolvedScene;
 use crate::{Camera, Projection, Scene};
 use survey::{SurveyGeometry, VerticalUnit, Volume};
 

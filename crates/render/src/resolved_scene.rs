@@ -1,10 +1,10 @@
 //! A scene and its inputs, checked and with all names resolved: the starting point of both renderers.
 
+use crate::cache::{Kept, Shapes};
 use crate::camera::View;
 use crate::error::RenderError;
 use crate::ground::{self, Relief};
 use crate::inputs::{CandidateVolume, Inputs, NamedVolume};
-use crate::kept::{Kept, Shapes};
 use crate::leaves::FaceData;
 use crate::media::field::MediaField;
 use crate::media::{Faces, IsosurfaceSource};

@@ -9,10 +9,10 @@
 //! Where horizons are no height fields, i and j become an unfolding and k stays the share of the distances from both
 //! surfaces.
 
+use crate::columns::RegionColumns;
 use crate::grid::{PINCHED, RegionGrid};
 use crate::metric::Metric;
 use crate::plan::{Method, Planner};
-use crate::touched::RegionColumns;
 use crate::unfold::Unfolded;
 use crate::voxels::{NO_REGION, corner_aligned};
 use crate::{KDefinition, LayerModel, ParamError, ParamSettings, Parameterization, Region, VoxelParameterization};

@@ -1,9 +1,10 @@
-//! i and j followed once more along ∇k, where k was changed after they were found ([`crate::joined`]).
+//! i and j followed once more along ∇k, where k was changed after they were found ([`crate::tips`]).
 //!
 //! Curves are traced as for a flow ([`crate::flow::lines`]), on the columns and levels of the grid, but only where one can
 //! have passed a column that was changed; elsewhere i and j stay. They also stay where the grid is not computed on all
 //! sides, and beside creases, which curves do not pass.
 
+use crate::columns::RegionColumns;
 use crate::compute::level_range;
 use crate::flow::lines;
 use crate::flow::sigma::{FlowLattice, SigmaLayer};
@@ -11,7 +12,6 @@ use crate::grid::PINCHED;
 use crate::layer::LayerKind;
 use crate::metric::Metric;
 use crate::plan::Method;
-use crate::touched::RegionColumns;
 use crate::{LayerModel, RegionGrid};
 use survey::{Cancelled, Progress};
 

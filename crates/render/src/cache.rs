@@ -2,7 +2,7 @@
 //! every picture.
 
 use crate::ground::Heights;
-use crate::media::prepared::Preparations;
+use crate::media::preparation::Preparations;
 use glam::{DVec3, Vec3};
 use model::StructuralModel;
 use model::section::{Section, SectionPlane};

@@ -18,7 +18,7 @@ const PARALLEL: f32 = 1e-6;
 ///
 /// ```
 /// use glam::{Vec2, Vec3};
-/// use render::touched::Places;
+/// use render::places::Places;
 ///
 /// let mut places = Places::default();
 /// places.add_plane(Vec3::Z, 7.0, [Vec3::ZERO, Vec3::splat(20.0)]);

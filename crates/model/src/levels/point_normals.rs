@@ -12,7 +12,7 @@
 //! Computer Graphics Forum 30(1), 2011), on a lattice as [`super::series`]. Its surface f = 0 is taken near the points, by
 //! tetrahedra.
 
-use super::cut::{CutLattice, MARGIN, resampled};
+use super::cut_lattice::{CutLattice, MARGIN, resampled};
 use super::distance::NodeBox;
 use super::least_squares::Equations;
 use super::problem;

@@ -10,14 +10,14 @@
 //! d is the distance from a fault between the two, e how far inside its tip line a place lies (negative beyond), L the
 //! length of [`LENGTH`] columns; h is the vertical distance from a horizon of the layer and t the horizon's throw there.
 //! On the continuation of a fault both have the same mean, and a pattern goes on. The mean of k bends, so i and j are followed
-//! along it once more ([`crate::retraced`]): averaged beside it they were up to three degrees off. Along the fault it begins to break within
+//! along it once more ([`crate::retrace`]): averaged beside it they were up to three degrees off. Along the fault it begins to break within
 //! L of the tip line. On a horizon that the fault breaks nothing changes.
 
+use crate::columns::RegionColumns;
 use crate::flow::calm::mean_around;
 use crate::metric::Metric;
 use crate::plan::{Method, horizons};
-use crate::touched::RegionColumns;
-use crate::{LayerModel, RegionGrid, retraced};
+use crate::{LayerModel, RegionGrid, retrace};
 use glam::Vec3;
 use model::{FaultNetwork, FaultSurface};
 use rayon::prelude::*;
@@ -172,7 +172,7 @@ pub(crate) fn join<M: LayerModel + ?Sized>(
     }
     for ((grid, of), changed) in grids.iter_mut().zip(columns).zip(&changed) {
         if let &Some((columns, method)) = of {
-            retraced::retrace(model, metric, grid, method, columns, changed, progress)?;
+            retrace::retrace(model, metric, grid, method, columns, changed, progress)?;
         }
     }
     let by_distance = |of: &(&RegionColumns, Method)| matches!(of.1, Method::Closest(_));
