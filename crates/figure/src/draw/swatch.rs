@@ -153,21 +153,46 @@ fn least_cut(drawing: &TileDrawing, tile_pt: DVec2, band: Rect) -> DVec2 {
     let px = |pt: f64| (pt * EDGE_PX_PER_PT).round() as i64;
     let (columns, rows) = (px(band.width()), px(band.height()));
     let edge = px(EDGE_PT[0])..px(EDGE_PT[1]);
-    // Pixels just within the four sides, right and down of the band's upper left corner.
-    let along_rows = edge.clone().flat_map(|n| (0..columns).flat_map(move |x| [(x, n), (x, rows - 1 - n)]));
-    let along_columns = edge.flat_map(|n| (0..rows).flat_map(move |y| [(n, y), (columns - 1 - n, y)]));
-    let sides: Vec<(i64, i64)> = along_rows.chain(along_columns).collect();
+    let dark = |x: i64, y: i64| 255 - u64::from(inked.get_pixel(x as u32, y as u32).0[0]);
+    let along_rows: Vec<_> = (0..height).map(|y| RunningSum::of((0..width).map(|x| dark(x, y)))).collect();
+    let along_columns: Vec<_> = (0..width).map(|x| RunningSum::of((0..height).map(|y| dark(x, y)))).collect();
+    // Of the pixels just within the four sides.
     let ink = |(right, down): (i64, i64)| -> u64 {
-        let dark = |(x, y): &(i64, i64)| {
-            let [x, y] = [(x - right).rem_euclid(width), (y - (rows - height) - down).rem_euclid(height)];
-            255 - u64::from(inked.get_pixel(x as u32, y as u32).0[0])
-        };
-        sides.iter().map(dark).sum()
+        let [left, top] = [(-right).rem_euclid(width), (height - rows - down).rem_euclid(height)];
+        let row = |y: i64| along_rows[(top + y).rem_euclid(height) as usize].cyclic(left, columns);
+        let column = |x: i64| along_columns[(left + x).rem_euclid(width) as usize].cyclic(top, rows);
+        edge.clone().map(|n| row(n) + row(rows - 1 - n) + column(n) + column(columns - 1 - n)).sum()
     };
     let step = px(0.5).max(1) as usize;
     let places = (0..height).step_by(step).flat_map(|down| (0..width).step_by(step).map(move |right| (right, down)));
     let (right, down) = places.min_by_key(|place| ink(*place)).unwrap_or_default();
     corner + DVec2::new(right as f64, down as f64) / EDGE_PX_PER_PT
+}
+
+/// The sums of the first values of a list, from none of them to all.
+struct RunningSum(Vec<u64>);
+
+impl RunningSum {
+    fn of(values: impl Iterator<Item = u64>) -> Self {
+        let mut sums = vec![0];
+        sums.extend(values.scan(0, |sum, value| {
+            *sum += value;
+            Some(*sum)
+        }));
+        Self(sums)
+    }
+
+    /// The sum of `count` values from `first` on, where the list begins anew behind its end.
+    fn cyclic(&self, first: i64, count: i64) -> u64 {
+        let (values, first) = (self.0.len() - 1, first as usize);
+        let (laps, rest) = (count as usize / values, count as usize % values);
+        let (all, last) = (self.0[values], first + rest);
+        let part = match last.checked_sub(values) {
+            None => self.0[last] - self.0[first],
+            Some(over) => all - self.0[first] + self.0[over],
+        };
+        laps as u64 * all + part
+    }
 }
 
 /// Samples a pixel along each axis.
@@ -227,6 +252,18 @@ pub fn draw(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_sum_round_a_list_is_that_of_its_values() {
+        let values = [7, 0, 255, 31, 4];
+        let sums = RunningSum::of(values.into_iter());
+        for first in 0..values.len() {
+            for count in 0..17 {
+                let expected: u64 = (first..first + count).map(|n| values[n % values.len()]).sum();
+                assert_eq!(sums.cyclic(first as i64, count as i64), expected, "{count} from {first}");
+            }
+        }
+    }
 
     /// The same swatch as paths and as texels, in a lattice of blocks of pixels.
     #[test]
