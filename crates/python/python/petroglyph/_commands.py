@@ -40,6 +40,7 @@ class Commands:
         name: str | None = None,
         polarity: Literal["normal", "reverse"] = "normal",
         options: Options | None = None,
+        origin: Options | None = None,
         memory: int | None = None,
         progress: Progress | None = None,
     ) -> Effect:
@@ -55,12 +56,14 @@ class Commands:
             What a positive amplitude means.
         options : mapping, optional
             What is stated about the file: ``inline_byte``, ``crossline_byte``, ``x_byte``, ``y_byte`` and so on.
+        origin : mapping, optional
+            Where a stored volume came from, such as ``{"kind": "array"}``; by default from its folder.
         memory : int, optional
             Memory to use, bytes; by default half of what is available.
         progress : callable, optional
             Called as ``progress(stage, done, total)``.
         """
-        fields = _given(path=os.fspath(path), name=name, polarity=polarity, options=options)
+        fields = _given(path=os.fspath(path), name=name, polarity=polarity, options=options, origin=origin)
         return self.apply({"import": fields}, memory=memory, progress=progress)
 
     def attribute(
