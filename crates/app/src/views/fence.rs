@@ -73,12 +73,14 @@ impl FenceView {
             }
         }
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click());
-        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Fence section"));
         let body = body_of(whole);
         if !body.is_positive() {
             return None;
         }
-        self.paint(ui, session, whole, overlay)?;
+        let painted = self.paint(ui, session, whole, overlay);
+        let label = if painted.is_some() { "Fence section" } else { "The fence section is being cut" };
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, label));
+        painted?;
         let length = stations(&corners).last().copied().unwrap_or(1.0).max(1e-6);
         let depth = geometry.size()[2].saturating_sub(1).max(1) as f64;
         let pointer = response.hover_pos().filter(|pointer| body.contains(*pointer))?;

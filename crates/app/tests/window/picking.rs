@@ -316,6 +316,7 @@ fn corners_clicked_on_the_slice_make_a_fence_that_takes_picks() {
     click(&mut harness, "Remove last corner");
     assert_eq!(state(&harness).session.as_ref().unwrap().view.fence.len(), 2);
     // What is clicked on the fence is picked as on any section.
+    wait(&mut harness, "the shorter fence is cut", |harness| harness.query_by_label("Fence section").is_some());
     click_in(&mut harness, "Fence section", [10.0, 10.0], Modifiers::NONE);
     wait(&mut harness, "a leaf is selected", |harness| picking(harness).pick.is_some());
 }
