@@ -9,7 +9,7 @@ use super::placement::{self, PlacedPoints, voxel_xy};
 use super::raster;
 use super::raw::{RawPoint, RawShape, RawSurface};
 use super::report::{Gridding, ImportReport, Settled};
-use super::scatter;
+use super::scatter::{self, SAME_DEPTH};
 use super::sheets::{self, Crowded, MAX_DEPTHS, NodeValues};
 use super::surface_kind::{self, MeshKind};
 use super::vertical::VerticalRule;
@@ -21,9 +21,6 @@ use survey::geometry::SurveyGeometry;
 use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
 use survey::mesh::TriangleMesh;
 use survey::remedy::{Note, Setting};
-
-/// Depths at one node that differ by less than this, in samples, are the same depth given twice.
-const SAME_DEPTH: f64 = 0.05;
 
 /// Memory that a horizon takes for each trace of the survey while it is put there.
 const BYTES_A_TRACE: usize = 24;

@@ -51,6 +51,7 @@
 //!
 //! To add a format: one file with a `CODEC`, one variant of [`Format`], one line in `CODECS`.
 
+mod block_fit;
 mod charisma;
 mod column;
 mod columns;
@@ -98,12 +99,14 @@ mod write;
 mod zmap;
 mod zmap_points;
 
+pub use block_fit::{BlockFit, fit_blocks};
 pub use column::Column;
 pub use describe::{FileDescription, SurfaceDescription, describe};
 pub use error::{FormatError, HorizontalExtent};
 pub use export::{ExportOptions, ExportReport, WhenRotated};
 pub use options::{HorizonShape, ImportOptions, PlaceBy, ValueOrder};
 pub use report::{Gridding, ImportReport, Provenance, Settled};
+pub use scatter::grid_points;
 pub use unit::{ZPositive, ZUnit};
 
 use glam::DVec3;

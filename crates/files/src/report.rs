@@ -82,6 +82,17 @@ pub enum Gridding {
         /// Number of nodes between points.
         filled: usize,
     },
+    /// Scattered points, fitted fault block by fault block.
+    FaultBlocks {
+        /// Number of points of each fault block that has any.
+        points: Vec<usize>,
+        /// Gaps into which a circle of this radius fits without containing a point stay holes, m.
+        gap_m: f64,
+        /// Number of nodes at a point.
+        picked: usize,
+        /// Number of nodes between points.
+        filled: usize,
+    },
     /// Triangles, sampled at the survey's traces.
     Rasterised {
         /// Count of triangles.
@@ -204,6 +215,18 @@ impl fmt::Display for Gridding {
                  gaps wider than {:.1} m stay holes",
                 2.0 * gap_m
             ),
+            Self::FaultBlocks { points, gap_m, picked, filled } => {
+                let each: Vec<String> = points.iter().map(usize::to_string).collect();
+                let blocks = if points.len() == 1 { "" } else { "s" };
+                write!(
+                    f,
+                    "scattered points fitted in {} fault block{blocks} ({} points), with the throw kept along the faults: \
+                     {picked} at points, {filled} between; gaps wider than {:.1} m stay holes",
+                    points.len(),
+                    each.join(", "),
+                    2.0 * gap_m
+                )
+            }
             Self::Rasterised { triangles } => write!(f, "{triangles} triangles sampled at the survey's traces"),
             Self::Sticks { sticks } => write!(f, "{sticks} sticks joined by triangles"),
             Self::PlaneFit { rms_m } => {

@@ -12,11 +12,11 @@
 //! others are `Filled`. The default gap is twice the median length of a triangle's side, which bridges random
 //! thinning and keeps real gaps.
 
-use super::placement::world_xy;
+use super::placement::{voxel_xy, world_xy};
 use super::raster;
 use super::sheets::{self, Crowded, NodeValues};
 use delaunator::{Point, triangulate};
-use glam::{DMat2, DVec2};
+use glam::{DMat2, DVec2, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use survey::geometry::{SurveyGeometry, VerticalUnit};
@@ -25,6 +25,9 @@ use survey::horizon::{NodeGrid, Quality, Sheet};
 /// How far the surface may leave the range of a triangle's corners, as a share of that range: enough for the
 /// crest of a fold, and no ringing beside a fault.
 const OVERSHOOT: f64 = 0.25;
+
+/// Depths at one place that differ by less than this, in samples, are the same depth given twice.
+pub(super) const SAME_DEPTH: f64 = 0.05;
 
 /// Points gridded onto the survey's traces.
 pub(super) struct Gridded {
@@ -89,7 +92,7 @@ fn outliers(world: &[DVec2], values: &NodeValues, neighbours: &[Vec<usize>], tol
 }
 
 /// The radius of the circle through three points; infinite for points in line.
-fn circumradius([a, b, c]: [DVec2; 3]) -> f64 {
+pub(super) fn circumradius([a, b, c]: [DVec2; 3]) -> f64 {
     let area = 0.5 * (b - a).perp_dot(c - a).abs();
     a.distance(b) * b.distance(c) * c.distance(a) / (4.0 * area)
 }
@@ -170,6 +173,33 @@ pub(super) fn grid(
         })
         .collect();
     Ok(Gridded { sheets, gap_m, multivalued: values.multivalued(), repeated, outliers })
+}
+
+/// The sheets of scattered points (world X, Y, vertical value) as they are without faults; empty where a place has too many
+/// depths.
+///
+/// ```
+/// use glam::DVec3;
+/// use survey::{SurveyGeometry, VerticalUnit};
+///
+/// let geometry = SurveyGeometry::regular([11, 11, 50], 10.0, 4.0, VerticalUnit::Metres);
+/// let points = [(3.0, 4.0), (97.0, 2.0), (5.0, 93.0), (94.0, 96.0)].map(|(x, y)| DVec3::new(x, y, 50.0 + 0.5 * x));
+/// let sheets = files::grid_points(&points, &geometry, Some(100.0));
+/// assert!((sheets[0].depth[5 * 11 + 5] - 75.0).abs() < 1e-3);
+/// ```
+pub fn grid_points(points: &[DVec3], geometry: &SurveyGeometry, gap_m: Option<f64>) -> Vec<Sheet> {
+    let tolerance = (SAME_DEPTH * geometry.vertical.interval) as f32;
+    let pairs: Vec<_> = points.iter().map(|p| (voxel_xy(geometry, p.truncate()), p.z as f32)).collect();
+    grid(&pairs, geometry, gap_m, tolerance).map_or_else(|_| Vec::new(), |gridded| gridded.sheets)
+}
+
+/// The points of one fault block that stand out from their neighbours there.
+pub(super) fn outliers_of(points: &[(DVec2, f32)], geometry: &SurveyGeometry) -> Option<Outliers> {
+    let tolerance = (SAME_DEPTH * geometry.vertical.interval) as f32;
+    let world: Vec<DVec2> = points.iter().map(|p| world_xy(geometry, p.0)).collect();
+    let pairs: Vec<(usize, f32)> = points.iter().enumerate().map(|(n, p)| (n, p.1)).collect();
+    let (values, _) = NodeValues::group(points.len(), &pairs, tolerance).ok()?;
+    outliers(&world, &values, &neighbours(points.len(), &delaunay(&world)), tolerance)
 }
 
 /// The other corners of the triangles around each point, one that two triangles share twice.

@@ -86,7 +86,7 @@ impl AddFault {
             colour: None,
         });
         draft.document.check_growth()?;
-        rebuild_all(draft, progress)?;
+        report.notes.extend(rebuild_all(draft, progress)?);
         Ok(Effect::FaultAdded(Box::new(FaultAdded { triangles: fault.mesh.triangles.len(), report })))
     }
 }

@@ -5,10 +5,11 @@
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
+use crate::derived::FaultBlocks;
 use crate::document::{HorizonEntry, Id, Origin};
 use crate::folder::Draft;
-use crate::interpretation::order;
-use files::{Gridding, ImportOptions, ImportReport};
+use crate::interpretation::{order, scattered};
+use files::{BlockFit, Gridding, ImportOptions, ImportReport};
 use model::ContactRules;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -78,6 +79,12 @@ impl AddHorizon {
                  it is a body, close it, or give --contact intrusive to be told where it is open"
             )));
         }
+        if !draft.document.faults.is_empty() {
+            let blocks = draft.facts().get(&FaultBlocks, progress)?;
+            if let Some(found) = scattered::fit(&mut horizon, &geometry, &blocks, self.options.gap_m, progress)? {
+                say_fitted(&mut report, &horizon, found);
+            }
+        }
         let others = load_all(draft, progress)?;
         self.as_limbs(&mut horizon, &others, &mut report);
         let position = position(&self.age, draft, &horizon, contact, &others)?;
@@ -101,6 +108,7 @@ impl AddHorizon {
             origin: super::imported(&self.path, reading(&report))?,
             assembly: None,
             colour: None,
+            gap_m: self.options.gap_m,
             refined: Vec::new(),
         };
         draft.document.insert_horizon(position, entry);
@@ -159,6 +167,22 @@ impl AddHorizon {
         let name = self.options.name.clone().or_else(|| Some(self.name.clone()));
         ImportOptions { name, ..self.options.clone() }
     }
+}
+
+/// Says in the report how scattered points were fitted on the sides of faults, instead of what was said of a map through
+/// all of them.
+fn say_fitted(report: &mut ImportReport, horizon: &Horizon, found: BlockFit) {
+    if let Some((_, warning)) = report.off_map.take() {
+        report.warnings.retain(|other| *other != warning);
+    }
+    let [picked, filled] = scattered::counts(horizon);
+    let points = found.points.values().copied().collect();
+    report.gridding = Gridding::FaultBlocks { points, gap_m: found.gap_m, picked, filled };
+    (report.sheets, report.multivalued) = (horizon.sheets.len(), 0);
+    report.notes.extend(scattered::notes(&found));
+    report.warnings.extend(scattered::warnings(&found).into_iter().map(Note::from));
+    report.warnings.extend(found.off_map.iter().map(|(_, warning)| warning.clone()));
+    report.off_map = found.off_map;
 }
 
 /// Notes with which of the project's bodies, each with its place in the list, a new one shares room.
@@ -262,6 +286,7 @@ pub(super) fn insert_among(
         origin,
         assembly: None,
         colour: None,
+        gap_m: None,
         refined: Vec::new(),
     };
     draft.document.insert_horizon(position, entry);

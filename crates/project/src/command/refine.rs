@@ -11,7 +11,7 @@ use interp::holes::FillSettings;
 use interp::reassembly::{from_horizon, to_horizon};
 use interp::refine::SmoothSettings;
 use serde::{Deserialize, Serialize};
-use survey::Progress;
+use survey::{Horizon, Progress};
 
 /// Fills holes with the surface of least curvature, never across a fault. An assembled horizon stays filled
 /// when its picks change.
@@ -86,7 +86,9 @@ fn refine(
             let horizon = content::read_horizon(draft.root(), &draft.document.horizons[index], progress)?;
             let mut sheets = from_horizon(&horizon, &geometry, &blocks);
             let (filled, smoothed) = finish::refine(draft, &mut sheets, &blocks, fill, smooth, progress)?;
-            put(draft, &to_horizon(name, &sheets, &geometry), None, Some(done), progress)?;
+            // Its points are kept: they are fitted again when the faults change.
+            let refined = Horizon { surface: horizon.surface, ..to_horizon(name, &sheets, &geometry) };
+            put(draft, &refined, None, Some(done), progress)?;
             AssemblyReport { filled, smoothed, ..report_on(&sheets, &geometry) }
         }
     };

@@ -99,6 +99,9 @@ pub struct HorizonEntry {
     /// How it was assembled from picks; `None` if it was imported.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assembly: Option<Assembly>,
+    /// Scattered points: the gap that was stated at import; a circle of this radius without a point stays a hole, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gap_m: Option<f64>,
     /// What was done to its sheets since, unless its log says so.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub refined: Vec<Refinement>,

@@ -365,6 +365,7 @@ mod tests {
             assembly: None,
             colour: None,
             refined: Vec::new(),
+            gap_m: None,
         }
     }
 

@@ -9,6 +9,7 @@ use crate::error::{Noun, ProjectError};
 use crate::folder::Draft;
 use crate::interpretation::candidates::Candidates;
 use crate::interpretation::finish;
+use crate::interpretation::scattered;
 use crate::interpretation::sheets::HorizonSheets;
 use interp::Forest;
 use interp::assembly::{
@@ -327,12 +328,14 @@ pub(crate) fn put(
         (None, Some(before)) => before.origin.clone(),
         (None, None) => return Err(ProjectError::NothingLeft { horizon: name.clone() }),
     };
-    let (id, contact, colour, mut refined) =
-        before.map_or_else(Default::default, |before| (before.id, before.contact, before.colour, before.refined));
+    let (id, contact, colour, gap_m, mut refined) = before.map_or_else(Default::default, |before| {
+        (before.id, before.contact, before.colour, before.gap_m, before.refined)
+    });
     if refined.last() != done.as_ref() {
         refined.extend(done);
     }
-    let entry = HorizonEntry { id, name: name.clone(), contact, file, hash, origin, assembly: log, colour, refined };
+    let entry =
+        HorizonEntry { id, name: name.clone(), contact, file, hash, origin, assembly: log, colour, gap_m, refined };
     match old {
         Some(old) if old == position => document.horizons[old] = entry,
         Some(old) => document.move_horizon(old, position, entry),
@@ -385,9 +388,15 @@ pub fn conflicts_of(
     Ok(found.into_iter().map(|conflict| in_lines(conflict, geometry)).collect())
 }
 
-/// Assembles all horizons with picks again after the faults have changed. Horizons whose picks were made on another
-/// extraction stay as they are, and a warning says so.
-pub(crate) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), ProjectError> {
+/// Assembles all horizons with picks again after the faults have changed, and fits those of scattered points again; says
+/// which were fitted. Horizons whose picks were made on another extraction stay as they are, and a warning says so.
+pub(crate) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<Vec<String>, ProjectError> {
+    assemble_all(draft, progress)?;
+    scattered::refit_all(draft, progress)
+}
+
+/// Assembles all horizons with picks again.
+fn assemble_all(draft: &mut Draft, progress: &Progress) -> Result<(), ProjectError> {
     let logs: Vec<(String, Assembly)> = draft
         .document
         .horizons

@@ -10,6 +10,7 @@ pub mod extraction;
 pub(crate) mod finish;
 pub(crate) mod order;
 pub mod proposals;
+pub(crate) mod scattered;
 mod sheets;
 pub mod solid;
 pub mod times;

@@ -40,6 +40,7 @@ fn horizon(name: &str, file: &str) -> HorizonEntry {
         assembly: None,
         colour: None,
         refined: Vec::new(),
+        gap_m: None,
     }
 }
 

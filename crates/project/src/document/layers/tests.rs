@@ -16,6 +16,7 @@ fn horizon(name: &str) -> HorizonEntry {
         assembly: None,
         colour: None,
         refined: Vec::new(),
+        gap_m: None,
     }
 }
 
