@@ -65,6 +65,7 @@ mod sheets;
 mod sides;
 mod strays;
 mod structural;
+mod throws;
 
 pub use contacts::ContactRules;
 pub use levels::{
@@ -77,6 +78,7 @@ pub use settings::ModelSettings;
 pub use sheets::picked_share;
 pub use sides::{Below, MOST_HORIZONS};
 pub use structural::{Region, StructuralModel};
+pub use throws::{CutOff, FaultSense, FaultThrows, HorizonThrows, Throw};
 
 #[cfg(test)]
 mod tests;

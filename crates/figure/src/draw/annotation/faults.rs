@@ -1,17 +1,18 @@
-//! Names of faults beside their lines, the throw measured there, and half-arrows that say which side went down.
+//! Names of faults beside their lines, the throw at their horizons there, and half-arrows that say which side went down.
 //!
-//! On a face, a horizon meets a fault from each side at a place of its own, its cut-offs. They are found on the fault's
-//! line from the horizon in the two blocks beside it; the throw is the difference of their depths or times. Where beds
+//! The throw is that of a horizon whose cut-offs lie on the fault's line on the face, taken down the dip of the fault where
+//! they do ([`model::FaultThrows`]); so a face at an angle to the fault tells the same throw as one across it. Where beds
 //! run nearly along the fault their cut-offs lie far apart, however little it moved. So it is taken from the horizons
 //! that meet the fault at large angles, at the one whose cut-offs lie nearest to the middle of what is seen of the fault.
+//! A throw that is not told from noise is not stated, and neither is one against the sense of the fault, which is the same
+//! on every face.
 
 use super::room::{LabelRoom, outlines};
 use crate::convex::{holds, meet};
-use crate::cut::value_at;
 use crate::style::{INK, NUMBER_PT};
 use glam::{DVec2, DVec3};
-use model::StructuralModel;
-use model::section::{LineKind, LineQuality};
+use model::section::LineKind;
+use model::{FaultSense, FaultThrows, StructuralModel};
 use page::list::{Across, Group, GroupKind, Ink, Path, PathItem, Segment, Stroke, Text, Upright};
 use render::vector::SeenSection;
 use survey::SurveyGeometry;
@@ -38,10 +39,6 @@ const FLAT: f64 = 0.12;
 const FLAT_SHARE: f64 = 0.3;
 /// A throw is taken from horizons that cross the fault at this share, or more, of the largest sine of an angle.
 const CROSSING: f64 = 0.7;
-/// How far from a horizon's end at a fault its line is looked up, voxels.
-const NEAR_END: f64 = 3.0;
-/// Throws below this are not stated, samples.
-const LEAST_THROW: f64 = 0.25;
 /// Where along its line a name or an arrow may stand, in shares on both sides of the middle.
 const PLACES: [f64; 9] = [0.0, 0.08, -0.08, 0.16, -0.16, 0.24, -0.24, 0.34, -0.34];
 
@@ -60,33 +57,19 @@ pub(super) struct FaultRun<'a> {
     seen: Vec<Vec<DVec2>>,
 }
 
-/// Where a horizon ends at a fault.
-struct CutOff {
-    /// Where along the run, in places.
-    at: f64,
-    /// Its place, voxels.
-    place: DVec3,
-    /// Its z.
-    z: f64,
-    /// Whether the older rock lies below.
-    is_upright: bool,
-    /// Sine of the angle between the horizon and the fault on the face.
-    crossing: f64,
-}
-
 /// What is known of a fault at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Throw {
+pub(super) struct FaceThrow {
     /// Difference of depth or time between the sides, in the survey's unit.
     pub size: f64,
+    /// Distance of the cut-offs on the map, m.
+    pub heave_m: f64,
     /// Where along the run, as a share of its places.
     share: f64,
     /// Whether the side to which the face's first axis points went down.
     is_ahead_down: bool,
     /// Whether the horizon was only continued to the fault, on either side.
     is_inferred: bool,
-    /// Sine of the angle at which the horizon meets the fault, the less of both sides.
-    crossing: f64,
 }
 
 /// The longest seen run of each fault on upright faces, by fault; a flat one counts less.
@@ -142,80 +125,86 @@ fn steepness(places: &[(DVec3, DVec2)], geometry: &SurveyGeometry) -> f64 {
 }
 
 impl FaultRun<'_> {
-    /// The throw from the cut-offs of the horizon that is nearest to the middle, of those that are known on both sides if
-    /// there are any, and cross the fault clearly; `None` where no horizon has both.
-    pub(super) fn throw(&self, model: &StructuralModel, geometry: &SurveyGeometry) -> Option<Throw> {
-        let middle = self.places[self.places.len() / 2].0;
-        let aside = self.face.section.plane.s_axis * BESIDE;
-        let blocks = [middle - aside, middle + aside].map(|p| model.block_at(p.as_vec3()));
-        if blocks[0] == blocks[1] {
+    /// The throw of the horizon whose cut-offs are nearest to the middle, of those that are known on both sides if there
+    /// are any, and cross the fault clearly; `None` where none is told from noise, or it runs against the fault's sense.
+    pub(super) fn throw(
+        &self,
+        (model, geometry): (&StructuralModel, &SurveyGeometry),
+        sense: FaultSense,
+    ) -> Option<FaceThrow> {
+        if self.steepness < FLAT {
             return None;
         }
+        let throws = FaultThrows::new(model, self.fault);
         let last = (self.places.len() - 1).max(1) as f64;
-        let throws = |horizon: usize| {
-            let [behind, ahead] = blocks.map(|block| self.cut_offs(model, geometry, horizon, block));
-            // A limb that is upside down is paired with one that is.
-            let pair = |from: &CutOff| {
-                let same = ahead.iter().filter(|to| to.is_upright == from.is_upright);
-                let to = same.min_by(|a, b| (a.at - from.at).abs().total_cmp(&(b.at - from.at).abs()))?;
-                let [above, below] = [from.z, to.z].map(|z| value_at(geometry, 2, z));
-                let is_seen = (to.z - from.z).abs() >= LEAST_THROW;
-                let share = 0.5 * (from.at + to.at) / last;
-                let is_inferred = [from, to].into_iter().any(|end| self.is_inferred(horizon, end.place));
-                let (size, is_ahead_down) = ((below - above).abs(), to.z > from.z);
-                let crossing = from.crossing.min(to.crossing);
-                is_seen.then_some(Throw { size, share, is_ahead_down, is_inferred, crossing })
-            };
-            behind.iter().filter_map(pair).collect::<Vec<_>>()
-        };
         let horizons = (0..model.stratigraphy().horizons.len()).filter(|&horizon| !model.is_body(horizon));
-        let mut throws: Vec<Throw> = horizons.flat_map(throws).collect();
-        if throws.iter().any(|throw| !throw.is_inferred) {
-            throws.retain(|throw| !throw.is_inferred);
-        }
-        let clearest = throws.iter().map(|throw| throw.crossing).fold(0.0, f64::max);
-        throws.retain(|throw| throw.crossing >= CROSSING * clearest);
-        let aside = |throw: &Throw| (throw.share - 0.5).abs();
-        throws.into_iter().min_by(|a, b| aside(a).total_cmp(&aside(b)))
-    }
-
-    /// Whether the line of a horizon that ends at a place is only continued there.
-    fn is_inferred(&self, horizon: usize, place: DVec3) -> bool {
-        let own = self.face.section.lines.iter().filter(|line| line.kind == LineKind::Horizon { horizon });
-        let plane = self.face.section.plane;
-        let near = own.flat_map(|line| {
-            let of = move |st: &DVec2| (plane.voxel(*st).distance(place), line.quality == LineQuality::Inferred);
-            line.points.iter().map(of).filter(|(distance, _)| *distance < NEAR_END)
+        let found = horizons.flat_map(|horizon| {
+            let [behind, ahead] = self.cut_offs(model, horizon);
+            // One side alone may lie on what is seen.
+            let nearest = |from: f64, others: &[f64]| {
+                others.iter().copied().min_by(|a, b| (a - from).abs().total_cmp(&(b - from).abs())).unwrap_or(from)
+            };
+            let middles: Vec<f64> = match behind.is_empty() {
+                false => behind.iter().map(|from| 0.5 * (from + nearest(*from, &ahead))).collect(),
+                true => ahead,
+            };
+            let at = |at: f64| {
+                let place = self.places[(at.round() as usize).min(self.places.len() - 1)].0;
+                let own = throws.at(throws.along_m(place)).into_iter().filter(move |throw| throw.horizon == horizon);
+                let z = place.z;
+                let off = move |throw: &model::Throw| {
+                    (0.5 * (throw.cut_offs[0].place.z + throw.cut_offs[1].place.z) - z).abs()
+                };
+                own.min_by(|a, b| off(a).total_cmp(&off(b))).map(|throw| (at / last, throw))
+            };
+            middles.into_iter().filter_map(at).collect::<Vec<_>>()
         });
-        near.min_by(|a, b| a.0.total_cmp(&b.0)).is_some_and(|(_, is_inferred)| is_inferred)
+        let mut found: Vec<(f64, model::Throw)> = found.filter(|(_, throw)| throw.is_told()).collect();
+        if found.iter().any(|(_, throw)| !throw.is_inferred()) {
+            found.retain(|(_, throw)| !throw.is_inferred());
+        }
+        let clearest = found.iter().map(|(_, throw)| throw.crossing()).fold(0.0, f64::max);
+        found.retain(|(_, throw)| throw.crossing() >= CROSSING * clearest);
+        let aside = |(share, _): &(f64, model::Throw)| (share - 0.5).abs();
+        let (share, throw) = found.into_iter().min_by(|a, b| aside(a).total_cmp(&aside(b)))?;
+        if (throw.samples() > 0.0) != sense.is_positive_down {
+            return None;
+        }
+        let middle = self.places[self.places.len() / 2].0;
+        let is_ahead_positive = self.side_gradient(model, middle).dot(self.face.section.plane.s_axis) > 0.0;
+        Some(FaceThrow {
+            size: throw.samples().abs() * geometry.vertical.interval.abs(),
+            heave_m: throw.heave_m(model.metric()),
+            share,
+            is_ahead_down: is_ahead_positive == sense.is_positive_down,
+            is_inferred: throw.is_inferred(),
+        })
     }
 
-    /// Where a horizon ends at the fault within a block, limb by limb.
-    fn cut_offs(&self, model: &StructuralModel, geometry: &SurveyGeometry, horizon: usize, block: u16) -> Vec<CutOff> {
-        let off = |p: DVec3| f64::from(model.offset(horizon, block, p.as_vec3()));
-        // A voxel's length along the two axes of the face, m.
-        let axes = [self.face.section.plane.s_axis, self.face.section.plane.t_axis];
-        let metres = axes.map(|axis| geometry.metric_from_voxel() * axis);
-        let crossing = |(n, pair): (usize, &[(DVec3, DVec2)])| {
-            let [a, b] = [pair[0].0, pair[1].0];
-            let (off_a, off_b) = (off(a), off(b));
-            if (off_a < 0.0) == (off_b < 0.0) {
-                return None;
-            }
-            let share = off_a / (off_a - off_b);
-            let p = a.lerp(b, share);
-            // Elsewhere something younger has cut it off.
-            let below = model.below_at(p.as_vec3(), block);
-            let [without, with] = [false, true].map(|below_it| model.rules().layer(&below.with(horizon, below_it)));
-            let is_there = with != without;
-            let is_upright = (off_b > off_a) == (b.z > a.z);
-            let slope = DVec2::from_array([0, 1].map(|n| (off(p + axes[n]) - off(p - axes[n])) / metres[n].length()));
-            let along = geometry.metric_from_voxel() * (b - a);
-            let along = DVec2::from_array(metres.map(|axis| along.dot(axis.normalize_or_zero())));
-            let crossing = slope.normalize_or_zero().dot(along.normalize_or_zero()).abs();
-            is_there.then_some(CutOff { at: n as f64 + share, place: p, z: p.z, is_upright, crossing })
-        };
-        self.places.windows(2).enumerate().filter_map(crossing).collect()
+    fn side_gradient(&self, model: &StructuralModel, place: DVec3) -> DVec3 {
+        model.faults().surfaces()[self.fault].side_gradient(place)
+    }
+
+    /// Where along the run, in places, a horizon meets it from the side that lies behind along the face's first axis, and
+    /// from the one ahead.
+    fn cut_offs(&self, model: &StructuralModel, horizon: usize) -> [Vec<f64>; 2] {
+        let s_axis = self.face.section.plane.s_axis;
+        [-1.0, 1.0].map(|side| {
+            let known = |place: &DVec3| {
+                // At right angles to the fault, for the face may run along it.
+                let gradient = self.side_gradient(model, *place);
+                let ahead = gradient.normalize_or_zero() * if gradient.dot(s_axis) >= 0.0 { BESIDE } else { -BESIDE };
+                let block = model.block_at((*place + side * ahead).as_vec3());
+                (block, model.offset(horizon, block, place.as_vec3()))
+            };
+            let all: Vec<(u16, f32)> = self.places.iter().map(|(place, _)| known(place)).collect();
+            let crossing = |(n, pair): (usize, &[(u16, f32)])| {
+                let [(block, a), (other, b)] = [pair[0], pair[1]];
+                let is_crossed = block == other && (a < 0.0) != (b < 0.0);
+                is_crossed.then(|| n as f64 + f64::from(a / (a - b)))
+            };
+            all.windows(2).enumerate().filter_map(crossing).collect()
+        })
     }
 
     /// The place on the page at a share of the run, and the direction of growing depth there.
@@ -243,13 +232,10 @@ impl FaultRun<'_> {
     /// Half-arrows on both sides, near where the throw was measured; `None` where there is no room.
     pub(super) fn arrows(
         &self,
-        throw: Throw,
+        throw: FaceThrow,
         page_from_voxel: &dyn Fn(DVec3) -> DVec2,
         room: &mut LabelRoom,
     ) -> Option<Group> {
-        if self.steepness < FLAT {
-            return None;
-        }
         let [half, off, ..] = ARROW_PT;
         let place = |step: &f64| {
             let (middle, along) = self.at(throw.share + step);
@@ -316,11 +302,13 @@ impl FaultRun<'_> {
     }
 }
 
-/// "F1, 45 m": a name with the throw, queried where it was measured on a horizon that is only continued.
-pub(super) fn said(name: &str, throw: Option<Throw>, geometry: &SurveyGeometry) -> String {
+/// "F1, 45 m": a name with the throw, queried where it was measured on a horizon that is only continued; with the heave on
+/// request ("F1, 45 m, heave 26 m").
+pub(super) fn said(name: &str, throw: Option<FaceThrow>, geometry: &SurveyGeometry, has_heave: bool) -> String {
     let unit = geometry.vertical.unit.symbol();
     let Some(throw) = throw else { return name.to_owned() };
     let query = if throw.is_inferred { " (?)" } else { "" };
-    let decimals = usize::from(throw.size < 10.0);
-    measured(name, &format!("{:.decimals$} {unit}{query}", throw.size))
+    let rounded = |size: f64| if size < 10.0 { format!("{size:.1}") } else { format!("{size:.0}") };
+    let heave = if has_heave { format!(", heave {} m", rounded(throw.heave_m)) } else { String::new() };
+    measured(name, &format!("{} {unit}{heave}{query}", rounded(throw.size)))
 }
