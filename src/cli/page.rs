@@ -9,6 +9,7 @@ use figure::draw::block::Comparison;
 use figure::draw::section::Zoom;
 use figure::{
     Annotation, BlockPart, CorrelationPart, FencePart, Figure, MapPart, PageSize, Part, SectionKind, SectionPart,
+    ThrowPart,
 };
 use project::pictures::figures::{self, FigureSettings, InterpreterView};
 use project::{Project, memory_budget};
@@ -25,6 +26,8 @@ pub(super) struct PageRequest {
     /// A map: its horizon (`None`: the topmost one), and the horizon down to which thickness is measured.
     map: Option<(Option<String>, Option<String>)>,
     correlation: Option<Box<CorrelationPart>>,
+    /// Faults of which a profile is drawn.
+    throws: Vec<String>,
     has_block: bool,
     comparison: Comparison,
     is_interpretation: bool,
@@ -64,11 +67,16 @@ impl PageRequest {
         if typed.credit.is_some() && !annotations.contains(&Annotation::Provenance) {
             annotations.push(Annotation::Provenance);
         }
+        if typed.heave {
+            // A profile has it below; elsewhere it stands beside the throw.
+            annotations.extend((!annotations.contains(&Annotation::Heave)).then_some(Annotation::Heave));
+        }
         let meant = Self {
             sections,
             fence,
             map,
             correlation,
+            throws: typed.throw,
             has_block: typed.block,
             comparison: comparison(typed.compare.as_deref(), typed.wipe)?,
             is_interpretation: typed.interpretation,
@@ -89,6 +97,7 @@ impl PageRequest {
             + usize::from(!meant.fence.is_empty())
             + usize::from(meant.map.is_some())
             + usize::from(meant.correlation.is_some())
+            + meant.throws.len()
             + usize::from(meant.has_block);
         if parts > 4 {
             return Err(format!("a page holds at most four parts, these are {parts}: leave some out"));
@@ -105,7 +114,11 @@ impl PageRequest {
         }
         let show = scene.face_data;
         let has_block = self.has_block
-            || self.sections.is_empty() && self.fence.is_empty() && self.map.is_none() && self.correlation.is_none();
+            || self.sections.is_empty()
+                && self.fence.is_empty()
+                && self.map.is_none()
+                && self.correlation.is_none()
+                && self.throws.is_empty();
         let section = |(kind, at): &(SectionKind, f64)| {
             Part::Section(SectionPart {
                 kind: *kind,
@@ -126,6 +139,7 @@ impl PageRequest {
             parts.push(Part::Map(MapPart { horizon, thickness_to: thickness_to.clone() }));
         }
         parts.extend(self.correlation.as_deref().cloned().map(Part::Correlation));
+        parts.extend(self.throws.iter().map(|fault| Part::Throw(ThrowPart { fault: fault.clone() })));
         if self.has_block || parts.is_empty() {
             let scene = if self.is_interpretation { figures::interpreted(scene) } else { scene.clone() };
             parts.insert(0, BlockPart { scene, comparison: self.comparison }.into());
@@ -166,10 +180,13 @@ fn correlation(typed: &FigureArgs) -> Result<Option<CorrelationPart>, Usage> {
 fn annotations(typed: &[String]) -> Result<Vec<Annotation>, Usage> {
     let mut meant = Vec::new();
     for name in typed {
-        let known = Annotation::ALL.into_iter().filter(|known| name == "all" || known.name() == name);
-        let known: Vec<Annotation> = known.collect();
+        let every = || Annotation::ALL.into_iter().chain(Annotation::ON_REQUEST);
+        let known: Vec<Annotation> = match name.as_str() {
+            "all" => Annotation::ALL.to_vec(),
+            _ => every().filter(|known| known.name() == name).collect(),
+        };
         if known.is_empty() {
-            let names = Annotation::ALL.map(Annotation::name).join(", ");
+            let names = every().map(Annotation::name).collect::<Vec<_>>().join(", ");
             return Err(format!("--annotate {name}: expected all, or some of {names}, separated by commas"));
         }
         meant.extend(known.into_iter().filter(|known| !meant.contains(known)).collect::<Vec<_>>());

@@ -40,6 +40,7 @@ mod sources;
 #[cfg(target_os = "linux")]
 mod steps;
 mod store;
+mod throws;
 mod time;
 mod time_unknown;
 mod time_uses;

@@ -10,8 +10,10 @@ pub enum Annotation {
     Axes,
     /// Names of layers along the layers, or beside the block with a leader.
     Layers,
-    /// Names of faults, the throw measured there, and half-arrows that say which side went down.
+    /// Names of faults, the throw of their horizons there, and half-arrows that say which side went down.
     Faults,
+    /// The heave beside the throw, and the heave below a profile of throws.
+    Heave,
     /// Names of wells at their heads, and of their tops, where they are seen.
     Wells,
     /// Lines of horizons dashed where they were filled, in short dashes and queried where they were only continued.
@@ -23,9 +25,12 @@ pub enum Annotation {
 }
 
 impl Annotation {
-    /// All of them.
+    /// All of them but those that are written on request alone ([`Self::ON_REQUEST`]).
     pub const ALL: [Self; 7] =
         [Self::Axes, Self::Layers, Self::Faults, Self::Wells, Self::Quality, Self::Colours, Self::Provenance];
+
+    /// Those that "all" leaves out.
+    pub const ON_REQUEST: [Self; 1] = [Self::Heave];
 
     /// What people call it.
     pub const fn name(self) -> &'static str {
@@ -33,6 +38,7 @@ impl Annotation {
             Self::Axes => "axes",
             Self::Layers => "layers",
             Self::Faults => "faults",
+            Self::Heave => "heave",
             Self::Wells => "wells",
             Self::Quality => "quality",
             Self::Colours => "colours",

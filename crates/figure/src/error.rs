@@ -50,6 +50,23 @@ pub enum FigureError {
         /// What was asked for, in words.
         what: String,
     },
+    /// A profile of a fault that is not there.
+    #[error(
+        "there is no fault named \"{fault}\"{}",
+        if known.is_empty() { "; there are none".to_owned() } else { format!("; the faults are {}", known.join(", ")) }
+    )]
+    NoFault {
+        /// The name that was asked for.
+        fault: String,
+        /// The names that there are.
+        known: Vec<String>,
+    },
+    /// A profile of a fault without throws.
+    #[error("there is no profile of {fault}: no horizon meets it from both sides where it was drawn")]
+    NoThrow {
+        /// The fault.
+        fault: String,
+    },
     /// Wells side by side of a project that has none.
     #[error("a correlation panel shows wells, and the project has none; add them with `petroglyph well add`")]
     NoWells,

@@ -34,4 +34,4 @@ pub use annotation::Annotation;
 pub use cut::SectionKind;
 pub use error::FigureError;
 pub use make::{FigureInputs, make};
-pub use spec::{BlockPart, CorrelationPart, FencePart, Figure, MapPart, PageSize, Part, SectionPart};
+pub use spec::{BlockPart, CorrelationPart, FencePart, Figure, MapPart, PageSize, Part, SectionPart, ThrowPart};

@@ -175,6 +175,8 @@ pub enum Part {
     Map(MapPart),
     /// Wells side by side.
     Correlation(CorrelationPart),
+    /// Throw against the distance along a fault.
+    Throw(ThrowPart),
 }
 
 impl From<BlockPart> for Part {
@@ -258,6 +260,14 @@ pub struct CorrelationPart {
     pub range: Option<[f64; 2]>,
 }
 
+/// Throw against the distance along a fault, horizon by horizon; with [`Annotation::Heave`] the heave below.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ThrowPart {
+    /// The fault.
+    pub fault: String,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -274,6 +284,7 @@ mod tests {
                     blend: Some(0.5),
                 }),
                 Part::Map(MapPart { horizon: "Top".into(), thickness_to: Some("Base".into()) }),
+                Part::Throw(ThrowPart { fault: "F1".into() }),
                 Part::Correlation(CorrelationPart { datum: Some("Top".into()), ..CorrelationPart::default() }),
             ],
             legend: true,

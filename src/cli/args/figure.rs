@@ -44,6 +44,12 @@ pub(in crate::cli) struct FigureArgs {
     /// First and last depth or time of --correlation, from --datum if there is one [default: whole wells]
     #[arg(long, value_name = "FROM,TO", requires = "correlation", allow_hyphen_values = true)]
     pub(in crate::cli) well_range: Option<String>,
+    /// Throw of a fault against the distance along it, horizon by horizon; repeat it for several faults
+    #[arg(long, value_name = "FAULT")]
+    pub(in crate::cli) throw: Vec<String>,
+    /// State the heave of faults beside their throw, on blocks and sections, and draw it below --throw
+    #[arg(long)]
+    pub(in crate::cli) heave: bool,
     /// Add the block, beside the sections or the map that were asked for
     #[arg(long)]
     pub(in crate::cli) block: bool,
@@ -67,10 +73,10 @@ pub(in crate::cli) struct FigureArgs {
     #[arg(long)]
     pub(in crate::cli) north_arrow: bool,
     /// Write on blocks and sections: axes (inlines, crosslines, depth or time along the edges), layers (names along the
-    /// layers), faults (names, measured throw, half-arrows), wells (names of wells and tops), quality (horizons dashed
+    /// layers), faults (names, throw, half-arrows), heave (beside the throw), wells (names of wells and tops), quality (horizons dashed
     /// where they were filled, in short dashes with question marks where they were only continued), colours (a bar of the
     /// raw data's values), provenance (program, project, --credit); all adds the legend, the scale bars and the north arrow
-    #[arg(long, value_name = "all|axes,layers,faults,wells,quality,colours,provenance", value_delimiter = ',')]
+    #[arg(long, value_name = "all|axes,layers,faults,heave,wells,quality,colours,provenance", value_delimiter = ',')]
     pub(in crate::cli) annotate: Vec<String>,
     /// Whose data the figure shows, for the line of provenance
     #[arg(long, value_name = "TEXT")]
@@ -93,7 +99,7 @@ pub(in crate::cli) struct FigureArgs {
         long,
         value_name = "FILE.toml",
         conflicts_with_all = [
-            "inline", "crossline", "slice", "section_blend", "fence", "map", "correlation", "block", "compare", "size_cm", "interpretation", "legend",
+            "inline", "crossline", "slice", "section_blend", "fence", "map", "correlation", "throw", "heave", "block", "compare", "size_cm", "interpretation", "legend",
             "scale_bar", "north_arrow", "annotate", "credit", "title", "caption",
         ]
     )]

@@ -23,10 +23,11 @@ use std::path::Path;
 const LARGEST: u32 = 16_000;
 
 /// What is written on blocks, and what it is called.
-const WRITTEN: [(Annotation, &str); 7] = [
+const WRITTEN: [(Annotation, &str); 8] = [
     (Annotation::Axes, "Axes along the block's edges"),
     (Annotation::Layers, "Names along the layers"),
     (Annotation::Faults, "Names and throws of faults"),
+    (Annotation::Heave, "Heave beside the throw"),
     (Annotation::Wells, "Names of wells and tops"),
     (Annotation::Quality, "Dashes and ? where not picked"),
     (Annotation::Colours, "Colour bar of raw data"),

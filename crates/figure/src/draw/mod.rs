@@ -22,6 +22,7 @@ pub mod section_wells;
 pub(crate) mod sight;
 pub mod surfaces;
 pub mod swatch;
+pub(crate) mod throw_profile;
 pub(crate) mod vector_block;
 pub mod water;
 pub mod words;

@@ -11,8 +11,9 @@ use crate::draw::overlay::{OverlayLines, SeenOn};
 use crate::draw::scale;
 use crate::draw::section::{Marks, SectionContents, SectionInk, SectionPanel, Zoom};
 use crate::draw::section_wells::WellOnSection;
+use crate::draw::throw_profile::FaultProfile;
 use crate::error::FigureError;
-use crate::spec::{FencePart, Part, SectionPart};
+use crate::spec::{FencePart, Part, SectionPart, ThrowPart};
 use crate::style::INK;
 use glam::DVec2;
 use image::RgbaImage;
@@ -30,6 +31,8 @@ pub(super) enum Prepared {
     Section(Box<PreparedSection>),
     /// Wells, and the range of their axis.
     Wells(Vec<Column>, [f64; 2]),
+    /// What is measured along a fault.
+    Profile(Box<FaultProfile>),
 }
 
 /// A section or a fence.
@@ -92,6 +95,7 @@ impl Maker<'_> {
             Part::Block(_) | Part::Map(_) => return Ok(Prepared::Later),
             Part::Section(part) => self.section(part)?,
             Part::Fence(part) => self.fence(part)?,
+            Part::Throw(part) => return self.profile(part).map(|profile| Prepared::Profile(Box::new(profile))),
             Part::Correlation(part) => {
                 let model = self.inputs.source.data.model.filter(|_| !self.figure.interpretation);
                 let (wells, horizons) = (self.inputs.wells, self.inputs.strata);
@@ -108,6 +112,15 @@ impl Maker<'_> {
         }
         section.overlay = shown.map(|shown| OverlayLines::new(shown, [nx, ny], section.on.seen_on()));
         Ok(Prepared::Section(Box::new(section)))
+    }
+
+    fn profile(&self, part: &ThrowPart) -> Result<FaultProfile, FigureError> {
+        let known = self.inputs.faults;
+        let missing = || FigureError::NoFault { fault: part.fault.clone(), known: known.to_vec() };
+        let fault = known.iter().position(|name| *name == part.fault).ok_or_else(missing)?;
+        let none = || FigureError::NoThrow { fault: part.fault.clone() };
+        let model = self.inputs.source.data.model.ok_or_else(none)?;
+        FaultProfile::new(model, self.geometry, fault, part.fault.clone()).ok_or_else(none)
     }
 
     fn section(&self, part: &SectionPart) -> Result<PreparedSection, FigureError> {

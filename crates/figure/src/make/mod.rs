@@ -13,6 +13,7 @@ use crate::draw::block::{BlockPainter, BlockPanel, Comparison};
 use crate::draw::correlation::CorrelationPanel;
 use crate::draw::map::{MapPanel, title};
 use crate::draw::section::Marks;
+use crate::draw::throw_profile::ThrowPanel;
 use crate::draw::{NamedColour, colour_bar, label_changes, north, scale, words};
 use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
@@ -254,7 +255,7 @@ impl<'a> Maker<'a> {
             Part::Section(SectionPart { blend, .. }) | Part::Fence(FencePart { blend, .. }) => {
                 self.inputs.source.raw.filter(|_| *blend != Some(0.0))
             }
-            Part::Map(_) | Part::Correlation(_) => None,
+            Part::Map(_) | Part::Correlation(_) | Part::Throw(_) => None,
         };
         self.figure.parts.iter().find_map(shows).filter(|_| self.wants(Annotation::Colours))
     }
@@ -271,6 +272,12 @@ impl<'a> Maker<'a> {
             (Part::Map(part), _) => self.map(part, room),
             (_, Prepared::Section(section)) => self.panel(*section, room, painter),
             (Part::Correlation(part), Prepared::Wells(columns, range)) => self.correlation(part, &columns, range, room),
+            (Part::Throw(_), Prepared::Profile(profile)) => {
+                let has_heave = self.wants(Annotation::Heave);
+                let panel = ThrowPanel { profile: &profile, horizons: self.inputs.horizons, has_heave };
+                let drawn = panel.drawn(room);
+                if drawn.items.is_empty() { Err(self.no_room()) } else { Ok(drawn) }
+            }
             // Every other part is prepared.
             _ => Err(self.no_room()),
         }

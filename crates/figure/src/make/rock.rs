@@ -38,7 +38,8 @@ impl Maker<'_> {
     fn section_labels(&self, blend: f32) -> FaceLabels {
         FaceLabels {
             layers: self.wants(Annotation::Layers) && blend < 1.0,
-            faults: self.wants(Annotation::Faults),
+            faults: self.wants(Annotation::Faults) || self.wants(Annotation::Heave),
+            heave: self.wants(Annotation::Heave),
             queries: self.wants(Annotation::Quality),
         }
     }

@@ -5,7 +5,7 @@
 
 use super::{Document, ExtractionEntry, FigureEntry, Origin, Style};
 use crate::error::Noun;
-use figure::{BlockPart, CorrelationPart, Figure, MapPart, Part};
+use figure::{BlockPart, CorrelationPart, Figure, MapPart, Part, ThrowPart};
 use render::{IsosurfaceSource, LabelChange, Media, Scene};
 use std::fmt;
 use ttf::LayerTtf;
@@ -300,6 +300,7 @@ fn visit_figure(figure: &mut Figure, visitor: &mut ReferenceVisitor<'_, '_, '_>)
             keep(datum, |surface| visitor.words(HORIZON, surface));
             !(had_wells && wells.is_empty())
         }
+        Part::Throw(ThrowPart { fault }) => visitor.name(FAULT, fault),
     });
     !(had_parts && parts.is_empty())
 }

@@ -8,8 +8,9 @@ use crate::convex::meet;
 use crate::draw::vector_block::BlockNames;
 use crate::style::{FRAME_PT, INK, QUIET_INK, TEXT_PT};
 use glam::{DVec2, DVec3};
-use model::StructuralModel;
+use model::{FaultThrows, StructuralModel};
 use page::list::{Across, Group, GroupKind, Ink, Item, Path, PathItem, Stroke, Text, Upright};
+use rayon::prelude::*;
 use render::vector::SeenSection;
 use std::collections::HashSet;
 use survey::SurveyGeometry;
@@ -41,6 +42,8 @@ pub(crate) struct FaceLabels {
     pub layers: bool,
     /// Names, throws and half-arrows of faults.
     pub faults: bool,
+    /// Their heave, too.
+    pub heave: bool,
     /// Question marks on lines of horizons that are only continued.
     pub queries: bool,
 }
@@ -86,7 +89,7 @@ impl FaceWriter<'_> {
         let (mut written, mut beside) = (Vec::new(), Vec::new());
         let mut faults = Vec::new();
         if wanted.faults {
-            faults = self.faults(faces, room, &mut written, &mut beside);
+            faults = self.faults(faces, wanted.heave, room, &mut written, &mut beside);
         }
         if wanted.layers {
             self.layers(faces, room, &mut written, &mut beside);
@@ -110,6 +113,7 @@ impl FaceWriter<'_> {
     fn faults(
         &self,
         faces: &[SeenSection],
+        has_heave: bool,
         room: &mut LabelRoom,
         written: &mut Vec<Item>,
         beside: &mut Vec<Beside>,
@@ -117,13 +121,17 @@ impl FaceWriter<'_> {
         let runs = faults::runs((self.model, self.geometry), faces, self.page_from_voxel, self.page, self.air);
         let lines: Vec<Vec<DVec2>> = runs.iter().map(faults::FaultRun::line).collect();
         let mut named = Vec::new();
-        for run in &runs {
-            let throw = run.throw(self.model, self.geometry);
+        let throw = |run: &faults::FaultRun| {
+            let sense = FaultThrows::new(self.model, run.fault).sense()?;
+            run.throw((self.model, self.geometry), sense)
+        };
+        let throws: Vec<Option<faults::FaceThrow>> = runs.par_iter().map(throw).collect();
+        for (run, throw) in runs.iter().zip(throws) {
             let name = self.names.fault(run.fault);
             let mut group = Group::new(GroupKind::Fault, name.clone());
             let arrows = throw.and_then(|throw| run.arrows(throw, self.page_from_voxel, room));
             group.items.extend(arrows.map(Item::from));
-            named.push((run, faults::said(&name, throw, self.geometry), group));
+            named.push((run, faults::said(&name, throw, self.geometry, has_heave), group));
         }
         // Names yield to the arrows of all faults.
         for (run, said, mut group) in named {

@@ -83,8 +83,9 @@ impl BlockAnnotation<'_> {
 
     /// Where in its room the picture of a block lies, so that axes stand beside it.
     pub(crate) fn pane(&self, room: Rect, scene: &Scene) -> Rect {
-        let is_beside =
-            self.wants(Annotation::Axes) || self.wants(Annotation::Layers) || self.wants(Annotation::Faults);
+        let is_beside = [Annotation::Axes, Annotation::Layers, Annotation::Faults, Annotation::Heave]
+            .into_iter()
+            .any(|kind| self.wants(kind));
         if !is_beside {
             return room;
         }
@@ -144,7 +145,8 @@ impl BlockAnnotation<'_> {
         if let Some(model) = self.model.filter(|_| is_rock) {
             let wanted = FaceLabels {
                 layers: self.wants(Annotation::Layers) && scene.blend < 1.0,
-                faults: self.wants(Annotation::Faults),
+                faults: self.wants(Annotation::Faults) || self.wants(Annotation::Heave),
+                heave: self.wants(Annotation::Heave),
                 queries: scene.outlines.unpicked == Unpicked::Dashed,
             };
             let mut faces = if wanted.any() { seen_sections(scene, self.geometry, model) } else { Vec::new() };

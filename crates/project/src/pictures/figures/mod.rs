@@ -316,7 +316,7 @@ pub(crate) fn section_places(figure: &Figure, geometry: &SurveyGeometry) -> Plac
                     places.add_plane(normal.extend(0.0), normal.dot(leg[0]), [low.extend(0.0), high.extend(last[2])]);
                 }
             }
-            Part::Block(_) | Part::Map(_) | Part::Correlation(_) => {}
+            Part::Block(_) | Part::Map(_) | Part::Correlation(_) | Part::Throw(_) => {}
         }
     }
     places
@@ -335,7 +335,7 @@ fn needs(figure: &Figure) -> Scene {
             }
             Part::Section(section) => (is_raw, shown) = (is_raw || section.blend != Some(0.0), section.show),
             Part::Fence(fence) => (is_raw, shown) = (is_raw || fence.blend != Some(0.0), fence.show),
-            Part::Map(_) | Part::Correlation(_) => {}
+            Part::Map(_) | Part::Correlation(_) | Part::Throw(_) => {}
         }
     }
     if scene.face_data == FaceData::Rock {
