@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws README's first picture, a section of the same rock, a page of four, a map, and the block in black and white, from the project of
+# Draws README's first picture, a section of the same rock, a page of four, a map, the throw along a fault, and the block in black and white, from the project of
 # `petroglyph demo` (`make demo`), and the blocks with salt and with an overturned limb from synthetic surveys that it makes in a temporary folder:
 #   docs/readme.sh out/demo/demo.petro [FOLDER]
 set -euo pipefail
@@ -18,6 +18,7 @@ on the face on which they stand; where a contact is in short dashes and queried 
     --cut nearest,0.45,0.45 --blend 0 --size-cm 17x12 --dpi 150
 "$petroglyph" render "$project" "$folder/figure-map.png" --map Bravo --annotate all --size-cm 14x12 --dpi 150 \
     --credit "synthetic survey"
+"$petroglyph" render "$project" "$folder/throw-profile.png" --throw "Dying fault" --heave --size-cm 15x13 --dpi 150
 
 "$petroglyph" render "$project" "$folder/cut-fence.png" --size 1080x720 --samples 4 --azimuth 335 --zoom 1.05 \
     --cut-fence 101,545 150,585 205,560 260,600 --cut-smooth

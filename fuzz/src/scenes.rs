@@ -21,6 +21,7 @@ pub fn document() -> Document {
             origin: origin(),
             assembly: None,
             colour: None,
+            gap_m: None,
             refined: Vec::new(),
         })
         .into();

@@ -24,7 +24,7 @@ use model::FaultNetwork;
 use rayon::prelude::*;
 use rest::Rest;
 use spline::{BlockSpline, Observation};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use survey::geometry::SurveyGeometry;
 use survey::horizon::{NodeGrid, Quality, Sheet};
 use survey::progress::{Cancelled, Progress};
@@ -38,8 +38,10 @@ const FEWEST_OF_BLOCK: usize = 6;
 const COARSE: usize = 64;
 /// Places beyond a tip at which two blocks are tied, at most for each pair of blocks.
 const MOST_TIES: usize = 40;
-/// Nodes are made so far from each point, also outside of the points' outline, nodes.
+/// Of blocks with no more points than the second number, nodes are made so far from each point, also outside of the points'
+/// outline, nodes.
 const AROUND_POINT: usize = 4;
+const FEW_POINTS: usize = 100;
 /// An error of one point must grow to no more than twice anywhere in a block for the block to have a dip of its own:
 /// the largest variance of a plane through its points, of that of one point.
 const STEADY: f64 = 4.0;
@@ -365,9 +367,9 @@ impl<'a> Fitter<'a> {
         let line = |u: usize| -> Result<Line, Cancelled> {
             let mut made = vec![vec![(f32::NAN, Quality::Hole); nv]; blocks.len()];
             let mut missed = Vec::new();
-            for v in 0..nv {
+            let traces = (0..nv).map(|v| DVec2::new(u as f64, v as f64));
+            for (v, trace) in traces.enumerate() {
                 let n = u * nv + v;
-                let trace = DVec2::new(u as f64, v as f64);
                 let is_inside = outline.inside[n];
                 if !is_inside && !blocks.iter().any(|block| around.contains(&(*block, n as u32))) {
                     continue;
@@ -432,11 +434,13 @@ impl<'a> Fitter<'a> {
     }
 
     /// The nodes within a few nodes of each block's points.
-    fn around(&self, points: &[BlockPoint]) -> std::collections::HashSet<(u16, u32)> {
+    fn around(&self, points: &[BlockPoint]) -> HashSet<(u16, u32)> {
         let [nu, nv, _] = self.geometry.size();
-        let mut around = std::collections::HashSet::new();
+        let mut around = HashSet::new();
         let reach = AROUND_POINT as f64;
-        for point in points {
+        let mut counts: HashMap<u16, usize> = HashMap::new();
+        points.iter().for_each(|point| *counts.entry(point.block).or_default() += 1);
+        for point in points.iter().filter(|point| counts[&point.block] <= FEW_POINTS) {
             let range = |at: f64, count: usize| {
                 let (low, high) = ((at - reach).ceil().max(0.0), (at + reach).floor().min(count as f64 - 1.0));
                 if high < low { 0..0 } else { low as usize..high as usize + 1 }

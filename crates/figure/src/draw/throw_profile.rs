@@ -37,6 +37,8 @@ const KEY_SHARE: f64 = 0.36;
 const LEAST_PT: [f64; 2] = [70.0, 45.0];
 /// Room above the largest value, of the range.
 const HEADROOM: f64 = 0.1;
+/// Room beside the ends of a fault, of its length.
+const BESIDE: f64 = 0.02;
 /// A line is broken where no line down the dip has a point for more than so many steps.
 const BROKEN: f64 = 1.6;
 /// Misfits larger than this, in samples, have an error bar.
@@ -231,7 +233,7 @@ impl ThrowPanel<'_> {
         };
         let across = Axis {
             name: "Distance along strike (m)".into(),
-            ends: [0.0, profile.length_m.max(1e-6)],
+            ends: [-BESIDE, 1.0 + BESIDE].map(|share| share * profile.length_m.max(1e-6)),
             at: [body.min.x, body.max.x],
             least_step: 0.0,
         };
