@@ -6,6 +6,7 @@
 use super::dip::{self, DipSettings, DipVolumes};
 use super::envelope::envelope;
 use super::error::AttributeError;
+use super::likelihood::{self, fault_likelihood};
 use super::semblance::{SemblanceSettings, semblance};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -24,8 +25,8 @@ const WRITER_SHARE: [u64; 2] = [2, 7];
 const WRITER_BYTES: u64 = 9 << 20;
 
 /// Number of float32 volumes of a piece's size that are held while the piece is computed: what it is computed
-/// from, two dips, and the result or the other order of the traces.
-const VOLUMES_HELD: u64 = 5;
+/// from, two dips, and the result or the other order of the traces; two more for the sums of the fault likelihood.
+const VOLUMES_HELD: u64 = 7;
 
 /// The same for an angle: the two dips and the result.
 const ANGLE_VOLUMES_HELD: u64 = 3;
@@ -132,6 +133,12 @@ pub fn semblance_blocks<'a>(
     computed(source, reach, |volume, quiet| semblance(volume, &dip::dip(volume, steering, quiet)?, settings, quiet))
 }
 
+/// The fault likelihood of a volume along its own slopes; `geometry` is that of the survey.
+pub fn fault_likelihood_blocks<'a>(source: &'a dyn BoxSource, geometry: &'a SurveyGeometry) -> AttributeBlocks<'a> {
+    let compute = |volume: &Volume<f32>, quiet: &Progress| fault_likelihood(volume, geometry, quiet);
+    computed(source, likelihood::reach(geometry), compute)
+}
+
 /// The dips of a volume along inlines and along crosslines, samples a line.
 ///
 /// # Errors
@@ -208,7 +215,7 @@ fn span(block: &Block, size: [usize; 3]) -> ([usize; 3], [usize; 3]) {
 }
 
 /// What `compute` makes of a volume, with `reach` lines around each piece.
-fn computed<'a>(
+pub fn computed<'a>(
     source: &'a dyn BoxSource,
     reach: usize,
     compute: impl Fn(&Volume<f32>, &Progress) -> Result<Volume<f32>, AttributeError> + 'a,
@@ -275,7 +282,7 @@ mod tests {
         assert!(gathered(semblance_blocks(&volume, &steering, &settings), &volume) == whole);
         let mut little = semblance_blocks(&volume, &steering, &settings);
         // Beside the writer's 9 MiB and a block of 288 KB, a piece of 25 by 30 traces has room.
-        little.share_memory((9 << 20) + 650_000);
+        little.share_memory((9 << 20) + 830_000);
         assert_eq!(little.pieces(&Block { inlines: 0..50, crosslines: 0..60 }).len(), 4);
         assert!(gathered(little, &volume) == whole);
         assert!(gathered(envelope_blocks(&volume), &volume) == envelope(&volume, &quiet).unwrap());
@@ -283,6 +290,8 @@ mod tests {
         assert!(gathered(inline, &volume) == dips.inline);
         assert!(gathered(crossline, &volume) == dips.crossline);
         let geometry = geometry(size);
+        let likely = fault_likelihood(&volume, &geometry, &quiet).unwrap();
+        assert!(gathered(fault_likelihood_blocks(&volume, &geometry), &volume) == likely);
         let angle = dip_angle_blocks(&dips.inline, &dips.crossline, &geometry);
         assert!(gathered(angle, &volume) == dip_angle(&dips, &geometry));
     }

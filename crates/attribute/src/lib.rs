@@ -5,6 +5,8 @@
 //! |---|---|
 //! | [`dip()`] | how many samples deeper the reflections are on the next line |
 //! | [`semblance()`] | how similar neighbouring traces are along the reflections: low at faults |
+//! | [`fault_likelihood()`] | where a steep plane breaks the reflections, with its strike and dip |
+//! | [`slopes()`] | as dips, but smooth past faults |
 //! | [`envelope()`] | how strong the reflections are, whatever their phase |
 //!
 //! These functions work on a volume in memory. [`blocks`] computes the same attributes of a volume of any
@@ -17,7 +19,9 @@ pub mod blocks;
 mod dip;
 mod envelope;
 mod error;
+pub mod likelihood;
 mod semblance;
+mod slopes;
 mod window;
 
 #[cfg(test)]
@@ -26,4 +30,6 @@ mod tests;
 pub use dip::{DipSettings, DipVolumes, dip};
 pub use envelope::envelope;
 pub use error::AttributeError;
+pub use likelihood::{Likelihood, fault_likelihood, likelihood};
 pub use semblance::{SemblanceSettings, semblance};
+pub use slopes::slopes;

@@ -82,19 +82,7 @@ pub fn semblance(
             let mut stack = TraceStack::new(nz, settings.half_window);
             for (y, out) in line.chunks_mut(nz).enumerate().filter(|&(y, _)| volume.is_live(x, y)) {
                 stack.clear();
-                let (p, q) = (dips.inline.trace(x, y), dips.crossline.trace(x, y));
-                let reach = settings.half_width as isize;
-                for (i, j) in (-reach..=reach).flat_map(|i| (-reach..=reach).map(move |j| (i, j))) {
-                    let place = x.checked_add_signed(i).zip(y.checked_add_signed(j));
-                    let Some((tx, ty)) = place.filter(|&(tx, ty)| tx < nx && ty < ny && volume.is_live(tx, ty)) else {
-                        continue;
-                    };
-                    if (i, j) == (0, 0) {
-                        stack.add_straight(volume.trace(tx, ty));
-                    } else {
-                        stack.add_steered(volume.trace(tx, ty), p, q, i as f32, j as f32);
-                    }
-                }
+                stack.add_around(volume, dips, [x, y], settings.half_width);
                 stack.semblance(volume.trace(x, y), out);
             }
             progress.step(1)
@@ -104,7 +92,7 @@ pub fn semblance(
 }
 
 /// Sums over traces at each sample of one trace, with room for the window at both ends.
-struct TraceStack {
+pub(super) struct TraceStack {
     half_window: usize,
     sum: Vec<f32>,
     squares: Vec<f32>,
@@ -115,7 +103,7 @@ struct TraceStack {
 }
 
 impl TraceStack {
-    fn new(samples: usize, half_window: usize) -> Self {
+    pub(super) fn new(samples: usize, half_window: usize) -> Self {
         let zeros = || vec![0.0f32; samples];
         let padded = || vec![0.0f32; samples + 2 * half_window];
         Self {
@@ -129,10 +117,45 @@ impl TraceStack {
         }
     }
 
-    fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         for part in [&mut self.sum, &mut self.squares, &mut self.count] {
             part.fill(0.0);
         }
+    }
+
+    /// Adds the traces of a square, along the reflections through the one in its middle.
+    pub(super) fn add_around(
+        &mut self,
+        volume: &Volume<f32>,
+        dips: &DipVolumes,
+        [x, y]: [usize; 2],
+        half_width: usize,
+    ) {
+        let [nx, ny, _] = volume.size();
+        let (p, q) = (dips.inline.trace(x, y), dips.crossline.trace(x, y));
+        let reach = half_width as isize;
+        for (i, j) in (-reach..=reach).flat_map(|i| (-reach..=reach).map(move |j| (i, j))) {
+            let place = x.checked_add_signed(i).zip(y.checked_add_signed(j));
+            let Some((tx, ty)) = place.filter(|&(tx, ty)| tx < nx && ty < ny && volume.is_live(tx, ty)) else {
+                continue;
+            };
+            if (i, j) == (0, 0) {
+                self.add_straight(volume.trace(tx, ty));
+            } else {
+                self.add_steered(volume.trace(tx, ty), p, q, i as f32, j as f32);
+            }
+        }
+    }
+
+    /// The square of the mean of the traces at each sample, or the mean of their squares.
+    pub(super) fn terms(&self, squared_mean: bool, out: &mut [f32]) {
+        let of = |sum: f32, squares: f32, count: f32| match count {
+            0.0 => 0.0,
+            count if squared_mean => (sum / count) * (sum / count),
+            count => squares / count,
+        };
+        let terms = self.sum.iter().zip(&self.squares).zip(&self.count);
+        out.iter_mut().zip(terms).for_each(|(out, ((&sum, &squares), &count))| *out = of(sum, squares, count));
     }
 
     fn add_straight(&mut self, trace: &[f32]) {

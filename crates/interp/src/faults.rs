@@ -96,15 +96,21 @@ pub struct Proposal {
     pub ends: [[f64; 2]; 2],
     /// Shallowest and deepest vertical value of its surface.
     pub depth: [f64; 2],
-    /// Names of the horizons that it offsets; none where it was found from the ends of reflections.
+    /// Names of the horizons that it offsets; none where it was found in the volume.
     pub horizons: Vec<String>,
-    /// Count of pairs of rim nodes on it, or of reflections that end at it.
+    /// Count of pairs of rim nodes on it, or of cells of its surface.
     pub support: usize,
     /// RMS distance of these pairs from its surface, m.
     pub misfit_m: f64,
     /// Area of the offset, m²: the throw along its traces, summed over horizons.
     #[serde(default)]
     pub offset_m2: f64,
+    /// Area of its surface, m².
+    #[serde(default)]
+    pub area_m2: f64,
+    /// How sure its two sides make it, 0 to 1; `None` where no volume was there to measure.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub evidence: Option<f32>,
     /// Whether it is one of the many small proposals, its pairs scatter, or the data show no break on it.
     #[serde(default)]
     pub is_minor: bool,
@@ -115,11 +121,16 @@ pub struct Proposal {
 
 impl Proposal {
     /// What it rests on, in words.
-    pub fn evidence(&self) -> String {
-        if self.horizons.is_empty() {
-            return format!("{} reflections end at it", self.support);
+    pub fn rests_on(&self) -> String {
+        let mut text = if self.horizons.is_empty() {
+            "its two sides match after the throw".to_owned()
+        } else {
+            format!("{} pairs on {}, {:.0} m off", self.support, self.horizons.join(", "), self.misfit_m)
+        };
+        if let Some(evidence) = self.evidence {
+            text += &format!(", evidence {evidence:.2}");
         }
-        format!("{} pairs on {}, {:.0} m off", self.support, self.horizons.join(", "), self.misfit_m)
+        text
     }
 
     /// The proposal as a fault of the given name.
@@ -248,11 +259,13 @@ fn describe(
     let (dips_to_positive, run) = surface.run();
     let side = cluster.iter().map(|pair| surface.throw_across(pair)).sum::<f64>();
     let strike = surface.strike();
+    let mesh = surface.mesh(geometry);
+    let area_m2 = area_m2(&mesh, geometry);
     let bearing = strike.x.atan2(strike.y).to_degrees().rem_euclid(180.0);
     Proposal {
         id: 0,
         name: String::new(),
-        mesh: surface.mesh(geometry),
+        mesh,
         strike_deg: bearing,
         dip_deg: (1.0 / run.max(1e-9)).atan().to_degrees(),
         // The hanging wall is the side towards which the fault dips.
@@ -267,9 +280,18 @@ fn describe(
         support: cluster.len(),
         misfit_m: surface.misfit_m,
         offset_m2: surface.offset_m2(cluster, geometry),
+        area_m2,
+        evidence: None,
         is_minor: false,
         semblance: semblance.map(|volume| surface::semblance_on(surface, geometry, volume)),
     }
+}
+
+/// Area of a mesh in world coordinates, m².
+fn area_m2(mesh: &TriangleMesh, geometry: &SurveyGeometry) -> f64 {
+    let metric = geometry.metric_from_voxel();
+    let at = |n: u32| metric * geometry.voxel_from_world(mesh.vertices[n as usize]);
+    mesh.triangles.iter().map(|&[a, b, c]| 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).length()).sum()
 }
 
 /// A voxel position in metres.

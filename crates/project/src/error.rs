@@ -535,7 +535,9 @@ pub enum ProjectError {
     #[error("the project has no horizons, so there are no layers to parameterize")]
     NoLayers,
     /// There is nothing from which to propose faults.
-    #[error("the project has neither horizons whose offsets could tell faults, nor candidates that end at them")]
+    #[error(
+        "the project has neither a volume in which faults could be found, nor horizons whose offsets could tell them"
+    )]
     NoEvidence,
     /// No faults were proposed.
     #[error("no faults have been proposed yet")]

@@ -91,7 +91,7 @@ impl TruthFault {
     }
 
     /// Downward displacement of the hanging wall at (u, v), m.
-    pub(crate) fn throw_at(&self, place: DVec2) -> f64 {
+    pub fn throw_at(&self, place: DVec2) -> f64 {
         let away = (place.x - self.trace_u(place.y)) / self.reach_m;
         self.throw_m * self.taper(place.y)[0] * (-away * away).exp()
     }

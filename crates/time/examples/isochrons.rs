@@ -14,7 +14,7 @@ use std::error::Error;
 use std::time::Instant;
 use survey::{Progress, Volume};
 use synth::{SynthSettings, Synthetic};
-use time::{Cut, Event, Node, Reflections, Seed, TimeSettings, find_faults, geologic_time};
+use time::{Cut, Event, Node, Reflections, Seed, TimeSettings, geologic_time};
 
 /// Error that stands for no crossing, samples.
 const NO_CROSSING: f64 = 99.0;
@@ -218,8 +218,9 @@ fn case(side: usize, snr: f64, seed: u64, faults: Faults) -> Result<Case, Box<dy
     let mut cuts = Cut::of_network(&network, surfaces.size);
     let mut coverage = Vec::new();
     if faults == Faults::Found {
-        let found = find_faults(&survey.seismic, &surfaces, TimeSettings::default().fewest_vertices, &progress)?;
-        let found: Vec<Cut> = found.into_iter().map(|fault| fault.cut).collect();
+        let found = faults::find(&survey.seismic, &survey.geometry, &progress)?;
+        let found = found.iter().filter(|fault| fault.is_accepted());
+        let found: Vec<Cut> = found.map(|fault| Cut::of_sheet(&fault.sheet, surfaces.size)).collect();
         coverage = cuts.iter().map(|truth| covered(truth, &found)).collect();
         cuts = found;
     }

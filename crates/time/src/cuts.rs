@@ -4,9 +4,13 @@
 //! `y = Y(x, z)`, and no place where there is no fault, so that a fault may end inside the volume. Two points are
 //! separated when both lie where the fault exists and on different sides of it. Space: voxels.
 
+use faults::Sheet;
 use glam::{DVec3, Vec3};
 use model::FaultNetwork;
 use rayon::prelude::*;
+
+/// Rounds in which the place of a found surface on a line settles.
+const SETTLED: usize = 8;
 
 /// The axis across which a fault runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -91,6 +95,21 @@ impl Cut {
         let (a, b) = (self.side(a, za), self.side(b, zb));
         // A comparison with NaN is false.
         (a > 0.0 && b <= 0.0) || (a <= 0.0 && b > 0.0)
+    }
+
+    /// The cut of a surface that was found in a volume of a size.
+    pub fn of_sheet(sheet: &Sheet, [nx, ny, nz]: [usize; 3]) -> Self {
+        let frame = sheet.frame;
+        let across = if frame.across[0].abs() >= frame.across[1].abs() { Across::Inlines } else { Across::Crosslines };
+        let (axis, lines) = if across == Across::Inlines { (1, ny) } else { (0, nx) };
+        let place = |line: usize, z: usize| {
+            let z = z as f32;
+            let on_line =
+                |height: f32| (line as f32 - frame.origin[axis] - height * frame.across[axis]) / frame.along[axis];
+            let u = (0..SETTLED).fold(on_line(0.0), |u, _| on_line(sheet.height_at(u, z)));
+            if sheet.is_there(u, z) { frame.lines(u, sheet.height_at(u, z))[1 - axis] } else { f32::NAN }
+        };
+        Self::new(across, lines, nz, place)
     }
 
     /// The cuts of the faults of a network, where these were interpreted. A fault runs across the axis that

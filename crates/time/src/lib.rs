@@ -18,7 +18,7 @@
 //! | step | where |
 //! |---|---|
 //! | what the user interpreted | [`Interpretation`] |
-//! | faults as cuts, and finding them where none is drawn | [`Cut`], [`find_faults`], `extent`, [`proposals`] |
+//! | faults as cuts, drawn or found in the volume | [`Cut`] |
 //! | patches cut at faults: hubs | `hubs` |
 //! | links and dips | `links` |
 //! | where it starts | `start` |
@@ -41,8 +41,6 @@ mod compute;
 mod cuts;
 mod error;
 mod event;
-mod extent;
-mod find;
 mod finish;
 mod flatten;
 mod hubs;
@@ -54,7 +52,6 @@ mod links;
 mod logs;
 mod matches;
 mod merge;
-mod proposal;
 mod rate;
 mod reflections;
 mod slabs;
@@ -71,12 +68,10 @@ pub use compute::{GeologicTime, TimeSettings, geologic_time};
 pub use cuts::{Across, Cut};
 pub use error::TimeError;
 pub use event::{Event, Node, Seed, Support};
-pub use find::{FoundFault, find_faults};
 pub use flatten::flattened;
 pub use interpretation::{Interpretation, Jump, KnownHorizon, Place};
 pub use isochron::{Crossing, Isochron, isochron};
 pub use levels::{Character, Level, characters, strongest_levels};
-pub use proposal::proposals;
 pub use rate::rates;
 pub use reflections::{Reflection, Reflections};
 pub use slabs::{JoinedSlabs, Slabs, surfaces_within};

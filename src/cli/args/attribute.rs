@@ -8,9 +8,10 @@ pub(in crate::cli) struct AttributeArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
     /// semblance (similarity of neighbouring traces, low at faults), envelope (strength of reflections),
-    /// dip (their steepness); of geologic time, `petroglyph time` first, flattened (a Wheeler diagram: beds laid
+    /// dip (their steepness), fault-likelihood (0 to 1 where a steep plane breaks the reflections), throw (of faults, where
+    /// both sides match after one; samples, reverse ones negative); of geologic time, `petroglyph time` first, flattened (a Wheeler diagram: beds laid
     /// flat; empty where beds are missing) or hiatus (how fast it runs down the traces: high at unconformities)
-    #[arg(long, value_name = "semblance|envelope|dip|flattened|hiatus")]
+    #[arg(long, value_name = "semblance|envelope|dip|fault-likelihood|throw|flattened|hiatus")]
     pub(in crate::cli) kind: String,
     /// Name of the new volume; a dip adds NAME-inline and NAME-crossline
     #[arg(long)]

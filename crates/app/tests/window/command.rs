@@ -66,6 +66,8 @@ fn proposed(project: &mut Project) {
         support: 40,
         misfit_m: 3.0,
         offset_m2: 6000.0,
+        area_m2: 60_000.0,
+        evidence: None,
         is_minor: id == 3,
         semblance: None,
     };

@@ -10,7 +10,9 @@ use crate::folder::Draft;
 use crate::interpretation::times::time_volume;
 use crate::memory_budget;
 use ::time::Cut;
-use attribute::blocks::{AttributeBlocks, dip_angle_blocks, dip_blocks, envelope_blocks, semblance_blocks};
+use attribute::blocks::{
+    AttributeBlocks, dip_angle_blocks, dip_blocks, envelope_blocks, fault_likelihood_blocks, semblance_blocks,
+};
 use attribute::{AttributeError, DipSettings, SemblanceSettings};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -85,6 +87,10 @@ impl ComputeAttribute {
             AttributeKind::Semblance => {
                 write(out[0], semblance_blocks(&source, &self.dip, &self.semblance), memory_bytes, progress)?;
             }
+            AttributeKind::FaultLikelihood => {
+                write(out[0], fault_likelihood_blocks(&source, &geometry), memory_bytes, progress)?;
+            }
+            AttributeKind::Throw => write(out[0], faults::throw_blocks(&source, &geometry), memory_bytes, progress)?,
             AttributeKind::Dip => {
                 let [inline, crossline] = dip_blocks(&source, &self.dip)?;
                 write(out[1], inline, memory_bytes, progress)?;
@@ -134,7 +140,11 @@ impl ComputeAttribute {
                 ("-crossline", Some("samples per crossline")),
             ],
             AttributeKind::Hiatus => vec![("", Some("times the median"))],
-            AttributeKind::Semblance | AttributeKind::Envelope | AttributeKind::Flattened => vec![("", None)],
+            AttributeKind::Throw => vec![("", Some("samples"))],
+            AttributeKind::Semblance
+            | AttributeKind::Envelope
+            | AttributeKind::FaultLikelihood
+            | AttributeKind::Flattened => vec![("", None)],
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::facts::Facts;
 use crate::interpretation::candidates::Candidates;
 use crate::interpretation::extraction;
 use crate::interpretation::times::Obeyed;
-use ::time::{JoinedSlabs, Slabs, TimeSettings, find_faults, geologic_time, surfaces_within};
+use ::time::{Cut, JoinedSlabs, Slabs, TimeSettings, geologic_time, surfaces_within};
 use interp::{Extremum, InterpError, Surface, Surfaces, Vertex};
 use std::borrow::Cow;
 use std::collections::VecDeque;
@@ -157,9 +157,11 @@ impl TimeSlabs {
         let mut told = self.obeyed.interpretation.within(range);
         let mut found = 0;
         if told.cuts.is_empty() && self.obeyed.interpretation.cuts.is_empty() {
-            let faults = find_faults(&part, &surfaces, self.settings.fewest_vertices, progress)?;
-            found = faults.len();
-            told.cuts = faults.into_iter().map(|fault| fault.cut).collect();
+            let geometry = &self.volume.info().geometry;
+            let faults = faults::find(&part, geometry, progress)?;
+            let sure = faults.iter().filter(|fault| fault.is_accepted());
+            told.cuts = sure.map(|fault| Cut::of_sheet(&fault.sheet, part.size())).collect();
+            found = told.cuts.len();
         }
         Ok((geologic_time(&part, &surfaces, &told, &self.settings, progress)?.tau, found))
     }

@@ -16,8 +16,8 @@ pub(crate) const EXTRACTION: u32 = 2;
 /// Proposed faults.
 pub const PROPOSALS: u32 = 1;
 
-/// Faults found from the ends of reflections.
-pub(crate) const FOUND_FAULTS: u32 = 1;
+/// Faults found in the volume.
+pub(crate) const FOUND_FAULTS: u32 = 2;
 
 #[cfg(test)]
 mod tests;

@@ -87,7 +87,7 @@ pub enum Chooser {
 
 /// The attributes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "kebab-case")]
 pub enum AttributeKind {
     /// Semblance: how alike neighbouring traces are along the reflections; low at faults.
     Semblance,
@@ -95,6 +95,10 @@ pub enum AttributeKind {
     Envelope,
     /// Dip: the steepness of the reflections, as three volumes.
     Dip,
+    /// Fault likelihood: where a steep plane breaks the reflections, 0 to 1.
+    FaultLikelihood,
+    /// The throw at each place of a ridge of the fault likelihood.
+    Throw,
     /// The volume with its beds laid flat by the newest geologic time: a Wheeler diagram.
     Flattened,
     /// How fast the newest geologic time runs down the traces: more than 1 where beds are missing, as at an unconformity.
@@ -103,7 +107,8 @@ pub enum AttributeKind {
 
 impl AttributeKind {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Semblance, Self::Envelope, Self::Dip, Self::Flattened, Self::Hiatus];
+    pub const ALL: [Self; 7] =
+        [Self::Semblance, Self::Envelope, Self::Dip, Self::FaultLikelihood, Self::Throw, Self::Flattened, Self::Hiatus];
 
     /// The word for it on the command line.
     pub fn name(self) -> &'static str {
@@ -111,6 +116,8 @@ impl AttributeKind {
             Self::Semblance => "semblance",
             Self::Envelope => "envelope",
             Self::Dip => "dip",
+            Self::FaultLikelihood => "fault-likelihood",
+            Self::Throw => "throw",
             Self::Flattened => "flattened",
             Self::Hiatus => "hiatus",
         }

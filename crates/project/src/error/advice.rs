@@ -30,7 +30,7 @@ impl ProjectError {
             Self::ReadOnly { .. } => "copy the project to a folder you may write to; nothing was changed",
             Self::SeveralHorizons { .. } => "make the picks of each horizon in a separate step",
             Self::FlatSticks { .. } => "draw sticks next to one another, each along the dip of the fault",
-            Self::NoEvidence => "extract candidates with `petroglyph extract`, or assemble or import horizons first",
+            Self::NoEvidence => "import a volume, or assemble or import horizons first",
             Self::BadName { .. } => "use letters, digits, blanks, - and _",
             Self::Cancelled(_) => "nothing was changed",
             Self::OtherLattice { .. } => {

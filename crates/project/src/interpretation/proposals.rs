@@ -1,5 +1,6 @@
-//! Proposed faults, from the offsets of horizons and from where reflections end, which needs no horizon; stored for as
-//! long as a state of the history names them. A fault that both tell of is proposed once, as its horizons tell it.
+//! Proposed faults, found in the volume and from the offsets of horizons; stored for as long as a state of the history names
+//! them. Both kinds are measured on both sides of their surface. A fault that both tell of is proposed once, as it was
+//! found in the volume, which knows where it ends.
 //!
 //! `derived/fault-proposals-KEY.json` holds the proposals of the horizons, faults, volume and settings that the key
 //! identifies. Proposals of another state cannot be accepted, unless that state differs only by faults accepted from
@@ -11,16 +12,16 @@ use crate::document::{Document, Origin};
 use crate::error::{Noun, ProjectError};
 use crate::facts::Facts;
 use crate::folder::{history, storage};
-use crate::interpretation::candidates::Candidates;
-use ::time::{Cut, FoundFault, TimeSettings, find_faults};
+use ::faults::Sheet;
+use ::time::Cut;
 use attribute::{DipSettings, SemblanceSettings, dip, semblance};
-use interp::faults::{Evidence, Proposal, ProposeSettings, Repeat, propose_faults};
+use interp::faults::{Evidence, FoundFaults, Proposal, ProposeSettings, Repeat, propose_faults};
 use interp::reassembly::from_horizon;
 use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
-use survey::{Progress, SurveyGeometry};
+use survey::{Progress, SurveyGeometry, TriangleMesh, Volume};
 use system::file::FileAction;
 use system::{file, memory};
 
@@ -47,12 +48,10 @@ impl Proposals {
     pub fn nothing_new(&self) -> Option<&'static str> {
         match (self.proposals.is_empty(), self.repeats.is_empty()) {
             (true, true) if self.horizons.is_empty() => {
-                Some("reflections end nowhere along a surface that the project has no fault for: no fault is proposed")
+                Some("no surface was found on whose two sides the beds match after a throw: no fault is proposed")
             }
-            (true, true) => Some("the horizons are not offset anywhere: no fault is proposed"),
-            (true, false) => {
-                Some("the horizons are offset only where the project has faults already: no fault is proposed")
-            }
+            (true, true) => Some("neither the volume nor the horizons are offset anywhere: no fault is proposed"),
+            (true, false) => Some("there are offsets only where the project has faults already: no fault is proposed"),
             _ => None,
         }
     }
@@ -64,7 +63,7 @@ impl Proposals {
         write!(
             f,
             "{}: {kind}, strikes {:.0} deg, dips {:.0} deg, throw {:.0} {unit} (up to {:.0}), from inline \
-             {:.0}, crossline {:.0} to inline {:.0}, crossline {:.0}, {:.0} to {:.0} {unit}; throw by length {:.0} m2, {}",
+             {:.0}, crossline {:.0} to inline {:.0}, crossline {:.0}, {:.0} to {:.0} {unit}; area {:.0} m2, {}",
             p.id,
             p.strike_deg,
             p.dip_deg,
@@ -76,8 +75,8 @@ impl Proposals {
             b[1],
             p.depth[0],
             p.depth[1],
-            p.offset_m2,
-            p.evidence()
+            p.area_m2,
+            p.rests_on()
         )?;
         if let Some([on, beside]) = p.semblance {
             write!(f, "; semblance {on:.2} on it, {beside:.2} beside")?;
@@ -122,22 +121,14 @@ fn file_of(key: &str) -> String {
 
 /// The path of the proposals of a state and settings.
 pub fn path(root: &Path, document: &Document, settings: &ProposeSettings) -> PathBuf {
-    root.join(storage::DERIVED).join(file_of(&whole_key(document, settings)))
-}
-
-/// The key with the candidates, where there are any.
-fn whole_key(document: &Document, settings: &ProposeSettings) -> String {
-    match &document.extraction {
-        Some(extraction) => key_of(&(key(document, settings), &extraction.key, revision::FOUND_FAULTS)),
-        None => key(document, settings),
-    }
+    root.join(storage::DERIVED).join(file_of(&key(document, settings)))
 }
 
 /// The key of proposals: a hash of everything that they are made from.
 fn key(document: &Document, settings: &ProposeSettings) -> String {
     let faults = document.fault_shapes();
-    let volume = document.volumes.iter().find(|entry| entry.geometry.is_none()).map(|entry| &entry.hash);
-    let revisions = [revision::PROPOSALS, revision::MODEL];
+    let volume = document.amplitudes().ok().map(|entry| &entry.hash);
+    let revisions = [revision::PROPOSALS, revision::FOUND_FAULTS, revision::MODEL];
     key_of(&(revisions, &document.geometry, hashes(document), faults, volume, settings))
 }
 
@@ -145,11 +136,11 @@ fn hashes(document: &Document) -> Vec<String> {
     document.horizons.iter().map(|entry| entry.hash.clone()).collect()
 }
 
-/// Proposes faults from the project's horizons and its candidates, unless that was done, and stores the proposals under
-/// their key; [`crate::command::ProposeFaults`] makes the state that names them. Needs no lock.
+/// Proposes faults from the project's volume and its horizons, unless that was done, and stores the proposals under their
+/// key; [`crate::command::ProposeFaults`] makes the state that names them. Needs no lock.
 ///
 /// # Errors
-/// There are neither horizons nor candidates, data cannot be read, or the user cancelled.
+/// There are neither horizons nor a volume, data cannot be read, or the user cancelled.
 pub(crate) fn compute(
     root: &Path,
     document: &Document,
@@ -157,17 +148,17 @@ pub(crate) fn compute(
     progress: &Progress,
 ) -> Result<(String, Proposals), ProjectError> {
     let geometry = document.frame()?;
-    if document.horizons.is_empty() {
-        return from_candidates(root, document, settings, progress);
+    let volume = document.amplitudes().ok();
+    if document.horizons.is_empty() && volume.is_none() {
+        return Err(ProjectError::NoEvidence);
     }
-    let key = whole_key(document, settings);
+    let key = key(document, settings);
     let none = FaultNetwork::none();
     let mut sheets = Vec::new();
     for entry in &document.horizons {
         let horizon = content::read_horizon(root, entry, progress)?;
         sheets.push(from_horizon(&horizon, geometry, &none));
     }
-    let volume = document.volumes.iter().find(|entry| entry.geometry.is_none());
     // The key relies on the hashes that were recorded; all that it is made of has now been compared with them.
     let blocks = Facts::of(root, document).get(&FaultBlocks, progress)?;
     if let Some(entry) = volume {
@@ -178,92 +169,112 @@ pub(crate) fn compute(
     }
     let horizons: Vec<Evidence> =
         document.horizons.iter().zip(&sheets).map(|(entry, sheets)| Evidence { name: &entry.name, sheets }).collect();
-    let likeness = match volume {
+    let mut found = FoundFaults::default();
+    let mut all = Vec::new();
+    match volume {
         Some(entry) => {
             memory::check("finding faults", &geometry.size(), FINDING_BYTES)?;
             let seismic = content::read_volume(root, entry, geometry, progress)?;
-            let dips = dip(&seismic, &DipSettings::default(), progress);
-            dips.and_then(|dips| semblance(&seismic, &dips, &SemblanceSettings::default(), progress)).ok()
+            if !horizons.is_empty() {
+                let dips = dip(&seismic, &DipSettings::default(), progress)?;
+                let likeness = semblance(&seismic, &dips, &SemblanceSettings::default(), progress)?;
+                drop(dips);
+                found = propose_faults(&horizons, geometry, &blocks, Some(&likeness), settings, progress)?;
+            }
+            all = in_volume(&seismic, geometry, &blocks, progress)?;
+            let told = measured(&seismic, geometry, found.proposals, progress)?;
+            join(&mut all, told, geometry);
         }
-        None => None,
-    };
-    let found = propose_faults(&horizons, geometry, &blocks, likeness.as_ref(), settings, progress)?;
-    // What comes next needs as much memory.
-    drop(likeness);
-    let mut all = found.proposals;
-    if document.extraction.is_some() {
-        join(&mut all, new_faults(root, document, &blocks, progress)?, geometry);
+        None => {
+            found = propose_faults(&horizons, geometry, &blocks, None, settings, progress)?;
+            all.append(&mut found.proposals);
+        }
     }
+    number(&mut all);
     let proposals = Proposals::new(document, geometry, all, found.repeats);
     write(root, document, &key, proposals.clone())?;
     Ok((key, proposals))
 }
 
-/// Proposes faults from where patches of reflections end, before there is any horizon.
-fn from_candidates(
-    root: &Path,
-    document: &Document,
-    settings: &ProposeSettings,
-    progress: &Progress,
-) -> Result<(String, Proposals), ProjectError> {
-    let geometry = document.frame()?;
-    if document.extraction.is_none() {
-        return Err(ProjectError::NoEvidence);
-    }
-    let key = whole_key(document, settings);
-    // The key relies on the hashes that were recorded.
-    content::open_recorded(root, document.amplitudes()?, geometry)?;
-    let blocks = Facts::of(root, document).get(&FaultBlocks, progress)?;
-    if let Some(known) = read(root, document, &key) {
-        return Ok((key, known));
-    }
-    let new = new_faults(root, document, &blocks, progress)?;
-    let proposals = Proposals::new(document, geometry, ::time::proposals(&new, geometry), Vec::new());
-    write(root, document, &key, proposals.clone())?;
-    Ok((key, proposals))
-}
+/// Memory that finding faults takes for each sample with the volume, bytes.
+const FINDING_BYTES: usize = faults::BYTES_A_VOXEL + size_of::<f32>();
 
-/// Memory that finding faults takes for each sample: the volume, its dips and its semblance, all surfaces.
-const FINDING_BYTES: usize = 28;
-
-/// The faults along which reflections end, but for drawn ones.
-fn new_faults(
-    root: &Path,
-    document: &Document,
-    blocks: &FaultNetwork,
-    progress: &Progress,
-) -> Result<Vec<FoundFault>, ProjectError> {
-    memory::check("finding faults", &document.frame()?.size(), FINDING_BYTES)?;
-    let candidates = Candidates::load(Facts::of(root, document), progress)?;
-    let seismic = content::read_volume(root, document.amplitudes()?, document.frame()?, progress)?;
-    let fewest = TimeSettings::default().fewest_vertices;
-    let found = find_faults(&seismic, &candidates.forest.surfaces, fewest, progress)?;
-    let drawn = Cut::of_network(blocks, seismic.size());
-    Ok(found.into_iter().filter(|fault| !drawn.iter().any(|cut| fault.is_on(cut))).collect())
-}
-
-/// Distance of a horizon's proposal from a found fault within which they are the same, traces.
+/// Distance of a surface from another within which they are the same fault, traces.
 const SAME_FAULT: f32 = 5.0;
 
-/// Adds found faults to the proposals of horizons, but for those that are proposed already; the largest come first again,
-/// minor ones last.
-fn join(all: &mut Vec<Proposal>, mut found: Vec<FoundFault>, geometry: &SurveyGeometry) {
-    let is_on = |proposal: &Proposal, cut: &Cut| {
-        let sides = proposal.mesh.vertices.iter().filter_map(|vertex| {
-            let voxel = geometry.voxel_from_world(*vertex);
-            let [nx, ny, _] = geometry.size();
-            let inside = |at: f64, count: usize| at >= -0.5 && at.round() < count as f64;
-            (inside(voxel.x, nx) && inside(voxel.y, ny)).then(|| {
-                let trace = [voxel.x.round().max(0.0) as usize, voxel.y.round().max(0.0) as usize];
-                cut.side(trace, voxel.z as f32)
-            })
-        });
-        let sides: Vec<f32> = sides.collect();
-        2 * sides.iter().filter(|side| side.abs() <= SAME_FAULT).count() > sides.len()
-    };
-    found.retain(|fault| !all.iter().any(|proposal| is_on(proposal, &fault.cut)));
-    all.extend(::time::proposals(&found, geometry));
-    all.sort_by(|a, b| a.is_minor.cmp(&b.is_minor).then(b.offset_m2.total_cmp(&a.offset_m2)));
+/// The faults that are found in the volume, but for those that the project has.
+fn in_volume(
+    seismic: &Volume<f32>,
+    geometry: &SurveyGeometry,
+    blocks: &FaultNetwork,
+    progress: &Progress,
+) -> Result<Vec<Proposal>, ProjectError> {
+    let drawn = Cut::of_network(blocks, seismic.size());
+    let found = faults::find(seismic, geometry, progress)?;
+    let mut new = faults::proposals(&found, geometry);
+    new.retain(|proposal| !drawn.iter().any(|cut| is_on(proposal, cut, geometry)));
+    Ok(new)
+}
+
+/// What horizons propose, with the evidence of both sides of each; what has none in the volume is minor.
+fn measured(
+    seismic: &Volume<f32>,
+    geometry: &SurveyGeometry,
+    mut told: Vec<Proposal>,
+    progress: &Progress,
+) -> Result<Vec<Proposal>, ProjectError> {
+    if told.is_empty() {
+        return Ok(told);
+    }
+    let slopes = attribute::slopes(seismic, progress)?;
+    let meshes: Vec<&TriangleMesh> = told.iter().map(|proposal| &proposal.mesh).collect();
+    let surfaces = faults::measure(seismic, &slopes, geometry, &meshes, progress)?;
+    for (proposal, surface) in told.iter_mut().zip(surfaces) {
+        proposal.evidence = Some(surface.as_ref().map_or(0.0, |surface| surface.evidence));
+        proposal.is_minor |= !surface.is_some_and(|surface| surface.is_possible());
+    }
+    Ok(told)
+}
+
+/// Whether most of a proposal lies within a few traces of a cut.
+fn is_on(proposal: &Proposal, cut: &Cut, geometry: &SurveyGeometry) -> bool {
+    let [nx, ny, _] = geometry.size();
+    let sides = proposal.mesh.vertices.iter().filter_map(|vertex| {
+        let voxel = geometry.voxel_from_world(*vertex);
+        let inside = |at: f64, count: usize| at >= -0.5 && at.round() < count as f64;
+        (inside(voxel.x, nx) && inside(voxel.y, ny)).then(|| {
+            let trace = [voxel.x.round().max(0.0) as usize, voxel.y.round().max(0.0) as usize];
+            cut.side(trace, voxel.z as f32)
+        })
+    });
+    let sides: Vec<f32> = sides.collect();
+    2 * sides.iter().filter(|side| side.abs() <= SAME_FAULT).count() > sides.len()
+}
+
+/// Adds what horizons tell to what was found in the volume; where both tell of a fault, the found one takes the names of
+/// the horizons that it offsets.
+fn join(all: &mut Vec<Proposal>, told: Vec<Proposal>, geometry: &SurveyGeometry) {
+    let size = geometry.size();
+    let cut = |found: &Proposal| Sheet::of_mesh(&found.mesh, geometry).map(|sheet| Cut::of_sheet(&sheet, size));
+    let cuts: Vec<Option<Cut>> = all.iter().map(cut).collect();
+    for proposal in told {
+        let same = cuts.iter().position(|cut| cut.as_ref().is_some_and(|cut| is_on(&proposal, cut, geometry)));
+        match same {
+            Some(n) => {
+                let found = &mut all[n];
+                found.horizons.extend(proposal.horizons);
+                found.horizons.sort();
+                found.horizons.dedup();
+                found.is_minor &= proposal.is_minor;
+            }
+            None => all.push(proposal),
+        }
+    }
+}
+
+/// Numbers and names proposals, the largest first and minor ones last.
+fn number(all: &mut [Proposal]) {
+    all.sort_by(|a, b| a.is_minor.cmp(&b.is_minor).then(b.area_m2.total_cmp(&a.area_m2)));
     for (n, proposal) in all.iter_mut().enumerate() {
         proposal.id = n as u32 + 1;
         proposal.name = format!("Fault {}", proposal.id);

@@ -68,7 +68,7 @@ class Commands:
 
     def attribute(
         self,
-        kind: Literal["semblance", "envelope", "dip", "flattened", "hiatus"],
+        kind: Literal["semblance", "envelope", "dip", "fault-likelihood", "throw", "flattened", "hiatus"],
         name: str,
         *,
         volume: str | None = None,
@@ -81,7 +81,7 @@ class Commands:
 
         Parameters
         ----------
-        kind : {"semblance", "envelope", "dip", "flattened", "hiatus"}
+        kind : {"semblance", "envelope", "dip", "fault-likelihood", "throw", "flattened", "hiatus"}
             What to compute.
         name : str
             Name of the new volume; a dip adds ``NAME-inline`` and ``NAME-crossline``.

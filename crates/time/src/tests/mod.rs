@@ -2,10 +2,10 @@
 
 use crate::{
     Across, Cut, GeologicTime, Interpretation, Jump, KnownHorizon, Place, Reflections, Seed, Support, TimeError,
-    TimeSettings, find_faults, geologic_time, isochron, proposals,
+    TimeSettings, geologic_time, isochron,
 };
 use interp::{GrowSettings, grow_surfaces};
-use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
+use survey::{Progress, Volume};
 
 mod chaos;
 mod interpretation;
@@ -134,40 +134,6 @@ fn it_refuses_candidates_of_another_volume_and_stops_when_cancelled() {
     cancelled.cancel();
     let stopped = geologic_time(&small, &surfaces, &Interpretation::default(), &settings, &cancelled);
     assert!(matches!(stopped, Err(TimeError::Cancelled(_))));
-}
-
-#[test]
-fn a_fault_is_found_where_patches_end_and_none_where_they_go_on() {
-    let fault = |y: f32, z: f32| 22.0 + 0.3 * (z - 48.0) + 0.2 * (y - 20.0);
-    let strat = |x: f32, y: f32, z: f32| z - 0.2 * y - if x > fault(y, z) { 5.0 } else { 0.0 };
-    let found = |strat: &dyn Fn(f32, f32, f32) -> f32| {
-        let volume = volume([48, 40, 96], strat);
-        let surfaces = grow_surfaces(&volume, &GrowSettings::default(), &Progress::silent()).unwrap();
-        find_faults(&volume, &surfaces, 30, &Progress::silent()).unwrap()
-    };
-    let faults = found(&strat);
-    assert_eq!(faults.len(), 1);
-    let cut = &faults[0].cut;
-    assert_eq!(cut.across, Across::Inlines);
-    let off = |line: usize, z: usize| (cut.at(line, z as f32) - fault(line as f32, z as f32)).abs();
-    let known: Vec<f32> = (0..40)
-        .flat_map(|line| (10..86).map(move |z| (line, z)))
-        .map(|(l, z)| off(l, z))
-        .filter(|d| !d.is_nan())
-        .collect();
-    let mean = known.iter().sum::<f32>() / known.len() as f32;
-    assert!(mean < 1.0 && known.len() > 40 * 76 * 9 / 10, "{mean} of {}", known.len());
-    let throw = faults[0].throw.as_ref().unwrap();
-    assert!((throw.at(20, 48.0) - 5.0).abs() < 0.6, "{}", throw.at(20, 48.0));
-    // The proposal: bins of 25 m, samples of 10 m. The fault goes 0.3 bins a sample and 0.2 bins a line.
-    let geometry = SurveyGeometry::regular([48, 40, 96], 25.0, 10.0, VerticalUnit::Metres);
-    let proposal = &proposals(&faults, &geometry)[0];
-    assert_eq!((proposal.id, proposal.is_minor, proposal.reverse), (1, false, false));
-    assert!((proposal.throw[0] - 50.0).abs() < 6.0, "{:?}", proposal.throw);
-    let dip = (1.04f64.sqrt() / (0.3 * 25.0 / 10.0)).atan().to_degrees();
-    assert!((proposal.dip_deg - dip).abs() < 3.0, "{} for {dip}", proposal.dip_deg);
-    assert!(proposal.mesh.triangles.len() > 100);
-    assert!(found(&|x, y, z| z - 0.2 * y + 0.3 * x).is_empty());
 }
 
 #[test]

@@ -147,7 +147,7 @@ impl FaultsPanel {
 
 /// The evidence for a proposal.
 fn seen(proposal: &Proposal) -> String {
-    let mut text = format!("{}; throw times length {:.0} m²", proposal.evidence(), proposal.offset_m2);
+    let mut text = format!("{}; throw times length {:.0} m²", proposal.rests_on(), proposal.offset_m2);
     if let Some([on, beside]) = proposal.semblance {
         text += &format!("; semblance {on:.2} on it, {beside:.2} beside");
     }

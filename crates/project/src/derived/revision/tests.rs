@@ -106,10 +106,9 @@ fn of_found_faults() -> String {
         *sample = (t * 0.71).sin() + 0.8 * (t * 0.43 + 1.0).sin() + 0.5 * (t * 0.93 + 2.0).cos();
     }
     let quiet = Progress::silent();
-    let surfaces = interp::grow_surfaces(&volume, &interp::GrowSettings::default(), &quiet).unwrap();
-    let found = time::find_faults(&volume, &surfaces, 30, &quiet).unwrap();
     let geometry = SurveyGeometry::regular([48, 40, 96], 25.0, 10.0, VerticalUnit::Metres);
-    let proposals = time::proposals(&found, &geometry);
+    let found = faults::find(&volume, &geometry, &quiet).unwrap();
+    let proposals = faults::proposals(&found, &geometry);
     assert_eq!(proposals.len(), 1, "a fault of five samples' throw is found");
     fingerprint(proposals.iter().flat_map(|p| [p.strike_deg, p.dip_deg, p.throw[0], p.ends[0][0]]))
 }

@@ -1,0 +1,178 @@
+//! Fault surfaces measured in a raw volume, before there is any horizon.
+//!
+//! ```text
+//! likelihood ── ridges ── seeds, linked ── grown sheets ── offsets ──► evidence
+//! ```
+//!
+//! A fault is where both sides match again after one shift, while beds just beside it need none. The likelihood
+//! ([`attribute::likelihood()`]) tells where to look. What its ridges join to is grown into a surface as far as a shift
+//! betters the match of its two sides, and the [`Offsets`] of the whole surface tell faults from noise, channels, folds and
+//! unconformities: these have no shift that holds over a surface, or beds beside them match no better than beds across.
+//!
+//! Space: voxels.
+
+mod grow;
+mod proposal;
+mod ridges;
+mod seeds;
+mod sheet;
+mod sides;
+mod throws;
+
+#[cfg(test)]
+mod tests;
+
+pub use proposal::proposals;
+pub use sheet::{Frame, Sheet};
+pub use throws::{CellOffset, Offsets};
+
+use attribute::blocks::AttributeBlocks;
+use attribute::likelihood::ROW;
+use attribute::{AttributeError, DipVolumes, likelihood, slopes};
+use ridges::Ridge;
+use sides::Sides;
+use survey::source::BoxSource;
+use survey::{Progress, SurveyGeometry, TriangleMesh, Volume};
+
+/// Greatest throw that is looked for, samples.
+const GREATEST_THROW: i32 = 20;
+/// Least evidence of a fault, and of what may be one.
+const ACCEPTED: f32 = 0.08;
+const POSSIBLE: f32 = 0.045;
+/// Least area, and that from which a surface counts in full, traces times samples: small ones pass by chance more easily.
+const AREA: f32 = 400.0;
+const SURE: f32 = 1200.0;
+/// Memory that finding faults takes for each sample beside the volume, bytes: slopes, the likelihood, its ridges.
+pub const BYTES_A_VOXEL: usize = 28;
+
+/// A surface that was found, with what its two sides tell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FaultSurface {
+    /// Where it is.
+    pub sheet: Sheet,
+    /// Its throws.
+    pub offsets: Offsets,
+    /// How sure it is that it is a fault, 0 to 1.
+    pub evidence: f32,
+}
+
+impl FaultSurface {
+    fn new(sheet: Sheet, offsets: Offsets) -> Self {
+        let evidence = offsets.evidence() * (sheet.area() / SURE).min(1.0).sqrt();
+        Self { sheet, offsets, evidence }
+    }
+
+    /// Whether it is a fault by all that was measured.
+    pub fn is_accepted(&self) -> bool {
+        self.evidence >= ACCEPTED
+    }
+
+    /// Whether it may be one.
+    pub fn is_possible(&self) -> bool {
+        self.evidence >= POSSIBLE
+    }
+
+    /// Whether its hanging wall has moved up.
+    pub fn is_reverse(&self) -> bool {
+        // The hanging wall is the side towards which the surface leans with depth.
+        (self.offsets.median > 0.0) != (self.sheet.lean() > 0.0)
+    }
+}
+
+/// Finds the surfaces of a volume that may be faults, in the order in which they were grown: those of most seeds first.
+///
+/// The volume may be a part of the survey that has this geometry. The result does not depend on the number of threads.
+/// Memory: [`BYTES_A_VOXEL`].
+///
+/// # Errors
+/// [`AttributeError::Cancelled`].
+pub fn find(
+    volume: &Volume<f32>,
+    geometry: &SurveyGeometry,
+    progress: &Progress,
+) -> Result<Vec<FaultSurface>, AttributeError> {
+    let [nx, ny, nz] = volume.size();
+    if nx.min(ny) < 16 || nz < 16 {
+        return Ok(Vec::new());
+    }
+    let slopes = slopes(volume, progress)?;
+    let ridges = ridges::ridges(&likelihood(volume, &slopes, geometry, progress)?);
+    let sides = Sides { volume, slopes: &slopes };
+    let seeds = seeds::seeds(sides, &ridges, GREATEST_THROW, progress)?;
+    let groups = seeds::linked(&ridges, &seeds);
+    let mut is_free = vec![true; ridges.len()];
+    let mut all = Vec::new();
+    progress.begin("fault surfaces", groups.len() as u64);
+    for group in &groups {
+        progress.step(1)?;
+        let Some((sheet, offsets, members)) = grow::grown(sides, &ridges, &is_free, &seeds, group, GREATEST_THROW)
+        else {
+            continue;
+        };
+        if sheet.area() < AREA {
+            continue;
+        }
+        members.iter().for_each(|&n| is_free[n] = false);
+        all.push(FaultSurface::new(sheet, offsets));
+    }
+    all.retain(FaultSurface::is_possible);
+    Ok(all)
+}
+
+/// The throw where a ridge of the fault likelihood has one, samples: positive of normal faults, whose hanging wall lies
+/// deeper, negative of reverse ones; NaN elsewhere. Each is measured on its own plane, without a surface.
+///
+/// # Errors
+/// [`AttributeError::Cancelled`].
+pub fn throw(
+    volume: &Volume<f32>,
+    geometry: &SurveyGeometry,
+    progress: &Progress,
+) -> Result<Volume<f32>, AttributeError> {
+    let [nx, ny, nz] = volume.size();
+    let slopes = slopes(volume, progress)?;
+    let ridges = ridges::ridges(&likelihood(volume, &slopes, geometry, progress)?);
+    let seeds = seeds::all(Sides { volume, slopes: &slopes }, &ridges, GREATEST_THROW, progress)?;
+    let mut out = Volume::filled([nx, ny, nz], f32::NAN);
+    for seed in seeds {
+        let Ridge { at: [x, y, z], plane, .. } = ridges[seed.ridge];
+        let (x, y, z) = (x.round() as usize, y.round() as usize, z as usize);
+        let throw = if plane.run < 0.0 { -seed.throw } else { seed.throw };
+        out.trace_mut(x.min(nx - 1), y.min(ny - 1))[z..(z + ROW).min(nz)].fill(throw);
+    }
+    // The mask fits: it is that of a volume of this size.
+    let _ = out.set_live(volume.live().map(<[bool]>::to_vec));
+    Ok(out)
+}
+
+/// The throws of a volume of any size, block by block; `geometry` is that of the survey.
+pub fn throw_blocks<'a>(source: &'a dyn BoxSource, geometry: &'a SurveyGeometry) -> AttributeBlocks<'a> {
+    let reach = likelihood::reach(geometry) + 2 + seeds::reach(geometry, GREATEST_THROW);
+    attribute::blocks::computed(source, reach, |volume, quiet| throw(volume, geometry, quiet))
+}
+
+/// Measures surfaces that come from elsewhere, each a mesh in world coordinates; `None` where one lies outside the volume or
+/// is too small to tell.
+///
+/// # Errors
+/// [`AttributeError::Cancelled`].
+pub fn measure(
+    volume: &Volume<f32>,
+    slopes: &DipVolumes,
+    geometry: &SurveyGeometry,
+    meshes: &[&TriangleMesh],
+    progress: &Progress,
+) -> Result<Vec<Option<FaultSurface>>, AttributeError> {
+    progress.begin("measuring faults", meshes.len() as u64);
+    let sides = Sides { volume, slopes };
+    meshes
+        .iter()
+        .map(|mesh| {
+            progress.step(1)?;
+            let Some(sheet) = Sheet::of_mesh(mesh, geometry) else { return Ok(None) };
+            let mut offsets = throws::offsets(sides, &sheet, GREATEST_THROW);
+            offsets.summarize(&sheet);
+            Ok((sheet.area() >= AREA).then(|| FaultSurface::new(sheet, offsets)))
+        })
+        .collect()
+}

@@ -1,0 +1,183 @@
+//! Seeds: ridges whose two sides match after a shift and not without one, linked where they lie on one surface.
+
+use crate::ridges::Ridge;
+use crate::sides::{self, PairSums, Sides};
+use attribute::likelihood::{Plane, ROW, crossed};
+use rayon::prelude::*;
+use std::collections::HashMap;
+use survey::{Cancelled, Progress, SurveyGeometry};
+
+/// Samples down the dip to either side that are compared.
+const DOWN: isize = 12;
+/// Traces along strike to either side.
+const ALONG: isize = 2;
+/// Least shift that is a throw, samples.
+const LEAST_THROW: i32 = 3;
+/// Least gain by the shift, and least correlation after it.
+const GAIN: f32 = 0.2;
+const MATCH: f32 = 0.6;
+/// Links: traces apart, samples apart, traces off each other's planes, cosine of the angle of strikes, samples of throw.
+const APART: f32 = 2.9;
+const BELOW: f32 = 6.0;
+const OFF_PLANE: f32 = 1.2;
+const STRIKES: f32 = 0.866;
+const THROWS: f32 = 3.0;
+/// Fewest seeds of a surface.
+const FEWEST: usize = 30;
+
+/// A ridge with a throw.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seed {
+    /// Its number among the ridges.
+    pub(crate) ridge: usize,
+    /// Samples that the side towards `across` lies deeper.
+    pub(crate) throw: f32,
+}
+
+/// Traces beyond a ridge that its throw depends on, but for slopes.
+pub(crate) fn reach(geometry: &SurveyGeometry, greatest: i32) -> usize {
+    crossed(geometry, DOWN as usize + greatest as usize / 2 + 1) + ALONG as usize + sides::REACH + 1
+}
+
+/// Measures the ridges of a chequerboard and returns those with a throw.
+///
+/// # Errors
+/// [`Cancelled`].
+pub(crate) fn seeds(
+    sides: Sides<'_>,
+    ridges: &[Ridge],
+    greatest: i32,
+    progress: &Progress,
+) -> Result<Vec<Seed>, Cancelled> {
+    let is_chosen = |ridge: &Ridge| {
+        let [x, y, z] = ridge.at.map(|at| at as usize);
+        (x + y + z / ROW) % 2 == 0
+    };
+    some(sides, ridges, greatest, &is_chosen, progress)
+}
+
+/// Measures all ridges and returns those with a throw.
+///
+/// # Errors
+/// [`Cancelled`].
+pub(crate) fn all(
+    sides: Sides<'_>,
+    ridges: &[Ridge],
+    greatest: i32,
+    progress: &Progress,
+) -> Result<Vec<Seed>, Cancelled> {
+    some(sides, ridges, greatest, &|_| true, progress)
+}
+
+fn some(
+    sides: Sides<'_>,
+    ridges: &[Ridge],
+    greatest: i32,
+    is_chosen: &(dyn Fn(&Ridge) -> bool + Sync),
+    progress: &Progress,
+) -> Result<Vec<Seed>, Cancelled> {
+    /// Ridges between reports.
+    const TOGETHER: usize = 4096;
+    progress.begin("throws", ridges.len().div_ceil(TOGETHER) as u64);
+    let of_part = |(part, ridges): (usize, &[Ridge])| {
+        progress.step(1)?;
+        let seed =
+            |(n, ridge)| throw_at(sides, ridge, greatest).map(|throw| Seed { ridge: part * TOGETHER + n, throw });
+        Ok(ridges.iter().enumerate().filter(|(_, ridge)| is_chosen(ridge)).filter_map(seed).collect::<Vec<Seed>>())
+    };
+    let parts: Vec<Vec<Seed>> =
+        ridges.par_chunks(TOGETHER).enumerate().map(of_part).collect::<Result<_, Cancelled>>()?;
+    Ok(parts.concat())
+}
+
+/// The throw that makes both sides of a ridge match, if they need one.
+fn throw_at(sides: Sides<'_>, ridge: &Ridge, greatest: i32) -> Option<f32> {
+    let plane = ridge.plane;
+    let reach = DOWN + (greatest as isize + 1) / 2;
+    let depth = (2 * reach + 1) as usize;
+    let back = plane.across.map(|c| -c);
+    let mut values = [Vec::new(), Vec::new()];
+    for (values, across) in values.iter_mut().zip([back, plane.across]) {
+        for j in -ALONG..=ALONG {
+            for w in -reach..=reach {
+                let off = plane.run * w as f32;
+                let at = |axis: usize| ridge.at[axis] + off * plane.across[axis] + j as f32 * plane.along[axis];
+                values.push(sides.beside([at(0), at(1)], across, ridge.at[2] + w as f32));
+            }
+        }
+    }
+    let [left, right] = values;
+    let correlation = |lag: i32| {
+        let (up, down) = (lag.div_euclid(2) as isize, (lag - lag.div_euclid(2)) as isize);
+        let mut sums = PairSums::default();
+        for line in 0..(2 * ALONG + 1) as usize {
+            let row = line * depth;
+            for w in -DOWN..=DOWN {
+                let (a, b) = (left[row + (reach + w - up) as usize], right[row + (reach + w + down) as usize]);
+                let (a, b) = if (a * b).is_finite() { (a, b) } else { (0.0, 0.0) };
+                sums.product += a * b;
+                sums.left += a * a;
+                sums.right += b * b;
+            }
+        }
+        sums.correlation()
+    };
+    let whole = (-1..=1).map(correlation).fold(0.0f32, f32::max);
+    let (mut best, mut throw) = (MATCH, 0);
+    for lag in (-greatest..=greatest).filter(|lag| lag.abs() >= LEAST_THROW) {
+        let found = correlation(lag);
+        if found > best {
+            (best, throw) = (found, lag);
+        }
+    }
+    (throw != 0 && best - whole > GAIN).then_some(throw as f32)
+}
+
+/// Groups of seeds that lie on one surface, most evidence first.
+pub(crate) fn linked(ridges: &[Ridge], seeds: &[Seed]) -> Vec<Vec<usize>> {
+    let mut bins: HashMap<[i32; 3], Vec<usize>> = HashMap::new();
+    let bin = |at: [f32; 3]| [(at[0] / APART) as i32, (at[1] / APART) as i32, (at[2] / BELOW) as i32];
+    for (n, seed) in seeds.iter().enumerate() {
+        bins.entry(bin(ridges[seed.ridge].at)).or_default().push(n);
+    }
+    let mut parent: Vec<usize> = (0..seeds.len()).collect();
+    fn root(parent: &mut [usize], mut n: usize) -> usize {
+        while parent[n] != n {
+            parent[n] = parent[parent[n]];
+            n = parent[n];
+        }
+        n
+    }
+    for (n, seed) in seeds.iter().enumerate() {
+        let [i, j, k] = bin(ridges[seed.ridge].at);
+        for near in (0..27).map(|m| [i + m / 9 - 1, j + m / 3 % 3 - 1, k + m % 3 - 1]) {
+            for &m in bins.get(&near).into_iter().flatten().filter(|&&m| m < n) {
+                if are_one(&ridges[seed.ridge], seed, &ridges[seeds[m].ridge], &seeds[m]) {
+                    let (a, b) = (root(&mut parent, n), root(&mut parent, m));
+                    parent[a.max(b)] = a.min(b);
+                }
+            }
+        }
+    }
+    let mut groups: HashMap<usize, Vec<usize>> = HashMap::new();
+    for n in 0..seeds.len() {
+        groups.entry(root(&mut parent, n)).or_default().push(n);
+    }
+    let mut groups: Vec<Vec<usize>> = groups.into_values().filter(|group| group.len() >= FEWEST).collect();
+    groups.sort_by(|a, b| b.len().cmp(&a.len()).then(a[0].cmp(&b[0])));
+    groups
+}
+
+fn are_one(a: &Ridge, seed: &Seed, b: &Ridge, other: &Seed) -> bool {
+    let apart = [b.at[0] - a.at[0], b.at[1] - a.at[1], b.at[2] - a.at[2]];
+    let turn = a.plane.along[0] * b.plane.along[0] + a.plane.along[1] * b.plane.along[1];
+    // Strikes half a turn apart are one, seen from the other side.
+    let throw = if turn < 0.0 { -other.throw } else { other.throw };
+    let off = |plane: &Plane| (apart[0] * plane.across[0] + apart[1] * plane.across[1] - plane.run * apart[2]).abs();
+    apart[0].hypot(apart[1]) <= APART
+        && apart[2].abs() <= BELOW
+        && turn.abs() >= STRIKES
+        && (seed.throw - throw).abs() <= THROWS
+        && off(&a.plane) <= OFF_PLANE
+        && off(&b.plane) <= OFF_PLANE
+}
