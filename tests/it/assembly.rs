@@ -211,8 +211,8 @@ fn faults_are_drawn_by_sticks_and_proposed_ones_accepted() {
     run_in(at, "fault remove p.petro F").done();
     run_in(at, "fault pick p.petro --name F --stick 140,505,100").failed(&["at least two"]);
     run_in(at, "fault accept p.petro 1 --name F").failed(&["no faults have been proposed"]);
-    // Without horizons the ends of the candidates tell; horizons tell more.
-    assert!(run_in(at, "fault propose p.petro").done().stdout.contains("reflections end at it"));
+    // Faults are found in the volume without horizons; horizons are named with those that offset them.
+    assert!(run_in(at, "fault propose p.petro").done().stdout.contains("match after the throw"));
     run_in(at, "horizon add p.petro s/horizons/Alpha.csv --name Alpha").done();
     run_in(at, "horizon add p.petro s/horizons/Bravo.csv --name Bravo").done();
     let proposed = run_in(at, "fault propose p.petro --json").done().json();

@@ -145,10 +145,14 @@ pub fn throw(
     Ok(out)
 }
 
+/// Lines beyond a box that the throws in it depend on.
+pub fn throw_reach(geometry: &SurveyGeometry) -> usize {
+    likelihood::reach(geometry) + 2 + seeds::reach(geometry, GREATEST_THROW)
+}
+
 /// The throws of a volume of any size, block by block; `geometry` is that of the survey.
 pub fn throw_blocks<'a>(source: &'a dyn BoxSource, geometry: &'a SurveyGeometry) -> AttributeBlocks<'a> {
-    let reach = likelihood::reach(geometry) + 2 + seeds::reach(geometry, GREATEST_THROW);
-    attribute::blocks::computed(source, reach, |volume, quiet| throw(volume, geometry, quiet))
+    attribute::blocks::computed(source, throw_reach(geometry), |volume, quiet| throw(volume, geometry, quiet))
 }
 
 /// Measures surfaces that come from elsewhere, each a mesh in world coordinates; `None` where one lies outside the volume or

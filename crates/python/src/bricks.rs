@@ -30,14 +30,25 @@ fn brick(samples: &Samples<'_>, live: Option<PyReadonlyArray2<'_, bool>>) -> PyR
 
 /// Lines of halo that a stage needs to all four sides.
 #[pyfunction]
-#[pyo3(signature = (kind, dip=None, semblance=None))]
-pub(crate) fn reach(kind: &str, dip: Option<&str>, semblance: Option<&str>) -> PyResult<usize> {
+#[pyo3(signature = (kind, dip=None, semblance=None, geometry=None))]
+pub(crate) fn reach(
+    kind: &str,
+    dip: Option<&str>,
+    semblance: Option<&str>,
+    geometry: Option<&str>,
+) -> PyResult<usize> {
     let steering: DipSettings = settings(dip)?;
+    let of_survey = || -> PyResult<SurveyGeometry> {
+        let json = geometry.ok_or_else(|| wrong(format!("{kind} needs the geometry of the survey")))?;
+        serde_json::from_str(json).map_err(wrong)
+    };
     match kind {
+        "fault-likelihood" => Ok(attribute::likelihood::reach(&of_survey()?)),
+        "throw" => Ok(faults::throw_reach(&of_survey()?)),
         "envelope" | "extrema" | "dip-angle" => Ok(0),
         "dip" => Ok(steering.reach()),
         "semblance" => Ok(steering.reach().max(settings::<SemblanceSettings>(semblance)?.half_width)),
-        other => Err(wrong(format!("{other}: expected envelope, dip, semblance, dip-angle or extrema"))),
+        other => Err(wrong(format!("{other}: expected envelope, dip, semblance, fault-likelihood, throw, dip-angle or extrema"))),
     }
 }
 
@@ -84,6 +95,34 @@ pub(crate) fn semblance<'py>(
         attribute::semblance(&brick, &dips, &measure, &Progress::silent())
     });
     array(py, found?)
+}
+
+/// The fault likelihood along the brick's own slopes; `geometry` is that of the survey.
+#[pyfunction]
+#[pyo3(signature = (samples, geometry, live=None))]
+pub(crate) fn fault_likelihood<'py>(
+    py: Python<'py>,
+    samples: Samples<'py>,
+    geometry: &str,
+    live: Option<PyReadonlyArray2<'py, bool>>,
+) -> Result3<'py> {
+    let brick = brick(&samples, live)?;
+    let geometry: SurveyGeometry = serde_json::from_str(geometry).map_err(wrong)?;
+    array(py, task(py, || attribute::fault_likelihood(&brick, &geometry, &Progress::silent()))?)
+}
+
+/// The throws where the fault likelihood has a ridge, samples; `geometry` is that of the survey.
+#[pyfunction]
+#[pyo3(signature = (samples, geometry, live=None))]
+pub(crate) fn throw<'py>(
+    py: Python<'py>,
+    samples: Samples<'py>,
+    geometry: &str,
+    live: Option<PyReadonlyArray2<'py, bool>>,
+) -> Result3<'py> {
+    let brick = brick(&samples, live)?;
+    let geometry: SurveyGeometry = serde_json::from_str(geometry).map_err(wrong)?;
+    array(py, task(py, || faults::throw(&brick, &geometry, &Progress::silent()))?)
 }
 
 /// The angle of the reflections from the horizontal, degrees, from two dips; `geometry` is that of the survey.

@@ -57,6 +57,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(bricks::reach, module)?)?;
     module.add_function(wrap_pyfunction!(bricks::envelope, module)?)?;
     module.add_function(wrap_pyfunction!(bricks::semblance, module)?)?;
+    module.add_function(wrap_pyfunction!(bricks::fault_likelihood, module)?)?;
+    module.add_function(wrap_pyfunction!(bricks::throw, module)?)?;
     module.add_function(wrap_pyfunction!(bricks::dip, module)?)?;
     module.add_function(wrap_pyfunction!(bricks::dip_angle, module)?)?;
     module.add_function(wrap_pyfunction!(bricks::extrema, module)?)?;

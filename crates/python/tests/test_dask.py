@@ -40,7 +40,7 @@ def cluster():
                 yield client
 
 
-@pytest.mark.parametrize("kind", ["envelope", "semblance", "dip"])
+@pytest.mark.parametrize("kind", ["envelope", "semblance", "fault-likelihood", "throw", "dip"])
 def test_a_graph_writes_the_bytes_of_the_program(large, kind):
     large.attribute(kind, "whole")
     done = petroglyph.dask.attribute(large, kind, "parted", scheduler="synchronous")

@@ -1,6 +1,6 @@
 //! `petroglyph illustrate`: a block diagram of a survey that nobody has interpreted.
 //!
-//! SEG-Y → import → candidates → faults where they end → geologic time → layers between its strongest, most continuous levels → patterns by the
+//! SEG-Y → import → candidates → faults where both sides match after a throw → geologic time → layers between its strongest, most continuous levels → patterns by the
 //! character of the reflections → a block with a legend. The project is kept, to go on from. A pattern does not claim a
 //! rock: the legend says how the reflections look, and the title says that nothing was interpreted.
 
@@ -214,7 +214,7 @@ pub fn layers_by_time(project: &mut Project, layers: usize, progress: &Progress)
     Ok(names)
 }
 
-/// Adds the faults that the ends of reflections tell, but for minor ones.
+/// Adds the faults that are found in the volume, but for those that only may be ones.
 fn accept_faults(project: &mut Project, progress: &Progress) -> Result<(), ProjectError> {
     project.apply(&Command::ProposeFaults(ProposeFaults::default()), progress)?;
     for proposal in proposals::open(project.root(), project.document()).iter().filter(|proposal| !proposal.is_minor) {

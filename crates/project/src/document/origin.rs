@@ -70,7 +70,7 @@ pub enum Origin {
     },
     /// A fault that the program proposed and a person accepted.
     Proposed {
-        /// The names of the horizons that are offset at it; none: reflections end at it.
+        /// The names of the horizons that are offset at it; none: it was found in the volume.
         horizons: Vec<String>,
     },
 }

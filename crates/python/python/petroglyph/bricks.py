@@ -23,24 +23,36 @@ if TYPE_CHECKING:
 
 #: Bytes that a stage holds for each sample of the brick with its halo: the brick, what is computed on the way, the result.
 #: The envelope of a trace is computed in little beside.
-BYTES_HELD = {"envelope": 12, "dip": 24, "dip-angle": 20, "semblance": 28, "extrema": 10}
+BYTES_HELD = {
+    "envelope": 12,
+    "dip": 24,
+    "dip-angle": 20,
+    "semblance": 28,
+    "fault-likelihood": 32,
+    "throw": 36,
+    "extrema": 10,
+}
 
 
 def _json(options: Options | None) -> str | None:
     return None if options is None else json.dumps(dict(options))
 
 
-def halo(kind: str, *, dip: Options | None = None, semblance: Options | None = None) -> int:
+def halo(
+    kind: str, *, dip: Options | None = None, semblance: Options | None = None, geometry: Geometry | None = None
+) -> int:
     """Lines that a brick needs around it, to all four sides.
 
     Parameters
     ----------
-    kind : {"envelope", "dip", "semblance", "dip-angle", "extrema"}
+    kind : {"envelope", "dip", "semblance", "fault-likelihood", "throw", "dip-angle", "extrema"}
         The stage.
     dip, semblance : mapping, optional
         Settings, as of :meth:`petroglyph.Project.attribute`.
+    geometry : Geometry, optional
+        That of the survey, which a fault likelihood and throws need.
     """
-    return _native.reach(kind, _json(dip), _json(semblance))
+    return _native.reach(kind, _json(dip), _json(semblance), geometry.to_json() if geometry else None)
 
 
 def envelope(samples: Samples, live: Mask | None = None) -> Samples:
@@ -59,6 +71,19 @@ def semblance(
 ) -> Samples:
     """How alike neighbouring traces are along the reflections: low at faults."""
     return _native.semblance(samples, live, _json(dip), _json(settings))
+
+
+def fault_likelihood(samples: Samples, geometry: Geometry, live: Mask | None = None) -> Samples:
+    """Where a steep plane breaks the reflections, 0 to 1; ``geometry`` is that of the survey."""
+    return _native.fault_likelihood(samples, geometry.to_json(), live)
+
+
+def throw(samples: Samples, geometry: Geometry, live: Mask | None = None) -> Samples:
+    """The throw, samples, where the fault likelihood has a ridge and both its sides match after a shift; else NaN.
+
+    It is positive of normal faults and negative of reverse ones; ``geometry`` is that of the survey.
+    """
+    return _native.throw(samples, geometry.to_json(), live)
 
 
 def dip_angle(inline: Samples, crossline: Samples, geometry: Geometry, live: Mask | None = None) -> Samples:

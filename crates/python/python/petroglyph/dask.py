@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 #: A scheduler by its name, or a client of a cluster.
 Scheduler = Any
-Kind = Literal["envelope", "semblance", "dip"]
+Kind = Literal["envelope", "semblance", "fault-likelihood", "throw", "dip"]
 Three = tuple[int, int, int]
 #: What a task tells of the files that it wrote: numbers of bricks and their least and greatest samples.
 Ranges = tuple["npt.NDArray[np.uint64]", "npt.NDArray[np.float32]"]
@@ -140,6 +140,10 @@ def _compute(stage: _Stage, inputs: list[npt.NDArray[Any]], live: Any) -> list[n
         return [_native.envelope(inputs[0], live)]
     if stage.kind == "semblance":
         return [_native.semblance(inputs[0], live, stage.dip, stage.semblance)]
+    if stage.kind == "fault-likelihood":
+        return [_native.fault_likelihood(inputs[0], stage.geometry, live)]
+    if stage.kind == "throw":
+        return [_native.throw(inputs[0], stage.geometry, live)]
     if stage.kind == "dip":
         return _native.dip(inputs[0], live, stage.dip)
     return [_native.dip_angle(inputs[0], inputs[1], stage.geometry, live)]
@@ -155,7 +159,7 @@ def _column(
     for path in (*sources, *stage.targets):
         _at_hand(path)
     nx, ny, nz = stage.size
-    reach = _native.reach(stage.kind, stage.dip, stage.semblance)
+    reach = _native.reach(stage.kind, stage.dip, stage.semblance, stage.geometry)
     live = _native.read_live(sources[0])
     results = [np.empty((*count, nz), dtype=np.float32) for _ in stage.targets]
     for x in range(0, count[0], stage.lines):
@@ -294,7 +298,7 @@ def plan(source: Path, kind: Kind, *, memory: int = MEMORY, **settings: Options 
     ----------
     source : path
         Folder of the volume.
-    kind : {"envelope", "semblance", "dip"}
+    kind : {"envelope", "semblance", "fault-likelihood", "throw", "dip"}
         The attribute.
     memory : int
         Memory that a task may use, bytes.
@@ -305,7 +309,7 @@ def plan(source: Path, kind: Kind, *, memory: int = MEMORY, **settings: Options 
 
     found = json.loads(_native.volume_info(source))
     nx, ny, nz = found["levels"][0]
-    reach = bricks.halo(kind, **settings)
+    reach = _native.reach(kind, _json(settings.get("dip")), _json(settings.get("semblance")), json.dumps(found["geometry"]))
     own = min(FILE_LINES, nx) * min(FILE_LINES, ny)
     lines = _piece_lines(kind, nz, own, reach, memory)
     sample = np.dtype(found["dtype"]).itemsize
@@ -349,7 +353,7 @@ def attribute(
     ----------
     project : Project
         The project, on a disk that all workers see.
-    kind : {"envelope", "semblance", "dip"}
+    kind : {"envelope", "semblance", "fault-likelihood", "throw", "dip"}
         What to compute.
     name : str
         Name of the new volume; a dip adds ``NAME-inline`` and ``NAME-crossline``.
@@ -378,7 +382,7 @@ def attribute(
     read = project.volume(source)
     geometry = {**read.info["geometry"], "velocity_m_s": project.geometry.velocity_m_s}
     live = read.live()
-    named: dict[str, tuple[str, str | None]] = {name: (kind, None)}
+    named: dict[str, tuple[str, str | None]] = {name: (kind, "samples" if kind == "throw" else None)}
     if kind == "dip":
         named = {
             f"{name}-inline": ("dip inline", "samples per inline"),
@@ -390,7 +394,7 @@ def attribute(
         for new, (quantity, unit) in named.items():
             info = {"geometry": geometry, "quantity": quantity, "unit": unit, "source": f"{kind} of {source}"}
             _native.VolumeParts.create(folders[new], json.dumps(info), "float32", None if live.all() else live)
-        settings = (_json(dip), _json(semblance), project.geometry.to_json(), _version())
+        settings = (_json(dip), _json(semblance), json.dumps(geometry), _version())
         path, targets = os.path.abspath(read.path), tuple(folders.values())
         graph, wanted = _attribute_graph(path, targets, kind, read.shape, settings, memory)
         _run(graph, wanted, scheduler, retries)
@@ -415,7 +419,7 @@ def _attribute_graph(
 
     def computed(kind: str, targets: tuple[str, ...], sources: tuple[str, ...], *before: Any) -> list[Any]:
         """Tasks that compute volumes, and those that complete them."""
-        lines = _piece_lines(kind, nz, own, _native.reach(kind, *settings[:2]), memory)
+        lines = _piece_lines(kind, nz, own, _native.reach(kind, *settings[:3]), memory)
         stage = _Stage(kind, path, targets, size, lines, *settings)
         tasks = {at: graph.add(kind, at, (_column, stage, sources, start, count, *before)) for at, start, count in columns}
         completed = []
