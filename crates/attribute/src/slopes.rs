@@ -5,14 +5,16 @@
 //! p₀ = −⟨g_x g_z⟩ / ⟨g_z²⟩,      p ← p − ⟨δ g_z⟩ / ⟨g_z²⟩,      δ = ½ [g(x+1, z+p) − g(x−1, z−p)]
 //! ```
 //!
-//! with ⟨ ⟩ a Gaussian over [`TRACES`] and [`SAMPLES`]. The first is the structure tensor's; the other, done twice, compares
-//! neighbours along the present slope, so that steep reflections, which gradients alias, are followed. Unlike
+//! with ⟨ ⟩ a Gaussian over [`TRACES`] and [`SAMPLES`], and g_z the mean along the slope. The first is the structure
+//! tensor's; the other, in [`ROUNDS`], compares neighbours along the present slope, so that steep reflections, which
+//! gradients alias, are followed. Unlike
 //! [`super::dip()`], which is sharper, these slopes run smoothly past a fault instead of climbing it: what measures faults
 //! needs them. Missing values count as zero amplitude. Space: samples a line.
 
 use super::dip::{DipVolumes, like};
 use super::error::AttributeError;
 use rayon::prelude::*;
+use std::borrow::Cow;
 use survey::{Progress, Volume};
 
 /// Standard deviation of the neighbourhood along lines, traces, and its reach.
@@ -36,88 +38,79 @@ pub(super) const REACH: usize = (TRACES.1 + 1) * (ROUNDS + 1);
 pub fn slopes(volume: &Volume<f32>, progress: &Progress) -> Result<DipVolumes, AttributeError> {
     let [nx, _, _] = volume.size();
     progress.begin("slopes", (2 * (ROUNDS + 1) * nx.div_ceil(BLOCK)) as u64);
-    let inline = one_way(volume, true, progress)?;
-    let crossline = one_way(volume, false, progress)?;
+    let filled = without_missing(volume);
+    let inline = one_way(&filled, true, progress)?;
+    let crossline = one_way(&filled, false, progress)?;
     Ok(DipVolumes { inline: like(volume, inline), crossline: like(volume, crossline) })
 }
 
-/// Slopes along one axis.
+/// Slopes along one axis of a volume without missing values.
 fn one_way(volume: &Volume<f32>, along_inlines: bool, progress: &Progress) -> Result<Vec<f32>, AttributeError> {
     let [nx, ny, nz] = volume.size();
     let mut found = vec![0.0f32; nx * ny * nz];
-    if nx < 2 && along_inlines || ny < 2 && !along_inlines || nz < 3 {
+    if nx < 2 && along_inlines || ny < 2 && !along_inlines || nz < 4 {
         return Ok(found);
     }
     for round in 0..=ROUNDS {
         let pairs = |x: usize, y: usize, out: &mut [f32]| {
             let place = |by: isize| {
-                let (x, y) = if along_inlines {
-                    (x.checked_add_signed(by), Some(y))
-                } else {
-                    (Some(x), y.checked_add_signed(by))
+                let (x, y) = match along_inlines {
+                    true => (x.checked_add_signed(by), Some(y)),
+                    false => (Some(x), y.checked_add_signed(by)),
                 };
                 let (x, y) = x.zip(y).filter(|&(x, y)| x < nx && y < ny && volume.is_live(x, y))?;
                 Some(volume.trace(x, y))
             };
-            let (before, after) = (place(-1), place(1));
             let here = volume.trace(x, y);
+            let sides = [(place(-1), -1.0f32), (place(1), 1.0)];
             let slope = &found[(x * ny + y) * nz..(x * ny + y + 1) * nz];
             let (num, den) = out.split_at_mut(nz);
+            let known = sides.iter().filter(|(trace, _)| trace.is_some()).count() as f32;
             for z in 1..nz - 1 {
-                let at = |trace: Option<&[f32]>, shift: f32| trace.map(|trace| interpolated(trace, z as f32 + shift));
-                let p = if round == 0 { 0.0 } else { slope[z] };
-                let down = |shift: f32| {
-                    let step = |trace: &[f32], by: f32| {
-                        let at = z as f32 + by;
-                        interpolated(trace, at + 1.0) - interpolated(trace, at - 1.0)
-                    };
-                    let sides = [(before, -shift), (after, shift)];
-                    let (mut sum, mut count) = (2.0 * step(here, 0.0), 2.0);
-                    for (trace, by) in sides {
-                        if let Some(trace) = trace {
-                            sum += step(trace, by);
-                            count += 1.0;
-                        }
-                    }
-                    0.5 * sum / count
-                };
-                let down = down(p);
-                let across = match (at(before, -p), at(after, p)) {
-                    (Some(a), Some(b)) => 0.5 * (b - a),
-                    (Some(a), None) => finite(here[z]) - a,
-                    (None, Some(b)) => b - finite(here[z]),
-                    (None, None) => 0.0,
-                };
-                num[z] = across * down;
+                // How it changes across, per line, and down, both along the present slope.
+                let mut across = 0.0;
+                let mut down = here[z + 1] - here[z - 1];
+                for (trace, sign) in sides {
+                    let Some(trace) = trace else { continue };
+                    let [value, step] = cubic(trace, z as f32 + sign * slope[z]);
+                    across += sign * (value - here[z]);
+                    down += step;
+                }
+                let down = down / (2.0 + known);
+                num[z] = across / known.max(1.0) * down;
                 den[z] = down * down;
             }
         };
         let change = fitted([nx, ny, nz], &pairs, progress)?;
-        found
-            .par_iter_mut()
-            .zip(change)
-            .for_each(|(slope, change)| *slope = (*slope - change).clamp(-STEEPEST, STEEPEST));
+        let steepest = |slope: f32| slope.clamp(-STEEPEST, STEEPEST);
+        found.par_iter_mut().zip(change).for_each(|(slope, change)| *slope = steepest(*slope - change));
     }
     Ok(found)
 }
 
-fn finite(value: f32) -> f32 {
-    if value.is_finite() { value } else { 0.0 }
+/// The volume with zeros in place of what is missing.
+fn without_missing(volume: &Volume<f32>) -> Cow<'_, Volume<f32>> {
+    if volume.samples().par_iter().all(|sample| sample.is_finite()) {
+        return Cow::Borrowed(volume);
+    }
+    let mut filled = volume.clone();
+    filled.samples_mut().par_iter_mut().for_each(|sample| *sample = if sample.is_finite() { *sample } else { 0.0 });
+    Cow::Owned(filled)
 }
 
-/// A trace at a fractional sample, by the cubic through the four around; its ends beyond them.
-pub(super) fn interpolated(trace: &[f32], at: f32) -> f32 {
-    let last = trace.len() - 1;
-    let at = at.clamp(0.0, last as f32);
-    let n = (at as usize).min(last.saturating_sub(1));
+/// A trace of at least four samples at a fractional one, and its change in a sample there, by the cubic through the four
+/// around; the end beyond its ends.
+#[inline]
+fn cubic(trace: &[f32], at: f32) -> [f32; 2] {
+    let at = at.clamp(0.0, (trace.len() - 1) as f32);
+    let n = (at as usize).clamp(1, trace.len() - 3);
     let t = at - n as f32;
-    let (b, c) = (finite(trace[n]), finite(trace[(n + 1).min(last)]));
-    if n == 0 || n + 2 > last {
-        return b + t * (c - b);
-    }
-    let (a, d) = (finite(trace[n - 1]), finite(trace[n + 2]));
-    let (s, r, u) = (t + 1.0, t - 1.0, t - 2.0);
-    -t * r * u / 6.0 * a + s * r * u / 2.0 * b - s * t * u / 2.0 * c + s * t * r / 6.0 * d
+    let Some(&[a, b, c, d]) = trace[n - 1..].first_chunk() else { return [0.0; 2] };
+    // Its terms about b, from Lagrange's weights for the nodes −1, 0, 1, 2.
+    let first = -a / 3.0 - 0.5 * b + c - d / 6.0;
+    let second = 0.5 * (a + c) - b;
+    let third = (d - a) / 6.0 + 0.5 * (b - c);
+    [b + t * (first + t * (second + t * third)), first + t * (2.0 * second + 3.0 * t * third)]
 }
 
 /// Weights of a Gaussian from its middle outwards.

@@ -2,9 +2,10 @@
 
 use crate::ridges::Ridge;
 use crate::seeds::Seed;
-use crate::sheet::{Frame, Sheet};
+use crate::sheet::{Frame, Sheet, WIDTH};
 use crate::sides::Sides;
 use crate::throws::{Offsets, offsets};
+use attribute::likelihood::ROW;
 
 /// Traces off the surface within which a ridge is its own.
 const OFF: f32 = 1.8;
@@ -59,6 +60,7 @@ pub(crate) fn grown(
 
 /// Spreads a surface over ridges for some rounds.
 fn spread(ridges: &[Ridge], is_free: &[bool], mut members: Vec<usize>) -> Option<(Frame, Vec<usize>)> {
+    let around = around(ridges, is_free, &members);
     for _ in 0..ROUNDS {
         if members.len() < 12 {
             return None;
@@ -73,9 +75,28 @@ fn spread(ridges: &[Ridge], is_free: &[bool], mut members: Vec<usize>) -> Option
             let cell = sheet.cell(u, ridge.at[2]).filter(|&cell| near[cell])?;
             (turn.abs() >= STRIKES && (height - sheet.height[cell]).abs() <= OFF).then_some(n)
         };
-        members = (0..ridges.len()).filter(|&n| is_free[n]).filter_map(own).collect();
+        members = around.iter().copied().filter_map(own).collect();
     }
     (members.len() >= 12).then(|| (Sheet::frame(ridges, &members), members))
+}
+
+/// The free ridges that a surface may take in some rounds: those as close to its members as it can spread.
+fn around(ridges: &[Ridge], is_free: &[bool], members: &[usize]) -> Vec<usize> {
+    let lines = (ROUNDS as i32 * REACH) as f32 * WIDTH + OFF;
+    let samples = (ROUNDS as i32 * REACH) as f32 * ROW as f32;
+    let reach = [lines, lines, samples];
+    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for at in members.iter().map(|&n| ridges[n].at) {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(at[axis] - reach[axis]);
+            high[axis] = high[axis].max(at[axis] + reach[axis]);
+        }
+    }
+    let is_near = |n: &usize| (0..3).all(|axis| (low[axis]..=high[axis]).contains(&ridges[*n].at[axis]));
+    // Ridges lie in the order of their traces, each within half a trace of its own.
+    let first = ridges.partition_point(|ridge| ridge.at[0] + 1.0 < low[0]);
+    let last = ridges.partition_point(|ridge| ridge.at[0] - 1.0 <= high[0]);
+    (first..last).filter(|&n| is_free[n]).filter(is_near).collect()
 }
 
 /// Cells within a square of set ones.

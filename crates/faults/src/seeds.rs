@@ -9,6 +9,8 @@ use survey::{Cancelled, Progress, SurveyGeometry};
 
 /// Samples down the dip to either side that are compared.
 const DOWN: isize = 12;
+/// Samples that are compared.
+const WINDOW: usize = (2 * DOWN + 1) as usize;
 /// Traces along strike to either side.
 const ALONG: isize = 2;
 /// Least shift that is a throw, samples.
@@ -106,19 +108,24 @@ fn throw_at(sides: Sides<'_>, ridge: &Ridge, greatest: i32) -> Option<f32> {
             }
         }
     }
-    let [left, right] = values;
+    // What is missing counts as nothing.
+    values.iter_mut().flatten().for_each(|value| *value = if value.is_finite() { *value } else { 0.0 });
+    let [left, right] = &values;
+    let squares = values.each_ref().map(|values| running_squares(values, depth));
+    let lines = (2 * ALONG + 1) as usize;
     let correlation = |lag: i32| {
         let (up, down) = (lag.div_euclid(2) as isize, (lag - lag.div_euclid(2)) as isize);
+        let [from_left, from_right] = [reach - DOWN - up, reach - DOWN + down].map(|first| first as usize);
         let mut sums = PairSums::default();
-        for line in 0..(2 * ALONG + 1) as usize {
-            let row = line * depth;
-            for w in -DOWN..=DOWN {
-                let (a, b) = (left[row + (reach + w - up) as usize], right[row + (reach + w + down) as usize]);
-                let (a, b) = if (a * b).is_finite() { (a, b) } else { (0.0, 0.0) };
-                sums.product += a * b;
-                sums.left += a * a;
-                sums.right += b * b;
-            }
+        for line in 0..lines {
+            let [a, b] = [from_left, from_right].map(|first| line * depth + first);
+            sums.product += product(&left[a..a + WINDOW], &right[b..b + WINDOW]);
+            let energy = |side: usize, first: usize| {
+                let row = &squares[side][line * (depth + 1)..];
+                row[first + WINDOW] - row[first]
+            };
+            sums.left += energy(0, from_left);
+            sums.right += energy(1, from_right);
         }
         sums.correlation()
     };
@@ -131,6 +138,34 @@ fn throw_at(sides: Sides<'_>, ridge: &Ridge, greatest: i32) -> Option<f32> {
         }
     }
     (throw != 0 && best - whole > GAIN).then_some(throw as f32)
+}
+
+/// For each row of `depth` values, the sums of their squares up to each, from 0 on.
+fn running_squares(values: &[f32], depth: usize) -> Vec<f32> {
+    let mut sums = Vec::with_capacity(values.len() / depth * (depth + 1));
+    for row in values.chunks(depth) {
+        let mut sum = 0.0;
+        sums.push(sum);
+        sums.extend(row.iter().map(|value| {
+            sum += value * value;
+            sum
+        }));
+    }
+    sums
+}
+
+/// Σ a b, in eight lanes.
+#[inline]
+fn product(a: &[f32], b: &[f32]) -> f32 {
+    let mut lanes = [0.0f32; 8];
+    let (a, b) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f32 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
+    for (a, b) in a.zip(b) {
+        for (lane, (a, b)) in lanes.iter_mut().zip(a.iter().zip(b)) {
+            *lane += a * b;
+        }
+    }
+    lanes.iter().sum::<f32>() + rest
 }
 
 /// Groups of seeds that lie on one surface, most evidence first.

@@ -23,9 +23,9 @@ impl Sides<'_> {
     /// The amplitude beside a place on a fault, on the side to which `across` points; NaN where there is none.
     pub(crate) fn beside(&self, [x, y]: [f32; 2], across: [f32; 2], z: f32) -> f32 {
         let [nx, ny, nz] = self.volume.size();
-        let row = z.round().clamp(0.0, (nz - 1) as f32) as usize;
+        let row = ((z + 0.5).max(0.0) as usize).min(nz - 1);
         let trace = |off: f32| {
-            let (i, j) = ((x + off * across[0]).round(), (y + off * across[1]).round());
+            let (i, j) = (x + off * across[0] + 0.5, y + off * across[1] + 0.5);
             let inside = i >= 0.0 && j >= 0.0 && i < nx as f32 && j < ny as f32;
             inside.then_some([i as usize, j as usize]).filter(|&[i, j]| self.volume.is_live(i, j))
         };
