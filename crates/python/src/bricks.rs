@@ -31,12 +31,7 @@ fn brick(samples: &Samples<'_>, live: Option<PyReadonlyArray2<'_, bool>>) -> PyR
 /// Lines of halo that a stage needs to all four sides.
 #[pyfunction]
 #[pyo3(signature = (kind, dip=None, semblance=None, geometry=None))]
-pub(crate) fn reach(
-    kind: &str,
-    dip: Option<&str>,
-    semblance: Option<&str>,
-    geometry: Option<&str>,
-) -> PyResult<usize> {
+pub(crate) fn reach(kind: &str, dip: Option<&str>, semblance: Option<&str>, geometry: Option<&str>) -> PyResult<usize> {
     let steering: DipSettings = settings(dip)?;
     let of_survey = || -> PyResult<SurveyGeometry> {
         let json = geometry.ok_or_else(|| wrong(format!("{kind} needs the geometry of the survey")))?;
@@ -48,7 +43,9 @@ pub(crate) fn reach(
         "envelope" | "extrema" | "dip-angle" => Ok(0),
         "dip" => Ok(steering.reach()),
         "semblance" => Ok(steering.reach().max(settings::<SemblanceSettings>(semblance)?.half_width)),
-        other => Err(wrong(format!("{other}: expected envelope, dip, semblance, fault-likelihood, throw, dip-angle or extrema"))),
+        other => Err(wrong(format!(
+            "{other}: expected envelope, dip, semblance, fault-likelihood, throw, dip-angle or extrema"
+        ))),
     }
 }
 
