@@ -51,7 +51,7 @@ fn one_way(volume: &Volume<f32>, along_inlines: bool, progress: &Progress) -> Re
     if nx < 2 && along_inlines || ny < 2 && !along_inlines || nz < 4 {
         return Ok(found);
     }
-    for round in 0..=ROUNDS {
+    for _ in 0..=ROUNDS {
         let pairs = |x: usize, y: usize, out: &mut [f32]| {
             let place = |by: isize| {
                 let (x, y) = match along_inlines {

@@ -278,7 +278,7 @@ pub(in crate::cli) enum FaultAction {
         #[arg(long, value_name = "INLINE,CROSSLINE,Z", allow_hyphen_values = true)]
         to: String,
     },
-    /// Propose faults from the offsets of the horizons or, while there are none, from where candidates end
+    /// Propose faults: surfaces in the volume whose two sides match after a throw, and where horizons are offset
     #[command(after_help = "Example:\n  petroglyph fault propose north.petro")]
     Propose(FaultProposeArgs),
     /// Accept a proposed fault

@@ -93,7 +93,7 @@ pub(super) enum Action {
                       \n  petroglyph import impedance.sgy north.petro --name impedance --inline-byte 9 \
                       --crossline-byte 21")]
     Import(ImportArgs),
-    /// Compute a volume from a volume: semblance, envelope or dip
+    /// Compute a volume from a volume: semblance, envelope, dip, fault likelihood, throw
     #[command(after_help = "Examples:\n  petroglyph attribute north.petro --kind semblance --name faults\
                       \n  petroglyph attribute north.petro --kind dip --name dip --volume seismic --memory 2G")]
     Attribute(AttributeArgs),

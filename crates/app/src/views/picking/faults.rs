@@ -83,7 +83,7 @@ impl FaultsPanel {
         }
         let is_looking = running.iter().any(|line| line.job == Job::FaultProposals);
         let can = !session.document.horizons.is_empty() && !is_looking;
-        let hint = "A fault is proposed wherever horizons are offset (Q)";
+        let hint = "Faults are found in the volume, and where horizons are offset (Q)";
         let why =
             if is_looking { "Looking for faults already" } else { "Faults are found from horizons: pick some first" };
         if unless(ui, needs(can, why), Button::new("Propose faults")).on_hover_text(hint).clicked() {
