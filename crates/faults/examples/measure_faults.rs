@@ -20,7 +20,7 @@ fn list(found: &[FaultSurface]) {
             }
         }
         println!(
-            "{n:3} {} {:.3} area {:6.0} gain {:.2} match {:.2} sign {:.2} beside {:.2} {:.2} contrast {:.2} throw {:5.1} const {:.2}  x {:.0}-{:.0} y {:.0}-{:.0} z {:.0}-{:.0} along {:.2},{:.2}",
+            "{n:3} {} {:.3} area {:6.0} gain {:.2} match {:.2} far {:.2} sign {:.2} beside {:.2} {:.2} contrast {:.2} throw {:5.1} const {:.2}  x {:.0}-{:.0} y {:.0}-{:.0} z {:.0}-{:.0} along {:.2},{:.2}",
             if fault.is_accepted() {
                 "ACC"
             } else if fault.is_possible() {
@@ -32,6 +32,7 @@ fn list(found: &[FaultSurface]) {
             fault.sheet.area(),
             o.mean_gain,
             o.matched,
+            o.far,
             o.one_sign,
             o.beside[0],
             o.beside[1],

@@ -39,9 +39,12 @@ const GREATEST_THROW: i32 = 20;
 /// Least evidence of a fault, and of what may be one.
 const ACCEPTED: f32 = 0.08;
 const POSSIBLE: f32 = 0.045;
-/// Least area, and that from which a surface counts in full, traces times samples: small ones pass by chance more easily.
+/// Least area, traces times samples.
 const AREA: f32 = 400.0;
-const SURE: f32 = 1200.0;
+/// Traces by samples, or by those of a thinner volume, of a surface whose evidence counts as it is: that of a smaller one counts
+/// less, since it passes by chance more easily, that of a larger one more, by the square root, up to this share.
+const SURE: [f32; 2] = [40.0, 100.0];
+const LARGEST: f32 = 4.0;
 /// Memory that finding faults takes for each sample beside the volume, bytes: slopes, the likelihood, its ridges.
 pub const BYTES_A_VOXEL: usize = 28;
 
@@ -57,9 +60,10 @@ pub struct FaultSurface {
 }
 
 impl FaultSurface {
-    fn new(sheet: Sheet, offsets: Offsets) -> Self {
-        let evidence = offsets.evidence() * (sheet.area() / SURE).min(1.0).sqrt();
-        Self { sheet, offsets, evidence }
+    fn new(sheet: Sheet, offsets: Offsets, samples: usize) -> Self {
+        let sure = SURE[0] * SURE[1].min(samples as f32);
+        let evidence = offsets.evidence() * (sheet.area() / sure).min(LARGEST).sqrt();
+        Self { sheet, offsets, evidence: evidence.min(1.0) }
     }
 
     /// Whether it is a fault by all that was measured.
@@ -97,7 +101,7 @@ pub fn find(
     }
     let slopes = slopes(volume, progress)?;
     let ridges = ridges::ridges(&likelihood(volume, &slopes, geometry, progress)?);
-    let sides = Sides { volume, slopes: &slopes };
+    let sides = Sides { volume, slopes: &slopes, off: sides::NEAR };
     let seeds = seeds::seeds(sides, &ridges, GREATEST_THROW, progress)?;
     let groups = seeds::linked(&ridges, &seeds);
     let mut is_free = vec![true; ridges.len()];
@@ -113,7 +117,7 @@ pub fn find(
             continue;
         }
         members.iter().for_each(|&n| is_free[n] = false);
-        all.push(FaultSurface::new(sheet, offsets));
+        all.push(FaultSurface::new(sheet, offsets, volume.size()[2]));
     }
     all.retain(FaultSurface::is_possible);
     Ok(all)
@@ -132,7 +136,7 @@ pub fn throw(
     let [nx, ny, nz] = volume.size();
     let slopes = slopes(volume, progress)?;
     let ridges = ridges::ridges(&likelihood(volume, &slopes, geometry, progress)?);
-    let seeds = seeds::all(Sides { volume, slopes: &slopes }, &ridges, GREATEST_THROW, progress)?;
+    let seeds = seeds::all(Sides { volume, slopes: &slopes, off: sides::NEAR }, &ridges, GREATEST_THROW, progress)?;
     let mut out = Volume::filled([nx, ny, nz], f32::NAN);
     for seed in seeds {
         let Ridge { at: [x, y, z], plane, .. } = ridges[seed.ridge];
@@ -168,7 +172,7 @@ pub fn measure(
     progress: &Progress,
 ) -> Result<Vec<Option<FaultSurface>>, AttributeError> {
     progress.begin("measuring faults", meshes.len() as u64);
-    let sides = Sides { volume, slopes };
+    let sides = Sides { volume, slopes, off: sides::NEAR };
     meshes
         .iter()
         .map(|mesh| {
@@ -176,7 +180,7 @@ pub fn measure(
             let Some(sheet) = Sheet::of_mesh(mesh, geometry) else { return Ok(None) };
             let mut offsets = throws::offsets(sides, &sheet, GREATEST_THROW);
             offsets.summarize(&sheet);
-            Ok((sheet.area() >= AREA).then(|| FaultSurface::new(sheet, offsets)))
+            Ok((sheet.area() >= AREA).then(|| FaultSurface::new(sheet, offsets, volume.size()[2])))
         })
         .collect()
 }

@@ -8,8 +8,10 @@ use attribute::DipVolumes;
 use survey::Volume;
 
 /// Distances of the traces that are read, traces.
-const OFF: [f32; 2] = [2.0, 3.0];
-/// Traces beyond a place that its sides depend on.
+pub(crate) const NEAR: [f32; 2] = [2.0, 3.0];
+/// Those that are read to see whether a throw holds farther away.
+pub(crate) const FAR: [f32; 2] = [4.0, 5.0];
+/// Traces beyond a place that its near sides depend on.
 pub(crate) const REACH: usize = 4;
 
 /// A volume with its slopes.
@@ -17,6 +19,8 @@ pub(crate) const REACH: usize = 4;
 pub(crate) struct Sides<'a> {
     pub(crate) volume: &'a Volume<f32>,
     pub(crate) slopes: &'a DipVolumes,
+    /// Distances of the traces that are read, traces.
+    pub(crate) off: [f32; 2],
 }
 
 impl Sides<'_> {
@@ -29,10 +33,10 @@ impl Sides<'_> {
             let inside = i >= 0.0 && j >= 0.0 && i < nx as f32 && j < ny as f32;
             inside.then_some([i as usize, j as usize]).filter(|&[i, j]| self.volume.is_live(i, j))
         };
-        let Some([ox, oy]) = trace(OFF[1]) else { return f32::NAN };
+        let Some([ox, oy]) = trace(self.off[1]) else { return f32::NAN };
         let (p, q) = (self.slopes.inline.at(ox, oy, row), self.slopes.crossline.at(ox, oy, row));
         let (mut sum, mut count) = (0.0, 0.0);
-        for off in OFF {
+        for off in self.off {
             let Some([i, j]) = trace(off) else { continue };
             let at = z + p * (i as f32 - x) + q * (j as f32 - y);
             if at < 0.0 || at > (nz - 1) as f32 {

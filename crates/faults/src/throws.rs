@@ -3,7 +3,7 @@
 
 use crate::grow::{dilated, largest};
 use crate::sheet::{Quadratic, Sheet, WIDTH, blurred};
-use crate::sides::{PairSums, Sides};
+use crate::sides::{FAR, PairSums, Sides};
 use attribute::likelihood::ROW;
 use rayon::prelude::*;
 
@@ -17,6 +17,9 @@ const JUMP: f32 = 0.4;
 const BESIDE: f32 = 5.0;
 /// Distance from the smooth throw within which one agrees, samples.
 const SAME_THROW: f64 = 3.0;
+/// What a throw that does not hold farther away counts, and how much more one that does: a narrow graben is near its other
+/// side.
+const HOLDS: [f32; 2] = [0.3, 1.2];
 /// Least likeness of beds beside a fault.
 const BEDDED: f32 = 0.3;
 /// Least smoothed gain where there is a fault.
@@ -31,6 +34,8 @@ pub struct CellOffset {
     pub gain: f32,
     /// Correlation after the throw.
     pub matched: f32,
+    /// Correlation after the throw of beds farther away; NaN where there are none.
+    pub far: f32,
     /// Correlation without.
     pub straight: f32,
     /// Correlation without a shift on copies of the surface to either side.
@@ -46,6 +51,8 @@ pub struct Offsets {
     pub mean_gain: f32,
     /// Mean correlation after the throw.
     pub matched: f32,
+    /// The same of beds farther away.
+    pub far: f32,
     /// Share of the cells with a throw of at least two samples of the commoner sign.
     pub one_sign: f32,
     /// Mean correlation without a shift on copies to either side.
@@ -156,16 +163,24 @@ pub(crate) fn offsets(sides: Sides<'_>, sheet: &Sheet, greatest: i32) -> Offsets
     let chosen = matched(&all, sheet);
     let beside: Vec<Vec<f32>> =
         [-BESIDE, BESIDE].into_iter().map(|off| panels(sides, sheet, 2, off).correlations(sheet, 0)).collect();
+    // Whether the throw holds farther from the fault, where an error of the slopes would have grown.
+    let beyond = panels(Sides { off: FAR, ..sides }, sheet, greatest as usize, 0.0);
+    let mut lags: Vec<usize> = chosen.iter().flatten().copied().collect();
+    lags.sort_unstable();
+    lags.dedup();
+    let far: Vec<Vec<f32>> = lags.par_iter().map(|&lag| beyond.correlations(sheet, lag as i32 - greatest)).collect();
+    let far_at = |lag: usize, n: usize| lags.binary_search(&lag).map_or(f32::NAN, |of| far[of][n]);
     let count = sheet.height.len();
     let mut found = Offsets { cells: vec![None; count], greatest: greatest as f32, ..Offsets::default() };
     for n in 0..count {
         let Some(lag) = chosen[n] else { continue };
+        let far = far_at(lag, n);
         let lag = lag as i32 - greatest;
         let whole = (-1..=1).map(|lag| at(lag, n)).fold(0.0f32, f32::max);
         let matched = at(lag, n);
         let beside = [beside[0][n], beside[1][n]];
         found.cells[n] =
-            Some(CellOffset { throw: lag as f32, gain: matched - whole, matched, straight: at(0, n), beside });
+            Some(CellOffset { throw: lag as f32, gain: matched - whole, matched, far, straight: at(0, n), beside });
     }
     found
 }
@@ -182,15 +197,17 @@ impl Offsets {
     }
 
     /// How sure it is that a surface is a fault, 0 to 1: the share of the match that the throw brings, the share of the
-    /// likeness beside it that is lost on it, twice, and how much of it agrees in sense and amount. 0 where beds beside it
-    /// do not match themselves, and where the throw lies at the end of what was looked for.
+    /// likeness beside it that is lost on it, twice, how much of it agrees in sense and amount, and less where the throw does
+    /// not hold farther away, as that of wrong slopes does not. 0 where beds beside it do not match themselves, and where the
+    /// throw lies at the end of what was looked for.
     pub fn evidence(&self) -> f32 {
         let least = self.beside[0].min(self.beside[1]);
         if least < BEDDED || self.matched <= 0.0 || self.median.abs() >= self.greatest - 1.0 {
             return 0.0;
         }
         let lost = (self.contrast / least).clamp(0.0, 1.0);
-        (self.mean_gain / self.matched).clamp(0.0, 1.0) * lost * lost * self.one_sign * self.constant
+        let holds = (HOLDS[0] + HOLDS[1] * (self.far / self.matched).max(0.0)).min(1.0);
+        (self.mean_gain / self.matched).clamp(0.0, 1.0) * lost * lost * self.one_sign * self.constant * holds
     }
 
     /// Sums up what lies where a sheet is.
@@ -201,6 +218,8 @@ impl Offsets {
         let mean = |of: &dyn Fn(&CellOffset) -> f32| cells.iter().map(of).sum::<f32>() / count;
         self.mean_gain = mean(&|cell| cell.gain);
         self.matched = mean(&|cell| cell.matched);
+        let known: Vec<f32> = cells.iter().map(|cell| cell.far).filter(|far| far.is_finite()).collect();
+        self.far = known.iter().sum::<f32>() / known.len().max(1) as f32;
         let straight = mean(&|cell| cell.straight);
         let side = |n: usize| {
             let there: Vec<f32> = cells.iter().map(|cell| cell.beside[n]).filter(|value| value.is_finite()).collect();

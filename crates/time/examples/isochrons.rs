@@ -31,8 +31,7 @@ const NOTES: &str = "
   it leaves as islands have no patch from one to the next.
 - Comparing the log of every tile of 8 × 8 traces with that of the survey did not help such islands here, and neither
   did cutting patches into tiles or where their vertices disagree: they are left out.
-- On real surveys no fault is found without horizons: on F3 (both crops) and Penobscot patches go on across faults, and no
-  surface has more ends than patches that go on. `fault propose` tells more once there is a horizon.
+- Which faults are found on real surveys is told in `docs/faults.md`.
 - Penobscot, Horizon B by clicks: see `docs/clicks.sh`.
 - Where reflections are chaotic time is not known: of noise at most 1 % is, of Penobscot 96 %.
 - Times were taken while the machine did other work.
