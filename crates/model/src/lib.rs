@@ -72,7 +72,9 @@ pub use levels::{
     CutLattice, Equations, LevelSurface, NodeBox, bodies_overlap, check_surface, hole_m, is_closed, resampled,
     surface_through,
 };
-pub use network::{BlockSignature, FaultCrossing, FaultNetwork, FaultSurface, Truncation, drawn_crossing};
+pub use network::{
+    BlockSignature, FaultCrossing, FaultNetwork, FaultPart, FaultSurface, Truncation, drawn_crossing, fit_of, split,
+};
 pub use report::{InferredPlacement, ModelError, ModelNote, ModelReport, SurfaceProblem};
 pub use settings::ModelSettings;
 pub use sheets::picked_share;

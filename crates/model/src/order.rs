@@ -1,9 +1,9 @@
 //! Keeps conformable horizons in order.
 //!
-//! It is an error when the picks of two horizons that must not cross do so by more than a tolerance. Where
-//! continued parts cross, they are moved: a continued node to the picked one, two continued nodes to their
-//! mean. Crossings within the tolerance are left in the sheets and resolved by the contact rules (the younger
-//! horizon ends at the older).
+//! It is an error when the picks of two horizons that must not cross do so by more than a tolerance, at more than a few
+//! nodes and a small share of those that both have. Where fewer cross, the contact rules resolve it (the younger horizon
+//! ends at the older), and a note says so. Where continued parts cross, they are moved: a continued node to the picked one,
+//! two continued nodes to their mean.
 
 use super::contacts::ContactRules;
 use super::lattice::MarginLattice;
@@ -11,6 +11,7 @@ use super::network::FaultNetwork;
 use super::report::{ModelError, ModelNote};
 use super::settings::ModelSettings;
 use super::sheets::ExtendedSheet;
+use rayon::prelude::*;
 use survey::geometry::SurveyGeometry;
 
 /// Checks the picks and moves continued nodes that cross, `[horizon][block]`. `faults` tells where a moved
@@ -24,19 +25,15 @@ pub(super) fn keep_order(
     settings: &ModelSettings,
     faults: &FaultNetwork,
 ) -> Result<Vec<ModelNote>, ModelError> {
-    let mut notes = Vec::new();
+    let picked: Vec<Vec<Picks>> =
+        sheets.iter().map(|of| of.iter().map(|sheet| (&sheet.field.z[..], &sheet.known[..])).collect()).collect();
+    let mut notes = check(geometry, lattice, rules, names, &picked, settings)?;
     let blocks = sheets.first().map_or(0, Vec::len);
+    let pairs = pairs_in_order(rules, sheets.len());
     for b in 0..blocks {
-        let pairs: Vec<(usize, usize)> = (0..sheets.len())
-            .flat_map(|h| (h + 1..sheets.len()).map(move |g| (h, g)))
-            .filter(|&(h, g)| !rules.may_cross(h, g))
-            .collect();
         // Where all horizons lie in order, no pair crosses.
         let is_mixed = |n: &usize| sheets.windows(2).any(|pair| pair[0][b].field.z[*n] > pair[1][b].field.z[*n]);
         let mixed: Vec<usize> = (0..lattice.len()).filter(is_mixed).collect();
-        for &(h, g) in pairs.iter().filter(|_| !mixed.is_empty()) {
-            check(geometry, lattice, names, sheets, (h, g), (b, &mixed), settings)?;
-        }
         let mut clamped = vec![(0usize, 0.0f32); pairs.len()];
         for n in mixed {
             // Pulling one pair together can push it over a third; a few rounds settle it.
@@ -76,37 +73,85 @@ pub(super) fn keep_order(
     Ok(notes)
 }
 
-/// An error when picks of `pair` cross in block `b`, at one of the nodes `mixed`.
-fn check(
+/// Heights on a lattice, and which of them are picks.
+pub(super) type Picks<'a> = (&'a [f32], &'a [bool]);
+
+/// Picks that cross at no more than this share of the nodes that both horizons have are resolved. It is the share that a
+/// horizon may seem to cross another one when it is added.
+const RESOLVED_SHARE: f64 = 0.02;
+
+/// The pairs of horizons, younger and older, that may not cross.
+fn pairs_in_order(rules: &ContactRules, count: usize) -> Vec<(usize, usize)> {
+    let pairs = (0..count).flat_map(|h| (h + 1..count).map(move |g| (h, g)));
+    pairs.filter(|&(h, g)| !rules.may_cross(h, g)).collect()
+}
+
+/// Where the picks of two horizons cross.
+#[derive(Default)]
+struct Crossing {
+    nodes: usize,
+    worst: f32,
+    /// The node and the block of the worst.
+    place: (usize, usize),
+}
+
+/// An error when picks, `[horizon][block]`, cross where they must not; notes of what the contact rules resolve.
+pub(super) fn check(
     geometry: &SurveyGeometry,
     lattice: MarginLattice,
+    rules: &ContactRules,
     names: &[&str],
-    sheets: &[Vec<ExtendedSheet>],
-    pair: (usize, usize),
-    (b, mixed): (usize, &[usize]),
+    picks: &[Vec<Picks>],
     settings: &ModelSettings,
-) -> Result<(), ModelError> {
-    let (top, base) = (&sheets[pair.0][b], &sheets[pair.1][b]);
-    let (mut nodes, mut worst, mut place) = (0, 0.0f32, 0);
-    for &n in mixed {
-        let crossing = top.field.z[n] - base.field.z[n];
-        if top.known[n] && base.known[n] && crossing > settings.crossing_tolerance {
-            nodes += 1;
-            if crossing > worst {
-                (worst, place) = (crossing, n);
+) -> Result<Vec<ModelNote>, ModelError> {
+    // Where the picks of all horizons lie in order, no pair crosses.
+    let is_mixed = |b: usize, n: usize| {
+        let mut deepest = f32::NEG_INFINITY;
+        picks.iter().map(|of| of[b]).filter(|(_, known)| known[n]).any(|(z, _)| {
+            let is_above = z[n] < deepest;
+            deepest = deepest.max(z[n]);
+            is_above
+        })
+    };
+    let blocks = picks.first().map_or(0, Vec::len);
+    let mixed: Vec<Vec<usize>> =
+        (0..blocks).into_par_iter().map(|b| (0..lattice.len()).filter(|&n| is_mixed(b, n)).collect()).collect();
+    if mixed.iter().all(Vec::is_empty) {
+        return Ok(Vec::new());
+    }
+    let crossing = |&(h, g): &(usize, usize)| {
+        let mut found = Crossing::default();
+        for (b, ((top, top_known), (base, base_known))) in picks[h].iter().zip(&picks[g]).enumerate() {
+            for &n in &mixed[b] {
+                let by = top[n] - base[n];
+                if top_known[n] && base_known[n] && by > settings.crossing_tolerance {
+                    found.nodes += 1;
+                    if by > found.worst {
+                        (found.worst, found.place) = (by, (n, b));
+                    }
+                }
             }
         }
+        found
+    };
+    let common = |h: usize, g: usize| {
+        let both = |(top, base): (&Picks, &Picks)| top.1.iter().zip(base.1).filter(|(top, base)| **top && **base).count();
+        picks[h].iter().zip(&picks[g]).map(both).sum::<usize>()
+    };
+    let pairs = pairs_in_order(rules, picks.len());
+    let found: Vec<Crossing> = pairs.par_iter().map(crossing).collect();
+    let mut notes = Vec::new();
+    for ((h, g), Crossing { nodes, worst, place: (node, block) }) in pairs.into_iter().zip(found) {
+        if nodes <= settings.crossing_nodes {
+            continue;
+        }
+        let [x, y] = lattice.voxel(node).map(f64::from);
+        let lines = geometry.lines_from_voxel(glam::DVec2::new(x, y)).to_array();
+        let (younger, older) = (names[h].to_owned(), names[g].to_owned());
+        if nodes as f64 > RESOLVED_SHARE * common(h, g) as f64 {
+            return Err(ModelError::CrossingHorizons { younger, older, block: block as u16, nodes, worst, lines });
+        }
+        notes.push(ModelNote::Crossed { younger, older, nodes, worst, lines });
     }
-    if nodes <= settings.crossing_nodes {
-        return Ok(());
-    }
-    let [x, y] = lattice.voxel(place).map(f64::from);
-    Err(ModelError::CrossingHorizons {
-        younger: names[pair.0].to_owned(),
-        older: names[pair.1].to_owned(),
-        block: b as u16,
-        nodes,
-        worst,
-        lines: geometry.lines_from_voxel(glam::DVec2::new(x, y)).to_array(),
-    })
+    Ok(notes)
 }

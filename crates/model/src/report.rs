@@ -64,7 +64,8 @@ pub enum ModelError {
     /// A fault folds over itself: it passes twice over one place of its own best-fit plane.
     #[error(
         "fault \"{name}\" folds back over itself by up to {offset_m:.0} m near X {:.0}, Y {:.0}, vertical \
-         {:.0}; split it into two faults there and let one be truncated by the other",
+         {:.0}, and no smooth surface lies near it; leave out what does not belong to it, or give it as several faults, \
+         each of which turns by less than 150 degrees",
         world[0], world[1], world[2]
     )]
     FoldedFault {
@@ -266,6 +267,19 @@ pub enum ModelNote {
         /// The largest crossing, samples.
         worst: f32,
     },
+    /// Picks of two horizons cross at a few nodes: the younger one ends at the older one there.
+    Crossed {
+        /// The horizon that should be above.
+        younger: String,
+        /// The horizon that should be below.
+        older: String,
+        /// Nodes that cross by more than the tolerance.
+        nodes: usize,
+        /// The largest crossing, samples.
+        worst: f32,
+        /// Inline and crossline number of the worst place.
+        lines: [f64; 2],
+    },
     /// Points of a series do not lie on the surface that fits all of them best.
     Misfit {
         /// Name of the horizon.
@@ -298,7 +312,10 @@ pub enum ModelNote {
 impl ModelNote {
     /// Whether parts of the interpretation contradict one another: what is drawn there may not be what was meant.
     pub fn is_contradiction(&self) -> bool {
-        matches!(self, Self::BodiesOverlap { .. } | Self::FaultsCross { .. } | Self::Misfit { .. })
+        matches!(
+            self,
+            Self::BodiesOverlap { .. } | Self::FaultsCross { .. } | Self::Misfit { .. } | Self::Crossed { .. }
+        )
     }
 }
 
@@ -343,6 +360,11 @@ impl fmt::Display for ModelNote {
                 f,
                 "horizons \"{younger}\" and \"{older}\", continued without data, crossed by up to {worst:.1} \
                  samples at {nodes} traces of fault block {block} and were pulled together"
+            ),
+            Self::Crossed { younger, older, nodes, worst, lines: [inline, crossline] } => write!(
+                f,
+                "horizon \"{younger}\" lies below \"{older}\" at {nodes} nodes, by up to {worst:.1} samples near inline \
+                 {inline:.0}, crossline {crossline:.0}; it ends at \"{older}\" there"
             ),
             Self::Misfit { horizon, points, worst } => write!(
                 f,

@@ -107,7 +107,7 @@ pub(super) fn extend_all(
     let made: Vec<Option<ExtendedSheet>> = jobs
         .par_iter()
         .map(|&(h, b)| {
-            let fewest = if blocks == 1 { 1 } else { settings.fewest_nodes.max(1) };
+            let fewest = BlockPicks::fewest(faults, settings);
             let sheet = extend_one(lattice, &nodes[h].nodes, faults, b, &wholes[h].1, fewest);
             progress.step(1).map(|()| sheet)
         })
@@ -144,6 +144,50 @@ fn average(lattice: MarginLattice, nodes: &[InterpretedNode]) -> Vec<f32> {
     sum.into_iter().map(|(z, n)| if n > 0.0 { z / n } else { f32::NAN }).collect()
 }
 
+/// The nodes that count for a horizon in one block: its own, and those of others that are the same surface there.
+pub(super) struct BlockPicks {
+    /// Heights, NaN without a node.
+    pub z: Vec<f32>,
+    quality: Vec<Quality>,
+    pub known: Vec<bool>,
+    own: usize,
+}
+
+impl BlockPicks {
+    /// Of `nodes`; `None` with fewer than `fewest`.
+    pub(super) fn of(
+        lattice: MarginLattice,
+        nodes: &[InterpretedNode],
+        faults: &FaultNetwork,
+        block: usize,
+        fewest: usize,
+    ) -> Option<Self> {
+        let mut z = vec![f32::NAN; lattice.len()];
+        let mut quality = vec![Quality::Hole; lattice.len()];
+        let signature = faults.signatures()[block];
+        let mut own = 0;
+        for node in nodes.iter().filter(|n| usize::from(n.block) == block) {
+            z[node.at as usize] = node.z;
+            quality[node.at as usize] = node.quality;
+            own += 1;
+        }
+        for node in nodes.iter().filter(|n| usize::from(n.block) != block) {
+            let between = (node.bits ^ signature.bits) & signature.care;
+            if between != 0 && between & !node.beyond == 0 && z[node.at as usize].is_nan() {
+                z[node.at as usize] = node.z;
+                quality[node.at as usize] = node.quality;
+            }
+        }
+        let known: Vec<bool> = z.iter().map(|z| z.is_finite()).collect();
+        (known.iter().filter(|&&k| k).count() >= fewest).then_some(Self { z, quality, known, own })
+    }
+
+    /// How many nodes a block needs at least.
+    pub(super) fn fewest(faults: &FaultNetwork, settings: &ModelSettings) -> usize {
+        if faults.block_count() == 1 { 1 } else { settings.fewest_nodes.max(1) }
+    }
+}
+
 /// The sheet of `block` from the nodes that count for it; `None` with fewer than `fewest`.
 fn extend_one(
     lattice: MarginLattice,
@@ -153,26 +197,7 @@ fn extend_one(
     extension: &Extension,
     fewest: usize,
 ) -> Option<ExtendedSheet> {
-    let mut z = vec![f32::NAN; lattice.len()];
-    let mut quality = vec![Quality::Hole; lattice.len()];
-    let signature = faults.signatures()[block];
-    let mut own = 0;
-    for node in nodes.iter().filter(|n| usize::from(n.block) == block) {
-        z[node.at as usize] = node.z;
-        quality[node.at as usize] = node.quality;
-        own += 1;
-    }
-    for node in nodes.iter().filter(|n| usize::from(n.block) != block) {
-        let between = (node.bits ^ signature.bits) & signature.care;
-        if between != 0 && between & !node.beyond == 0 && z[node.at as usize].is_nan() {
-            z[node.at as usize] = node.z;
-            quality[node.at as usize] = node.quality;
-        }
-    }
-    let known: Vec<bool> = z.iter().map(|z| z.is_finite()).collect();
-    if known.iter().filter(|&&k| k).count() < fewest {
-        return None;
-    }
+    let BlockPicks { mut z, mut quality, known, own } = BlockPicks::of(lattice, nodes, faults, block, fewest)?;
     extension.extend(lattice.size, &mut z)?;
     grade(lattice.size, &mut quality);
     Some(ExtendedSheet { field: HeightField { origin: lattice.origin, size: lattice.size, z }, quality, known, own })

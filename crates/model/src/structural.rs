@@ -5,10 +5,10 @@ use super::lattice::MarginLattice;
 use super::levels::{LevelSources, LevelSurface};
 use super::network::FaultNetwork;
 use super::nodes::{HorizonNodes, gather};
-use super::order::keep_order;
+use super::order::{self, keep_order};
 use super::report::{ModelError, ModelNote, ModelReport};
 use super::settings::ModelSettings;
-use super::sheets::{ExtendedSheet, extend_all};
+use super::sheets::{BlockPicks, ExtendedSheet, extend_all};
 use super::sides::{Below, MOST_HORIZONS};
 use glam::{DMat3, Vec3};
 use rayon::prelude::*;
@@ -189,6 +189,46 @@ impl StructuralModel {
             depths,
             report,
         })
+    }
+
+    /// Whether picks of horizons that are height fields make a model among the blocks of `faults`: what
+    /// [`StructuralModel::build`] would refuse of them is refused here, at a small share of its cost. Notes what it would
+    /// resolve.
+    ///
+    /// # Errors
+    /// [`ModelError`] says what is wrong and what to change.
+    pub fn check_picks(
+        geometry: &SurveyGeometry,
+        stratigraphy: &Stratigraphy,
+        horizons: &[Horizon],
+        faults: &FaultNetwork,
+        settings: &ModelSettings,
+    ) -> Result<Vec<ModelNote>, ModelError> {
+        geometry.validate()?;
+        let ordered = in_order(stratigraphy, horizons)?;
+        let size = geometry.size();
+        let lattice = MarginLattice::with_margin(size, settings.margin_for(size));
+        let found = |horizon: &&Horizon| {
+            gather(geometry, lattice, horizon, faults, settings, &mut ModelReport::default())
+        };
+        let nodes: Vec<HorizonNodes> = ordered.par_iter().map(found).collect();
+        if let Some((found, horizon)) = nodes.iter().zip(&ordered).find(|(found, _)| found.nodes.is_empty()) {
+            let HorizonNodes { outside, holes, .. } = *found;
+            return Err(ModelError::EmptyHorizon { name: horizon.name.clone(), outside, holes });
+        }
+        let fewest = BlockPicks::fewest(faults, settings);
+        let blocks = 0..faults.block_count();
+        let of_horizon = |found: &HorizonNodes| -> Vec<Option<BlockPicks>> {
+            blocks.clone().map(|b| BlockPicks::of(lattice, &found.nodes, faults, b, fewest)).collect()
+        };
+        let picks: Vec<Vec<Option<BlockPicks>>> = nodes.par_iter().map(of_horizon).collect();
+        let nothing = (vec![f32::NAN; lattice.len()], vec![false; lattice.len()]);
+        let of_block = |found| -> order::Picks<'_> {
+            Option::<&BlockPicks>::map_or(found, (&nothing.0, &nothing.1), |found| (&found.z, &found.known))
+        };
+        let picks: Vec<Vec<_>> = picks.iter().map(|of| of.iter().map(|found| of_block(found.as_ref())).collect()).collect();
+        let names: Vec<&str> = ordered.iter().map(|horizon| horizon.name.as_str()).collect();
+        order::check(geometry, lattice, &ContactRules::new(stratigraphy), &names, &picks, settings)
     }
 
     /// Voxels of the volume, `[inlines, crosslines, samples]`.

@@ -11,10 +11,14 @@
 mod blocks;
 mod build;
 mod crossing;
+mod facing;
 mod outline;
+mod smoothing;
+mod split;
 mod surface;
 
 pub use crossing::{FaultCrossing, drawn_crossing};
+pub use split::{FaultPart, fit_of, split};
 pub use surface::FaultSurface;
 
 use crate::report::ModelError;

@@ -176,6 +176,111 @@ fn blocks_do_not_depend_on_the_fault_order_given_or_the_corner_they_touch() {
     }
 }
 
+/// The RMS distance of a mesh's vertices from the surface of the only fault of a network, m.
+fn misfit_m(n: &FaultNetwork, mesh: &TriangleMesh) -> f64 {
+    let off = |v: &DVec3| n.surfaces()[0].side(geometry().voxel_from_world(*v)).powi(2);
+    (mesh.vertices.iter().map(off).sum::<f64>() / mesh.vertices.len() as f64).sqrt()
+}
+
+#[test]
+fn a_ribbon_that_wanders_farther_than_it_is_high_is_followed() {
+    // 100 m high, nearly 1 km long, and it wanders by 400 m: its best-fit plane is nearly level, over which it folds.
+    let x = |y: f64, z: f64| 24.0 + 8.0 * (y / 5.0).sin() + 0.02 * (z - 30.0);
+    let ribbon = mesh(40, |s, t| {
+        let (y, z) = (39.0 * s, 25.0 + 10.0 * t);
+        DVec3::new(x(y, z), y, z)
+    });
+    let n = network(&[fault("R", ribbon.clone(), None)]);
+    assert!(misfit_m(&n, &ribbon) < 2.0, "{}", misfit_m(&n, &ribbon));
+    for (y, off) in [(4.0, 0.5), (17.0, -0.5), (33.0, 0.5)] {
+        let side = |by: f64| n.side(0, DVec3::new(x(y, 30.0) + by, y, 30.0).as_vec3());
+        assert!(side(off) * side(-off) < 0.0, "{y}");
+    }
+}
+
+#[test]
+fn a_fault_that_turns_by_90_degrees_along_strike_and_flattens_is_followed() {
+    // A listric fault around a quarter of a circle: steep at its top, lying at its foot.
+    let bowl = mesh(40, |s, t| {
+        let (angle, flat) = (1.5708 * s, 1.35 * t);
+        let radius = 38.0 - 14.0 * (1.0 - flat.cos());
+        DVec3::new(radius * angle.cos() + 5.0, radius * angle.sin(), 5.0 + 35.0 * flat.sin())
+    });
+    let n = network(&[fault("B", bowl.clone(), None)]);
+    assert!(misfit_m(&n, &bowl) < 15.0, "{}", misfit_m(&n, &bowl));
+}
+
+#[test]
+fn a_small_fold_and_tangled_triangles_are_smoothed() {
+    // A plane with a lip of 4 voxels that runs back under itself.
+    let lip = mesh(60, |s, t| {
+        let z = 59.0 * t;
+        let curl = if (0.45..0.55).contains(&t) { (62.83 * (t - 0.45)).sin() } else { 0.0 };
+        DVec3::new(20.0 + 0.2 * z + 4.0 * curl, 39.0 * s, z + 7.0 * curl)
+    });
+    let n = network(&[fault("L", lip.clone(), None)]);
+    assert!(misfit_m(&n, &lip) < 60.0, "{}", misfit_m(&n, &lip));
+    let fit = fit_of(&geometry(), &fault("L", lip, None)).unwrap();
+    assert!(fit.is_some_and(|off_m| off_m > 1.0 && off_m < 100.0), "{fit:?}");
+    // Triangles that join the nodes of a dipping plane in no order, each node up to 30 m off it.
+    let mut state = 5u32;
+    let mut next = |count: usize| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as usize % count
+    };
+    let mut tangled = mesh(7, |s, t| DVec3::new(14.0 + 0.3 * 59.0 * t, 39.0 * s, 59.0 * t));
+    let count = tangled.vertices.len();
+    tangled.vertices.iter_mut().for_each(|v| v.x += 60.0 * (next(1000) as f64 / 1000.0 - 0.5));
+    tangled.triangles = (0..120).map(|_| [next(count) as u32, next(count) as u32, next(count) as u32]).collect();
+    let n = network(&[fault("T", tangled, None)]);
+    for z in [10.0, 30.0, 50.0] {
+        let off = n.side(0, DVec3::new(14.0 + 0.3 * z, 20.0, z).as_vec3());
+        assert!(off.abs() < 30.0, "{off}");
+    }
+}
+
+#[test]
+fn what_no_plane_sees_is_split_into_parts_that_fit() {
+    // Three quarters of a cylinder about a vertical axis, and the walls of a graben with its floor.
+    let ring = mesh(40, |s, t| {
+        let angle = 4.7 * s;
+        DVec3::new(24.0 + 14.0 * angle.cos(), 20.0 + 14.0 * angle.sin(), 59.0 * t)
+    });
+    let trough = mesh(60, |s, t| {
+        let along = 130.0 * s;
+        let (x, z) = if along < 50.0 {
+            (10.0, 5.0 + along)
+        } else if along < 80.0 {
+            (10.0 + along - 50.0, 55.0)
+        } else {
+            (40.0, 55.0 - (along - 80.0))
+        };
+        DVec3::new(x, 39.0 * t, z)
+    });
+    for (name, folded) in [("ring", ring), ("trough", trough)] {
+        let whole = fault(name, folded, None);
+        let area = |mesh: &TriangleMesh| mesh.triangles.len();
+        assert!(matches!(fit_of(&geometry(), &whole), Err(ModelError::FoldedFault { .. })), "{name}");
+        let parts = split(&geometry(), &whole).unwrap();
+        assert!((2..=4).contains(&parts.len()), "{name}: {} parts", parts.len());
+        assert_eq!(parts.iter().map(|part| area(&part.mesh)).sum::<usize>(), area(&whole.mesh), "{name}");
+        let faults: Vec<Fault> = parts
+            .iter()
+            .enumerate()
+            .map(|(k, part)| Fault {
+                truncated_by: part.ends_at.map(|at| format!("P{at}")),
+                ..Fault::new(format!("P{k}"), part.mesh.clone())
+            })
+            .collect();
+        let n = network(&faults);
+        for (f, part) in parts.iter().enumerate() {
+            let off = |v: &DVec3| n.surfaces()[f].side(geometry().voxel_from_world(*v)).abs();
+            let worst = part.mesh.vertices.iter().map(off).fold(0.0, f64::max);
+            assert!(worst < 60.0, "{name} {f}: {worst}");
+        }
+    }
+}
+
 #[test]
 fn bad_faults_are_named() {
     let build = |faults: &[Fault]| FaultNetwork::build(&geometry(), faults, &Progress::silent()).unwrap_err();
