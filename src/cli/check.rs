@@ -20,6 +20,11 @@ pub(super) fn report(found: &CheckReport) -> Report {
     for damage in &found.damage {
         say_damage(&mut report, damage, &found.project);
     }
+    if let Some(reason) = &found.undrawable {
+        let undo = CommandLine::new("undo").value(&found.project);
+        report.say(format!("cannot be drawn: {reason}"));
+        report.say(format!("  what to do: that, or go back with `{undo}`"));
+    }
     for leftover in &found.leftovers {
         let why = match leftover.kind {
             LeftoverKind::Unfinished => "left behind by a command that did not finish",

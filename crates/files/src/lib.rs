@@ -533,6 +533,11 @@ pub fn fault_of_sticks(name: &str, sticks: &[Vec<DVec3>], geometry: &SurveyGeome
     any.then(|| Fault::new(name, mesh))
 }
 
+/// The order along strike in which sticks (world, vertical value), of at least one point each, are joined.
+pub fn sticks_along_strike(sticks: &[Vec<DVec3>], geometry: &SurveyGeometry) -> Vec<usize> {
+    sticks::order(&sticks::metric(sticks, geometry.metres_per_vertical_unit()))
+}
+
 /// Writes a fault under a temporary name, then renames the file.
 ///
 /// # Errors

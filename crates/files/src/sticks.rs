@@ -14,8 +14,7 @@ const MAX_TABLE: usize = 4_000_000;
 
 /// Joins sticks (world, vertical value; `metres` per vertical unit) of at least two nodes each.
 pub(super) fn join(sticks: &[Vec<DVec3>], metres: f64) -> TriangleMesh {
-    let metric: Vec<Vec<DVec3>> =
-        sticks.iter().map(|s| s.iter().map(|p| *p * DVec3::new(1.0, 1.0, metres)).collect()).collect();
+    let metric = metric(sticks, metres);
     let order = order(&metric);
     let mut mesh = TriangleMesh::default();
     let mut before: Option<(u32, Vec<DVec3>)> = None;
@@ -37,11 +36,17 @@ pub(super) fn join(sticks: &[Vec<DVec3>], metres: f64) -> TriangleMesh {
     mesh
 }
 
+/// Sticks in metres.
+pub(super) fn metric(sticks: &[Vec<DVec3>], metres: f64) -> Vec<Vec<DVec3>> {
+    sticks.iter().map(|s| s.iter().map(|p| *p * DVec3::new(1.0, 1.0, metres)).collect()).collect()
+}
+
 fn direction(stick: &[DVec3]) -> DVec3 {
     stick.last().zip(stick.first()).map_or(DVec3::ZERO, |(b, a)| *b - *a)
 }
 
-fn order(sticks: &[Vec<DVec3>]) -> Vec<usize> {
+/// The order along strike.
+pub(super) fn order(sticks: &[Vec<DVec3>]) -> Vec<usize> {
     let middles: Vec<DVec3> = sticks.iter().map(|s| s.iter().sum::<DVec3>() / s.len() as f64).collect();
     let length = |order: &[usize]| order.windows(2).map(|w| middles[w[0]].distance(middles[w[1]])).sum::<f64>();
     let file: Vec<usize> = (0..sticks.len()).collect();

@@ -66,6 +66,7 @@ mod sides;
 mod strays;
 mod structural;
 mod throws;
+mod window;
 
 pub use contacts::ContactRules;
 pub use levels::{
@@ -73,7 +74,8 @@ pub use levels::{
     surface_through,
 };
 pub use network::{
-    BlockSignature, FaultCrossing, FaultNetwork, FaultPart, FaultSurface, Truncation, drawn_crossing, fit_of, split,
+    BlockSignature, FaultCrossing, FaultNetwork, FaultPart, FaultSurface, Truncation, drawn_crossing, ends_of_parts,
+    fit_of, split,
 };
 pub use report::{InferredPlacement, ModelError, ModelNote, ModelReport, SurfaceProblem};
 pub use settings::ModelSettings;

@@ -13,6 +13,8 @@ use super::network::{FaultNetwork, FaultSurface};
 use super::nodes::HorizonNodes;
 use super::report::{InferredPlacement, ModelNote};
 use super::settings::ModelSettings;
+use super::window::Window;
+use glam::Vec3;
 use rayon::prelude::*;
 use survey::height_field::HeightField;
 use survey::horizon::Quality;
@@ -88,6 +90,7 @@ pub(super) fn extend_all(
     names: &[&str],
     nodes: &[HorizonNodes],
     faults: &FaultNetwork,
+    samples: usize,
     settings: &ModelSettings,
     progress: &Progress,
 ) -> Result<(Vec<Vec<ExtendedSheet>>, Vec<ModelNote>), Cancelled> {
@@ -103,12 +106,13 @@ pub(super) fn extend_all(
             (whole, Extension { radius: settings.slope_radius, noise: NOISE, slope })
         })
         .collect();
+    let windows = Window::of_blocks(lattice, faults, samples);
     let jobs: Vec<(usize, usize)> = (0..nodes.len()).flat_map(|h| (0..blocks).map(move |b| (h, b))).collect();
     let made: Vec<Option<ExtendedSheet>> = jobs
         .par_iter()
         .map(|&(h, b)| {
             let fewest = BlockPicks::fewest(faults, settings);
-            let sheet = extend_one(lattice, &nodes[h].nodes, faults, b, &wholes[h].1, fewest);
+            let sheet = extend_one(lattice, &nodes[h].nodes, faults, b, (&wholes[h].1, windows[b]), fewest);
             progress.step(1).map(|()| sheet)
         })
         .collect::<Result<_, _>>()?;
@@ -116,7 +120,7 @@ pub(super) fn extend_all(
         made.chunks(blocks.max(1)).map(<[Option<ExtendedSheet>]>::to_vec).collect();
     sheets.par_iter_mut().zip(&wholes).try_for_each(|(of_horizon, whole)| {
         progress.check()?;
-        join(lattice, of_horizon, faults, &whole.1);
+        join(lattice, of_horizon, faults, &whole.1, &windows);
         Ok(())
     })?;
     let mut notes = Vec::new();
@@ -194,11 +198,11 @@ fn extend_one(
     nodes: &[InterpretedNode],
     faults: &FaultNetwork,
     block: usize,
-    extension: &Extension,
+    (extension, window): (&Extension, Window),
     fewest: usize,
 ) -> Option<ExtendedSheet> {
     let BlockPicks { mut z, mut quality, known, own } = BlockPicks::of(lattice, nodes, faults, block, fewest)?;
-    extension.extend(lattice.size, &mut z)?;
+    window.extend(extension, lattice.size, &mut z)?;
     grade(lattice.size, &mut quality);
     Some(ExtendedSheet { field: HeightField { origin: lattice.origin, size: lattice.size, z }, quality, known, own })
 }
@@ -208,7 +212,13 @@ fn extend_one(
 ///
 /// Block by block, the one with the most data first: what the blocks before it hold beyond the tips counts as data, so
 /// that it continues them with their slope; in the end each block takes over what those after it hold.
-fn join(lattice: MarginLattice, sheets: &mut [Option<ExtendedSheet>], faults: &FaultNetwork, extension: &Extension) {
+fn join(
+    lattice: MarginLattice,
+    sheets: &mut [Option<ExtendedSheet>],
+    faults: &FaultNetwork,
+    extension: &Extension,
+    windows: &[Window],
+) {
     let mut order: Vec<usize> = (0..sheets.len()).filter(|&b| sheets[b].is_some()).collect();
     if order.len() < 2 {
         return;
@@ -222,7 +232,7 @@ fn join(lattice: MarginLattice, sheets: &mut [Option<ExtendedSheet>], faults: &F
             (0..field.len()).filter(|&n| !sheet.known[n]).for_each(|n| field[n] = f32::NAN);
             lent.iter().for_each(|&(n, z)| field[n] = z);
             // There is data, so it can be continued.
-            let _ = extension.extend(lattice.size, field);
+            let _ = windows[b].extend(extension, lattice.size, field);
         }
         shared.push(LentNodes::of(lattice, sheets[b].as_ref(), faults, b));
     }
@@ -244,11 +254,19 @@ struct LentNodes {
 impl LentNodes {
     fn of(lattice: MarginLattice, sheet: Option<&ExtendedSheet>, faults: &FaultNetwork, block: usize) -> Self {
         let mut shared = Self { nodes: Vec::new(), beyond: Vec::new() };
+        // Among many blocks, places beyond the volume in none of them are not looked for.
+        let is_inside = |p: Vec3| match faults.has_many_blocks() {
+            true => faults.holds(block as u16, p),
+            false => usize::from(faults.block_at(p)) == block,
+        };
         for (n, &z) in sheet.iter().flat_map(|sheet| sheet.field.z.iter().enumerate()) {
             let p = lattice.place(n, z);
+            if !is_inside(p) {
+                continue;
+            }
             let is_beyond = |fault: &FaultSurface| fault.extent_at(p.as_dvec3()) < 0.0;
             let beyond = faults.surfaces().iter().enumerate().map(|(f, s)| u64::from(is_beyond(s)) << f).sum();
-            if beyond != 0 && usize::from(faults.block_at(p)) == block {
+            if beyond != 0 {
                 shared.nodes.push(n as u32);
                 shared.beyond.push(beyond);
             }

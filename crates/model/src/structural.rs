@@ -164,7 +164,7 @@ impl StructuralModel {
             progress.step(1)?;
         }
         let names: Vec<&str> = fields.iter().map(|&h| ordered[h].name.as_str()).collect();
-        let (mut sheets, placed) = extend_all(lattice, &names, &nodes, &faults, settings, progress)?;
+        let (mut sheets, placed) = extend_all(lattice, &names, &nodes, &faults, size[2], settings, progress)?;
         report.notes.extend(placed);
         report.notes.extend(extended(lattice, &names, &sheets, &faults));
         let among = rules.among(&fields);

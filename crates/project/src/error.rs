@@ -515,6 +515,12 @@ pub enum ProjectError {
         /// The fault.
         fault: String,
     },
+    /// A fault that lies beside the survey.
+    #[error("no part of fault \"{fault}\" lies in the survey")]
+    FaultElsewhere {
+        /// The fault.
+        fault: String,
+    },
     /// A fault that was not drawn as sticks.
     #[error("fault \"{fault}\" was not drawn as sticks")]
     NotDrawn {

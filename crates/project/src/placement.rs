@@ -6,7 +6,7 @@
 
 use glam::{DVec2, DVec3};
 use render::VoxelBox;
-use survey::{SurveyGeometry, VerticalUnit};
+use survey::{SurveyGeometry, TriangleMesh, VerticalUnit};
 
 /// Why a volume cannot be shown in a project.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -118,6 +118,19 @@ fn check_overlap(frame: &SurveyGeometry, block: &VoxelBox) -> Result<(), Placeme
 /// Direction of a step between lines, degrees anticlockwise from east.
 fn degrees(step: DVec2) -> f64 {
     step.y.atan2(step.x).to_degrees()
+}
+
+/// Whether a fault may reach the survey or a trace beside it: whether the box around one of its triangles does. Also where
+/// there are no triangles at all.
+pub(crate) fn reaches(frame: &SurveyGeometry, mesh: &TriangleMesh) -> bool {
+    let last = DVec2::new(frame.size()[0] as f64, frame.size()[1] as f64);
+    let voxels: Vec<DVec2> = mesh.vertices.iter().map(|vertex| frame.voxel_from_world(*vertex).truncate()).collect();
+    let reaches = |triangle: &[u32; 3]| {
+        let corners = triangle.map(|v| voxels[v as usize]);
+        let (low, high) = (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
+        high.cmpge(DVec2::NEG_ONE).all() && low.cmple(last).all()
+    };
+    mesh.triangles.is_empty() || mesh.triangles.iter().any(reaches)
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 //! thread count or tiling can change.
 
 use super::surface::FaultSurface;
+use super::tree::FaultTree;
 use super::{BlockSignature, Truncation};
 use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
@@ -21,23 +22,25 @@ pub(super) fn existing(truncation: &[Option<Truncation>], order: &[usize], bits:
     })
 }
 
-/// The signatures that occur among the voxels of a volume, by first voxel.
+/// Which faults exist where.
+pub(super) enum Existence<'a> {
+    /// Everywhere, but for those that end at another: these, in order.
+    Everywhere(&'a [Option<Truncation>], &'a [usize]),
+    /// Each only in parts of the volume.
+    Parts(&'a FaultTree),
+}
+
+/// The signatures that occur among the voxels of a volume, by first voxel; of more than `most`, some more than these.
 pub(super) fn occurring(
     surfaces: &[FaultSurface],
-    truncation: &[Option<Truncation>],
-    order: &[usize],
+    existence: &Existence,
+    most: usize,
     size: [usize; 3],
     metric: DMat3,
     progress: &Progress,
 ) -> Result<Vec<BlockSignature>, Cancelled> {
-    let search = BlockSearch {
-        surfaces,
-        change: surfaces.iter().map(|s| s.steepest().hypot(1.0)).collect(),
-        truncation,
-        order,
-        size,
-        metric,
-    };
+    let change = surfaces.iter().map(|s| s.steepest().hypot(1.0)).collect();
+    let search = BlockSearch { surfaces, change, existence, most, size, metric };
     let mut found = BTreeMap::new();
     search.visit([0; 3], size, (0, 0), &mut found, progress)?;
     let mut by_voxel: Vec<(usize, BlockSignature)> =
@@ -50,8 +53,8 @@ struct BlockSearch<'a> {
     surfaces: &'a [FaultSurface],
     /// Largest change of w − g per metre, per fault.
     change: Vec<f64>,
-    truncation: &'a [Option<Truncation>],
-    order: &'a [usize],
+    existence: &'a Existence<'a>,
+    most: usize,
     size: [usize; 3],
     metric: DMat3,
 }
@@ -66,6 +69,9 @@ impl BlockSearch<'_> {
         found: &mut BTreeMap<(u64, u64), usize>,
         progress: &Progress,
     ) -> Result<(), Cancelled> {
+        if found.len() > self.most {
+            return Ok(());
+        }
         let half = DVec3::from_array(size.map(|n| 0.5 * (n as f64 - 1.0)));
         let centre = DVec3::from_array(low.map(|n| n as f64)) + half;
         // The longest of the box's four diagonals, since lines need not be perpendicular.
@@ -84,8 +90,11 @@ impl BlockSearch<'_> {
             }
         }
         let all = if self.surfaces.len() == 64 { u64::MAX } else { (1 << self.surfaces.len()) - 1 };
-        if sure == all {
-            let care = existing(self.truncation, self.order, bits);
+        let care = match self.existence {
+            Existence::Everywhere(truncation, order) => (sure == all).then(|| existing(truncation, order, bits)),
+            Existence::Parts(tree) => tree.existing(bits, sure),
+        };
+        if let Some(care) = care {
             let first = (low[0] * self.size[1] + low[1]) * self.size[2] + low[2];
             let entry = found.entry((bits & care, care)).or_insert(first);
             *entry = first.min(*entry);

@@ -116,6 +116,7 @@ pub fn drawn_crossing(
         truncation: vec![None; count],
         order: (0..count).collect(),
         signatures: Vec::new(),
+        in_parts: false,
         table: Vec::new(),
     };
     let mut own = network.crossings(geometry.size());

@@ -6,7 +6,8 @@
 //! combination that no voxel has (it can occur in a sliver between voxels) is given to the known block with
 //! the fewest differing sides.
 //!
-//! Up to 64 faults may cross (X), end at one another (Y) or both. A circle of truncations is an error.
+//! Up to 64 faults may cross (X), end at one another (Y) or both. A circle of truncations is an error. Where that makes many
+//! blocks, a fault exists only in those parts of the volume in which some of it was interpreted ([`tree`]).
 
 mod blocks;
 mod build;
@@ -16,12 +17,14 @@ mod outline;
 mod smoothing;
 mod split;
 mod surface;
+mod tree;
 
 pub use crossing::{FaultCrossing, drawn_crossing};
-pub use split::{FaultPart, fit_of, split};
+pub use split::{FaultPart, ends_of_parts, fit_of, split};
 pub use surface::FaultSurface;
 
 use crate::report::ModelError;
+use blocks::Existence;
 use build::Built;
 use glam::{DVec3, Vec3};
 use outline::{Course, Reach};
@@ -30,11 +33,15 @@ use survey::fault::Fault;
 use survey::geometry::SurveyGeometry;
 use survey::height_field::{FAR, HeightField};
 use survey::progress::Progress;
+use tree::FaultTree;
 
 /// Largest number of faults: each takes one bit of a mask.
 const MOST_FAULTS: usize = 64;
 /// Largest number of blocks: each needs sheets of its own.
 const MOST_BLOCKS: usize = 4096;
+/// With more blocks than these a fault divides no more of the volume than it must: each block costs as much as a survey
+/// without faults.
+const MANY_BLOCKS: usize = 64;
 /// Up to this many faults, the block is read from a table of all combinations of sides, 2 bytes each.
 const TABLE_FAULTS: usize = 14;
 
@@ -65,6 +72,8 @@ pub struct FaultNetwork {
     /// Fault indices such that a fault comes after the one it ends at.
     order: Vec<usize>,
     signatures: Vec<BlockSignature>,
+    /// Whether faults exist in some blocks alone, as the blocks say, and not wherever nothing cuts them off.
+    in_parts: bool,
     /// Block of every combination of side bits, when there are few faults.
     table: Vec<u16>,
 }
@@ -87,6 +96,7 @@ impl FaultNetwork {
             truncation: Vec::new(),
             order: Vec::new(),
             signatures: vec![BlockSignature { bits: 0, care: 0 }],
+            in_parts: false,
             table: vec![0],
         }
     }
@@ -129,13 +139,20 @@ impl FaultNetwork {
         let extent_of = |f: usize| extent(geometry, &built, f, truncation[f], faults[f].grown_m);
         let extents: Vec<Vec<f32>> = (0..built.len()).into_par_iter().map(extent_of).collect();
         built.iter_mut().zip(extents).for_each(|(built, z)| built.surface.extent.z = z);
-        let surfaces: Vec<FaultSurface> = built.into_iter().map(|b| b.surface).collect();
-        let signatures =
-            blocks::occurring(&surfaces, &truncation, &order, geometry.size(), geometry.metric_from_voxel(), progress)?;
+        let (size, metric) = (geometry.size(), geometry.metric_from_voxel());
+        let surfaces: Vec<FaultSurface> = built.iter().map(|b| b.surface.clone()).collect();
+        let everywhere = Existence::Everywhere(&truncation, &order);
+        let mut signatures = blocks::occurring(&surfaces, &everywhere, MANY_BLOCKS, size, metric, progress)?;
+        if signatures.len() > MANY_BLOCKS {
+            progress.check()?;
+            let too_many = ModelError::TooMany { what: "fault blocks", found: signatures.len(), limit: MOST_BLOCKS };
+            let tree = FaultTree::of(&built, &truncation, size).ok_or(too_many)?;
+            signatures = blocks::occurring(&surfaces, &Existence::Parts(&tree), MOST_BLOCKS, size, metric, progress)?;
+        }
         if signatures.len() > MOST_BLOCKS {
             return Err(ModelError::TooMany { what: "fault blocks", found: signatures.len(), limit: MOST_BLOCKS });
         }
-        Ok(Self { surfaces, truncation, order, signatures, table: Vec::new() }.with_table())
+        Ok(Self { surfaces, truncation, order, signatures, in_parts: false, table: Vec::new() }.completed())
     }
 
     /// The same with its faults called by these names.
@@ -170,11 +187,13 @@ impl FaultNetwork {
             return None;
         }
         let order = ordered(&by).ok()?;
-        Some(Self { surfaces, truncation, order, signatures, table: Vec::new() }.with_table())
+        Some(Self { surfaces, truncation, order, signatures, in_parts: false, table: Vec::new() }.completed())
     }
 
-    /// With the table of combinations, where there are few faults.
-    fn with_table(mut self) -> Self {
+    /// With what follows from its parts: where faults exist, and the table of combinations, where there are few faults.
+    fn completed(mut self) -> Self {
+        let own = |block: &BlockSignature| blocks::existing(&self.truncation, &self.order, block.bits) == block.care;
+        self.in_parts = !self.signatures.iter().all(own);
         let faults = self.surfaces.len();
         if faults <= TABLE_FAULTS {
             self.table = (0..1u64 << faults).map(|bits| self.nearest_block(bits)).collect();
@@ -224,14 +243,22 @@ impl FaultNetwork {
 
     /// The faults that exist where the side bits are `bits`, one bit each.
     pub fn existing(&self, bits: u64) -> u64 {
+        if self.in_parts {
+            return self.signatures[usize::from(self.block_of(bits))].care;
+        }
         blocks::existing(&self.truncation, &self.order, bits)
+    }
+
+    /// Whether there are so many blocks that what no block sees is not worked out.
+    pub(crate) fn has_many_blocks(&self) -> bool {
+        self.signatures.len() > MANY_BLOCKS
     }
 
     /// Whether the place of `fault` nearest to voxel position `p` (along the normal of its plane) was
     /// interpreted, and is drawn.
     pub fn is_real(&self, fault: usize, p: Vec3) -> bool {
         self.surfaces[fault].extent_at(p.as_dvec3()) >= 0.0
-            && (self.truncation[fault].is_none() || self.existing(self.bits_at(p)) >> fault & 1 == 1)
+            && (!self.in_parts && self.truncation[fault].is_none() || self.existing(self.bits_at(p)) >> fault & 1 == 1)
     }
 
     /// The block that voxel position `p` lies in.

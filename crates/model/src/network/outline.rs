@@ -146,8 +146,12 @@ impl FaultPatch {
             let count = (length / RIM_SPACING).ceil();
             for i in 0..=count as usize {
                 let p = a.lerp(b, i as f64 / count);
+                // Most points of a mesh lie inside it, which the nodes around them tell at once.
+                if !touches(&outside, origin, size, p) {
+                    continue;
+                }
                 let seam = bins.holds(self, p + normal * PROBE) && bins.holds(self, p - normal * PROBE);
-                if !seam && touches(&outside, origin, size, p) {
+                if !seam {
                     rim.push(p);
                 }
             }

@@ -165,15 +165,25 @@ fn ends(
     parts.iter().enumerate().for_each(|(k, part)| part.iter().for_each(|&t| part_of[t] = k));
     let beside = facing::neighbours(soup);
     let meets = |a: usize, b: usize| parts[a].iter().any(|&t| beside[t].iter().any(|&n| part_of[n] == b));
-    let surfaces = parts
-        .iter()
-        .map(|part| build::build(geometry, &Fault::new("", mesh_of(fault, &soup.only(part)))).map(|built| built.surface))
-        .collect::<Result<Vec<_>, _>>()?;
+    let faults: Vec<Fault> = parts.iter().map(|part| Fault::new("", mesh_of(fault, &soup.only(part)))).collect();
+    ends_of_parts(geometry, &faults, meets)
+}
+
+/// At which part before it each of the parts of a fault ends, of those that it meets.
+///
+/// # Errors
+/// [`ModelError`] for a part that no single surface fits.
+pub fn ends_of_parts(
+    geometry: &SurveyGeometry,
+    parts: &[Fault],
+    meets: impl Fn(usize, usize) -> bool,
+) -> Result<Vec<Option<usize>>, ModelError> {
+    let built = parts.iter().map(|part| build::build(geometry, part)).collect::<Result<Vec<_>, _>>()?;
     // Share of a part on the positive side of another, of its vertices that lie clearly on one.
     let positive = |part: usize, of: usize| {
-        let surface = &surfaces[of];
-        let places = parts[part].iter().flat_map(|&t| soup.triangles[t]).map(|v| surface.side(soup.voxels[v]));
-        let clear: Vec<f64> = places.filter(|side| side.abs() > ON_IT * surface.spacing_m).collect();
+        let surface = &built[of].surface;
+        let sides = built[part].vertices.iter().map(|v| surface.side(*v));
+        let clear: Vec<f64> = sides.filter(|side| side.abs() > ON_IT * surface.spacing_m).collect();
         let above = clear.iter().filter(|side| **side > 0.0).count();
         if clear.is_empty() { 0.5 } else { above as f64 / clear.len() as f64 }
     };
@@ -181,16 +191,14 @@ fn ends(
     for part in 1..parts.len() {
         let may_end_at = |&at: &usize| {
             let share = positive(part, at);
-            let is_clear = share.max(1.0 - share) >= ON_ONE_SIDE;
             // Where the other one does not exist, neither does what ends at it.
-            let mut up = ends[at];
-            let mut below = at;
-            let mut is_there = true;
+            let (mut below, mut up) = (at, ends[at]);
+            let mut is_there = share.max(1.0 - share) >= ON_ONE_SIDE;
             while let Some(parent) = up {
                 is_there &= (positive(below, parent) >= 0.5) == (positive(part, parent) >= 0.5);
                 (below, up) = (parent, ends[parent]);
             }
-            is_clear && is_there
+            is_there
         };
         ends[part] = (0..part).filter(|&at| meets(part, at)).find(may_end_at);
     }

@@ -1,8 +1,8 @@
 //! Checks a project on disk, whatever has become of it, and repairs what can be repaired without losing anything.
 //!
 //! [`check`] reads the state and every step of the history, every data file that one of them names, and what is
-//! derived. It compares recorded hashes and verifies checksums, and says what is damaged and what depends on it. It
-//! writes nothing, so it also works on a project that is read-only, that belongs to someone else, or whose
+//! derived. It compares recorded hashes and verifies checksums, and says what is damaged and what depends on it. Where
+//! nothing that the present state needs is damaged, it makes sure that the state can be drawn. It writes nothing, so it also works on a project that is read-only, that belongs to someone else, or whose
 //! `project.toml` cannot be read.
 //!
 //! [`repair`] holds the project's lock meanwhile. It removes leftovers, data files that no state names and damaged
@@ -38,7 +38,9 @@ pub use report::{CheckReport, Cure, Damage, Leftover, LeftoverKind, Outcome, Par
 
 use crate::document::Document;
 use crate::error::ProjectError;
+use crate::facts::Facts;
 use crate::folder::{Lock, acquaintance, storage};
+use crate::interpretation::drawable;
 use objects::Object;
 use states::States;
 use std::path::Path;
@@ -127,6 +129,16 @@ fn examine(root: &Path, lock: Option<&Lock>, progress: &Progress) -> Result<(Che
         }
     }
     report.data_files = objects.len();
+    // Of damaged data nothing can be drawn, and that is told.
+    if let Some(document) = states.present().filter(|_| report.damage.iter().all(|damage| !damage.is_present)) {
+        match drawable::check(Facts::of(root, document), progress) {
+            Ok(notes) => report.notes.extend(notes.iter().map(ToString::to_string)),
+            Err(error @ ProjectError::Cancelled(_)) => return Err(error),
+            Err(ProjectError::Model(error)) => report.undrawable = Some(error.to_string()),
+            // What is damaged is told elsewhere.
+            Err(_) => {}
+        }
+    }
     derived_data::check(root, &states, &mut report, progress)?;
     leftovers::find(root, &states, lock, &mut report);
     find_links(root, &mut report);

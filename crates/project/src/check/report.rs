@@ -21,6 +21,9 @@ pub struct CheckReport {
     pub derived_files: usize,
     /// What is damaged.
     pub damage: Vec<Damage>,
+    /// Why the present state cannot be drawn, though nothing that it needs is damaged: what a picture of it would say.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub undrawable: Option<String>,
     /// What no state names. It does no harm.
     pub leftovers: Vec<Leftover>,
     /// What else there is to know.
@@ -30,9 +33,9 @@ pub struct CheckReport {
 }
 
 impl CheckReport {
-    /// Whether nothing is damaged any more.
+    /// Whether nothing is damaged any more, and the present state can be drawn.
     pub fn is_well(&self) -> bool {
-        self.damage.iter().all(|damage| damage.repaired)
+        self.undrawable.is_none() && self.damage.iter().all(|damage| damage.repaired)
     }
 }
 

@@ -4,12 +4,13 @@ use super::objects::{Entry, Object};
 use crate::content;
 use crate::document::Origin;
 use crate::error::ProjectError;
+use crate::placement;
 use glam::DVec2;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 use store::StoreError;
-use survey::{Fault, Horizon, Progress, SurveyGeometry};
+use survey::{Horizon, Progress, SurveyGeometry};
 use system::file::FileAction;
 use ttf::TextureLibrary;
 
@@ -96,7 +97,7 @@ fn content_of(root: &Path, object: &Object, progress: &Progress) -> Result<(), P
         }
         Entry::Fault(entry) => {
             let fault = content::read_fault(root, entry)?;
-            if lies_in(object.document.frame()?, vertices(&fault)) { Ok(()) } else { Err(damaged(elsewhere())) }
+            if placement::reaches(object.document.frame()?, &fault.mesh) { Ok(()) } else { Err(damaged(elsewhere())) }
         }
         Entry::Well(entry) => content::read_well(root, entry).map(drop),
         Entry::Parameterization(entry) => content::read_parameterization(root, entry, &progress.muted()).map(drop),
@@ -129,10 +130,6 @@ fn nodes(horizon: &Horizon) -> impl Iterator<Item = DVec2> {
             sheet.grid.origin + sheet.grid.u_step * u as f64 + sheet.grid.v_step * v as f64
         })
     })
-}
-
-fn vertices(fault: &Fault) -> impl Iterator<Item = DVec2> {
-    fault.mesh.vertices.iter().map(|vertex| vertex.truncate())
 }
 
 /// Whether one of the places lies over the survey or a trace beside it; also where there are no places at all.

@@ -1,12 +1,12 @@
 //! Adding faults, and stating at which other fault each ends.
 
+use super::fault_parts::{self, Parts};
 use super::{Effect, Noun, ProjectError};
 use crate::content;
 use crate::document::{FaultEntry, Id, is_zero};
 use crate::folder::Draft;
 use crate::interpretation::assembly::rebuild_all;
 use files::{ImportOptions, ImportReport};
-use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use survey::fault::Fault;
@@ -71,36 +71,42 @@ impl AddFault {
         fault.name.clone_from(&self.name);
         fault.truncated_by.clone_from(&self.truncated_by);
         fault.grown_m = self.grown_m;
-        check_new(&fault, draft, &geometry, &mut report, progress)?;
-        let hash = content::hash_fault(&fault);
-        let (file, new) = draft.generation("faults", &self.name, "json")?;
-        store::write_fault(&new, &fault)?;
-        draft.document.faults.push(FaultEntry {
-            id: Id::default(),
-            name: self.name.clone(),
-            truncated_by: self.truncated_by.clone(),
-            grown_m: self.grown_m,
-            file,
-            hash,
-            origin: super::imported(&self.path, super::horizon::reading(&report))?,
-            colour: None,
-        });
+        note_twins(&fault, draft, &geometry, &mut report)?;
+        let Parts { faults, told } = fault_parts::of_surface(&draft.document, &geometry, &fault)?;
+        report.warnings.extend(told.map(Note::from));
+        for fault in faults {
+            let hash = content::hash_fault(&fault);
+            let (file, new) = draft.generation("faults", &fault.name, "json")?;
+            store::write_fault(&new, &fault)?;
+            draft.document.faults.push(FaultEntry {
+                id: Id::default(),
+                name: fault.name,
+                truncated_by: fault.truncated_by,
+                grown_m: self.grown_m,
+                file,
+                hash,
+                origin: super::imported(&self.path, super::horizon::reading(&report))?,
+                colour: None,
+            });
+        }
         draft.document.check_growth()?;
         report.notes.extend(rebuild_all(draft, progress)?);
         Ok(Effect::FaultAdded(Box::new(FaultAdded { triangles: fault.mesh.triangles.len(), report })))
     }
 }
 
-/// Refuses a surface that no model can hold as a fault, and says where the project has the same already.
-fn check_new(
+/// Says where the project has the same surface already, and which faults it crosses.
+fn note_twins(
     fault: &Fault,
     draft: &Draft,
     geometry: &SurveyGeometry,
     report: &mut ImportReport,
-    progress: &Progress,
 ) -> Result<(), ProjectError> {
+    // One that is cut crosses others in parts.
+    if model::fit_of(geometry, fault).is_err() {
+        return Ok(());
+    }
     let alone = Fault { truncated_by: None, ..fault.clone() };
-    FaultNetwork::build(geometry, std::slice::from_ref(&alone), progress)?;
     let mut others = Vec::new();
     for entry in &draft.document.faults {
         let other = content::read_fault(draft.root(), entry)?;

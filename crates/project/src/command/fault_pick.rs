@@ -1,12 +1,12 @@
 //! Faults that are drawn as sticks, and proposed faults that are accepted.
 
+use super::fault_parts::{self, Parts};
 use super::{Effect, Noun, ProjectError};
 use crate::content;
 use crate::document::{FaultEntry, FaultSticks, Id, Origin};
 use crate::folder::Draft;
 use crate::interpretation::assembly::rebuild_all;
 use crate::interpretation::proposals;
-use files::fault_of_sticks;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use survey::{Fault, Progress, SurveyGeometry};
@@ -110,23 +110,40 @@ fn surface(draft: &mut Draft, drawn: usize, progress: &Progress) -> Result<Effec
         geometry.world_from_voxel(voxel)
     };
     let lines: Vec<Vec<DVec3>> = sticks.iter().map(|stick| stick.iter().map(world).collect()).collect();
-    let fault =
-        fault_of_sticks(&name, &lines, &geometry).ok_or_else(|| ProjectError::FlatSticks { fault: name.clone() })?;
-    put(draft, &fault, Origin::Drawn)?;
+    let (Parts { faults, told }, of_parts) = fault_parts::of_sticks(&draft.document, &geometry, &name, &lines)?;
+    let triangles: usize = faults.iter().map(|fault| fault.mesh.triangles.len()).sum();
+    for (fault, own) in faults.iter().zip(&of_parts) {
+        put(draft, fault, Origin::Drawn)?;
+        let sticks = own.iter().map(|&n| sticks[n].clone()).collect();
+        if fault.name != name {
+            draft.document.sticks.push(FaultSticks { fault: fault.name.clone(), sticks });
+        } else if of_parts.len() > 1 {
+            draft.document.sticks[drawn].sticks = sticks;
+        }
+    }
     rebuild_all(draft, progress)?;
-    Ok(Effect::Changed {
-        summary: format!("fault {name}: {} sticks, {} triangles", sticks.len(), fault.mesh.triangles.len()),
-    })
+    let summary = format!("fault {name}: {} sticks, {triangles} triangles", sticks.len());
+    Ok(Effect::Changed { summary: with(summary, told) })
+}
+
+/// A summary, and what else was done.
+fn with(summary: String, told: Option<String>) -> String {
+    told.map_or(summary.clone(), |told| format!("{summary}; {told}"))
 }
 
 impl AcceptFault {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         draft.document.check_new_name(Noun::Fault, &self.name)?;
         let proposal = proposals::find(draft.root(), &draft.document, self.id)?;
-        let origin = Origin::Proposed { horizons: proposal.horizons.clone() };
-        put(draft, &proposal.fault(&self.name), origin)?;
+        let geometry = draft.document.frame()?.clone();
+        let fault = proposal.fault(&self.name);
+        let Parts { faults, told } = fault_parts::of_surface(&draft.document, &geometry, &fault)?;
+        for fault in &faults {
+            put(draft, fault, Origin::Proposed { horizons: proposal.horizons.clone() })?;
+        }
         rebuild_all(draft, progress)?;
-        Ok(Effect::Changed { summary: format!("fault {}: proposal {} accepted", self.name, self.id) })
+        let summary = format!("fault {}: proposal {} accepted", self.name, self.id);
+        Ok(Effect::Changed { summary: with(summary, told) })
     }
 }
 
@@ -134,7 +151,8 @@ impl AcceptFault {
 fn put(draft: &mut Draft, fault: &Fault, origin: Origin) -> Result<(), ProjectError> {
     let old = draft.document.faults.iter().position(|entry| entry.name == fault.name);
     let before = old.map(|old| &draft.document.faults[old]);
-    let (truncated_by, grown_m) = before.map_or((None, 0.0), |entry| (entry.truncated_by.clone(), entry.grown_m));
+    let new = || (fault.truncated_by.clone(), fault.grown_m);
+    let (truncated_by, grown_m) = before.map_or_else(new, |entry| (entry.truncated_by.clone(), entry.grown_m));
     let colour = before.and_then(|entry| entry.colour);
     let id = before.map_or_else(Id::default, |entry| entry.id.clone());
     let (file, new) = draft.generation("faults", &fault.name, "json")?;

@@ -9,6 +9,7 @@ mod contact;
 mod draw;
 mod extract;
 mod fault;
+mod fault_parts;
 mod fault_pick;
 mod horizon;
 mod import;

@@ -6,6 +6,7 @@
 pub mod assembly;
 mod bricks;
 pub mod candidates;
+pub(crate) mod drawable;
 pub mod extraction;
 pub(crate) mod finish;
 pub(crate) mod order;

@@ -27,6 +27,7 @@ use crate::document::{Document, data_file};
 use crate::error::ProjectError;
 use crate::facts::Facts;
 use crate::folder::{self, CREATING, Draft, IMPORTING, Lock, Step, acquaintance, forget_creation, history, storage};
+use crate::interpretation::drawable::refuse_undrawable;
 use crate::interpretation::{extraction, proposals};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -132,7 +133,8 @@ impl Project {
         &self.document
     }
 
-    /// Carries out a command and saves the project.
+    /// Carries out a command and saves the project. One after which the project could not be drawn is refused, unless it
+    /// could not be drawn before either.
     ///
     /// # Errors
     /// The reason why the command could not be carried out. The project is then as it was before, on disk and in
@@ -143,6 +145,7 @@ impl Project {
         let mut draft = Draft::new(&self.root, self.document.clone());
         let effect = command.execute(&mut draft, progress)?.after_computing(computed);
         progress.check()?;
+        refuse_undrawable(Facts::of(&self.root, &self.document), draft.facts(), progress)?;
         if effect.is_nothing_new() && draft.document == self.document {
             return Ok(effect);
         }
