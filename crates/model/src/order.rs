@@ -135,7 +135,8 @@ pub(super) fn check(
         found
     };
     let common = |h: usize, g: usize| {
-        let both = |(top, base): (&Picks, &Picks)| top.1.iter().zip(base.1).filter(|(top, base)| **top && **base).count();
+        let both =
+            |(top, base): (&Picks, &Picks)| top.1.iter().zip(base.1).filter(|(top, base)| **top && **base).count();
         picks[h].iter().zip(&picks[g]).map(both).sum::<usize>()
     };
     let pairs = pairs_in_order(rules, picks.len());

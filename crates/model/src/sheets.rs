@@ -22,6 +22,8 @@ use survey::progress::{Cancelled, Progress};
 
 /// A deviation from the local fit below this is never an outlier, voxels.
 const NOISE: f32 = 0.25;
+/// Largest radius of the neighbourhood that a slope is taken from among many blocks, which are small, nodes.
+const SMALL_RADIUS: f32 = 6.0;
 /// Up to this many nodes beyond its data, where it meets faults, a sheet is as good as the data beside it.
 const SOLID_NODES: usize = 4;
 
@@ -98,12 +100,14 @@ pub(super) fn extend_all(
     progress.begin("sheets", (nodes.len() * blocks) as u64);
     // The horizon as if there were no faults: it gives the mean slope, and it is the last resort for a block
     // without any data.
+    let most = if faults.has_many_blocks() { SMALL_RADIUS } else { f32::INFINITY };
+    let radius = settings.slope_radius.min(most);
     let wholes: Vec<(Vec<f32>, Extension)> = nodes
         .iter()
         .map(|n| {
             let whole = average(lattice, &n.nodes);
             let slope = NodePlane::through(lattice.size, &whole, [0.0; 2]).map_or([0.0; 2], |p| p.slope());
-            (whole, Extension { radius: settings.slope_radius, noise: NOISE, slope })
+            (whole, Extension { radius, noise: NOISE, slope })
         })
         .collect();
     let windows = Window::of_blocks(lattice, faults, samples);
@@ -202,7 +206,10 @@ fn extend_one(
     fewest: usize,
 ) -> Option<ExtendedSheet> {
     let BlockPicks { mut z, mut quality, known, own } = BlockPicks::of(lattice, nodes, faults, block, fewest)?;
-    window.extend(extension, lattice.size, &mut z)?;
+    // Among many blocks it is continued once, when it is joined with the others.
+    if !faults.has_many_blocks() {
+        window.extend(extension, lattice.size, &mut z)?;
+    }
     grade(lattice.size, &mut quality);
     Some(ExtendedSheet { field: HeightField { origin: lattice.origin, size: lattice.size, z }, quality, known, own })
 }
@@ -220,14 +227,15 @@ fn join(
     windows: &[Window],
 ) {
     let mut order: Vec<usize> = (0..sheets.len()).filter(|&b| sheets[b].is_some()).collect();
-    if order.len() < 2 {
+    let is_continued = !faults.has_many_blocks();
+    if order.len() < 2 && is_continued {
         return;
     }
     order.sort_by_key(|&b| (std::cmp::Reverse(sheets[b].as_ref().map_or(0, |sheet| sheet.own)), b));
     let mut shared: Vec<LentNodes> = Vec::with_capacity(order.len());
     for (done, &b) in order.iter().enumerate() {
         let lent = borrow(sheets, faults, b, &order[..done], &shared);
-        if let Some(sheet) = sheets[b].as_mut().filter(|_| !lent.is_empty()) {
+        if let Some(sheet) = sheets[b].as_mut().filter(|_| !lent.is_empty() || !is_continued) {
             let field = &mut sheet.field.z;
             (0..field.len()).filter(|&n| !sheet.known[n]).for_each(|n| field[n] = f32::NAN);
             lent.iter().for_each(|&(n, z)| field[n] = z);

@@ -208,9 +208,8 @@ impl StructuralModel {
         let ordered = in_order(stratigraphy, horizons)?;
         let size = geometry.size();
         let lattice = MarginLattice::with_margin(size, settings.margin_for(size));
-        let found = |horizon: &&Horizon| {
-            gather(geometry, lattice, horizon, faults, settings, &mut ModelReport::default())
-        };
+        let found =
+            |horizon: &&Horizon| gather(geometry, lattice, horizon, faults, settings, &mut ModelReport::default());
         let nodes: Vec<HorizonNodes> = ordered.par_iter().map(found).collect();
         if let Some((found, horizon)) = nodes.iter().zip(&ordered).find(|(found, _)| found.nodes.is_empty()) {
             let HorizonNodes { outside, holes, .. } = *found;
@@ -226,7 +225,8 @@ impl StructuralModel {
         let of_block = |found| -> order::Picks<'_> {
             Option::<&BlockPicks>::map_or(found, (&nothing.0, &nothing.1), |found| (&found.z, &found.known))
         };
-        let picks: Vec<Vec<_>> = picks.iter().map(|of| of.iter().map(|found| of_block(found.as_ref())).collect()).collect();
+        let picks: Vec<Vec<_>> =
+            picks.iter().map(|of| of.iter().map(|found| of_block(found.as_ref())).collect()).collect();
         let names: Vec<&str> = ordered.iter().map(|horizon| horizon.name.as_str()).collect();
         order::check(geometry, lattice, &ContactRules::new(stratigraphy), &names, &picks, settings)
     }

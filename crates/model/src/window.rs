@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 /// Nodes by which a window reaches beyond its block: what is computed of a layer reaches a few columns beyond it, and a
 /// block may be wider between the places that are looked at.
-const BEYOND: usize = 20;
+const BEYOND: usize = 14;
 /// Columns and samples between the places that are looked at, and most such places along an axis.
 const EVERY: usize = 4;
 const MOST_PLACES: usize = 96;

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use survey::{Contact, Progress, SurveyGeometry, VerticalUnit, Volume};
 
 const SIZE: [usize; 3] = [36, 32, 40];
-const CASES: u64 = 24;
+const CASES: u64 = 16;
 /// Faults of one case after another.
 const COUNTS: [usize; 8] = [1, 2, 3, 5, 8, 13, 2, 4];
 /// Every so many cases there are forty faults.
@@ -231,9 +231,10 @@ fn every_set_of_faults_that_is_taken_is_drawn() {
             let extract =
                 Extract { volume: None, settings: Default::default(), memory_bytes: None, just_stored: false };
             project.apply(&Command::Extract(extract), &Progress::silent()).unwrap();
-            let time =
-                ComputeTime { name: "time".to_owned(), settings: Default::default(), memory_bytes: None };
-            project.apply(&Command::Time(time), &Progress::silent()).unwrap_or_else(|error| panic!("case {case}: {error}"));
+            let time = ComputeTime { name: "time".to_owned(), settings: Default::default(), memory_bytes: None };
+            project
+                .apply(&Command::Time(time), &Progress::silent())
+                .unwrap_or_else(|error| panic!("case {case}: {error}"));
         }
         let found = project::check::check(project.root(), &Progress::silent()).unwrap();
         assert!(found.is_well(), "case {case}: {:?} {:?}", found.undrawable, found.damage);

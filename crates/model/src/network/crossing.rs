@@ -24,6 +24,13 @@ pub struct FaultCrossing {
     pub at: Vec3,
 }
 
+/// A place of a fault, voxels, and the faults that exist there, one bit each.
+#[derive(Debug, Clone, Copy)]
+struct RealPlace {
+    p: DVec3,
+    existing: u64,
+}
+
 impl FaultNetwork {
     /// The pairs of faults that cross inside a volume of `size` voxels and go on beyond. A fault that is said to end at
     /// another does not cross it.
@@ -32,7 +39,7 @@ impl FaultNetwork {
         if count < 2 {
             return Vec::new();
         }
-        let places: Vec<Vec<DVec3>> = (0..count).into_par_iter().map(|f| self.real_places(f, size)).collect();
+        let places: Vec<Vec<RealPlace>> = (0..count).into_par_iter().map(|f| self.real_places(f, size)).collect();
         let pairs: Vec<[usize; 2]> = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b])).collect();
         let crossing = |&[a, b]: &[usize; 2]| {
             let at = self.place_through(&places[a], a, b)?;
@@ -47,8 +54,8 @@ impl FaultNetwork {
         note(&self.crossings(geometry.size()), &self.surfaces, geometry)
     }
 
-    /// Nodes of a fault where it is real and inside the volume, voxels.
-    fn real_places(&self, fault: usize, size: [usize; 3]) -> Vec<DVec3> {
+    /// Nodes of a fault where it is real and inside the volume.
+    fn real_places(&self, fault: usize, size: [usize; 3]) -> Vec<RealPlace> {
         let surface = &self.surfaces[fault];
         let [nu, nv] = surface.surface.size;
         let voxel_from_frame = surface.frame_from_voxel.inverse();
@@ -60,17 +67,19 @@ impl FaultNetwork {
             let on_it = DVec3::new(f64::from(u), f64::from(v), f64::from(surface.surface.z[i * nv + j]));
             let p = voxel_from_frame * (on_it - surface.frame_offset);
             let is_inside = p.cmpge(DVec3::ZERO).all() && p.cmple(last).all();
-            (is_inside && self.is_real(fault, p.as_vec3())).then_some(p)
+            let at = p.as_vec3();
+            (is_inside && self.is_real(fault, at)).then(|| RealPlace { p, existing: self.existing(self.bits_at(at)) })
         };
         nodes.filter_map(place).collect()
     }
 
     /// Where fault `a`, by its places, passes through what is real of `b` and goes on beyond.
-    fn place_through(&self, places: &[DVec3], a: usize, b: usize) -> Option<DVec3> {
+    fn place_through(&self, places: &[RealPlace], a: usize, b: usize) -> Option<DVec3> {
         let other = &self.surfaces[b];
         let (mut least, mut most) = (0.0f64, 0.0f64);
         let mut closest: Option<(f64, DVec3)> = None;
-        for &p in places.iter().filter(|p| self.is_real(b, p.as_vec3())) {
+        let is_real = |at: &&RealPlace| at.existing >> b & 1 == 1 && other.extent_at(at.p.as_vec3().as_dvec3()) >= 0.0;
+        for &RealPlace { p, .. } in places.iter().filter(is_real) {
             let side = other.side(p);
             // Beside the rim of a surface that is not continued there is no side.
             if side.is_nan() {

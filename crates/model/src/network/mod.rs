@@ -41,7 +41,7 @@ const MOST_FAULTS: usize = 64;
 const MOST_BLOCKS: usize = 4096;
 /// With more blocks than these a fault divides no more of the volume than it must: each block costs as much as a survey
 /// without faults.
-const MANY_BLOCKS: usize = 64;
+const MANY_BLOCKS: usize = 32;
 /// Up to this many faults, the block is read from a table of all combinations of sides, 2 bytes each.
 const TABLE_FAULTS: usize = 14;
 
@@ -145,8 +145,7 @@ impl FaultNetwork {
         let mut signatures = blocks::occurring(&surfaces, &everywhere, MANY_BLOCKS, size, metric, progress)?;
         if signatures.len() > MANY_BLOCKS {
             progress.check()?;
-            let too_many = ModelError::TooMany { what: "fault blocks", found: signatures.len(), limit: MOST_BLOCKS };
-            let tree = FaultTree::of(&built, &truncation, size).ok_or(too_many)?;
+            let tree = FaultTree::of(&built, &truncation, size);
             signatures = blocks::occurring(&surfaces, &Existence::Parts(&tree), MOST_BLOCKS, size, metric, progress)?;
         }
         if signatures.len() > MOST_BLOCKS {

@@ -49,7 +49,8 @@ pub(super) fn smoothed(over: &OverPlane, soup: &Soup) -> Smooth {
     let step = ((radius / NODES_A_RADIUS).round() as usize).max(1);
     let fits = LocalFits::new(over.size, &means, &is_drawn, radius as f32, 0.25 * over.spacing_m as f32);
     let coarse_size = over.size.map(|n| n.div_ceil(step) + 1);
-    let mut coarse = HeightField { origin: [0; 2], size: coarse_size, z: vec![f32::NAN; coarse_size[0] * coarse_size[1]] };
+    let mut coarse =
+        HeightField { origin: [0; 2], size: coarse_size, z: vec![f32::NAN; coarse_size[0] * coarse_size[1]] };
     // A coarse node beside a drawn one takes the value there, so that no drawn node lies beside the coarse ones.
     for n in (0..is_drawn.len()).filter(|&n| is_drawn[n]) {
         let (i, j) = (n / nv, n % nv);
@@ -57,7 +58,8 @@ pub(super) fn smoothed(over: &OverPlane, soup: &Soup) -> Smooth {
         let is_on_node = i % step == 0 && j % step == 0;
         if is_on_node || coarse.z[at].is_nan() {
             let fit = fits.at(n);
-            let [du, dv] = [((i + step / 2) / step * step) as f32 - i as f32, ((j + step / 2) / step * step) as f32 - j as f32];
+            let [du, dv] =
+                [((i + step / 2) / step * step) as f32 - i as f32, ((j + step / 2) / step * step) as f32 - j as f32];
             coarse.z[at] = fit.straight(du, dv);
         }
     }

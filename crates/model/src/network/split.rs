@@ -76,10 +76,8 @@ pub fn split(geometry: &SurveyGeometry, fault: &Fault) -> Result<Vec<FaultPart>,
     parts.sort_by(|a, b| area(b).total_cmp(&area(a)).then(a[0].cmp(&b[0])));
     parts.iter_mut().for_each(|part| part.sort_unstable());
     let ends = ends(geometry, fault, &soup, &parts)?;
-    let part = |(part, ends_at): (&Vec<usize>, Option<usize>)| FaultPart {
-        mesh: mesh_of(fault, &soup.only(part)),
-        ends_at,
-    };
+    let part =
+        |(part, ends_at): (&Vec<usize>, Option<usize>)| FaultPart { mesh: mesh_of(fault, &soup.only(part)), ends_at };
     Ok(parts.iter().zip(ends).map(part).collect())
 }
 

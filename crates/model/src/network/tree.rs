@@ -6,7 +6,8 @@
 //! some of it was interpreted. The continuation of a fault then ends at the larger faults around it.
 //!
 //! A part of a fault that goes on beyond a larger one by less than [`POKES_CELLS`] ends at it. Where there are still more
-//! than [`MOST_LEAVES`] parts, the smallest parts of faults are left out, so many that there are no more.
+//! parts than a volume of its size can have, the smallest parts of faults are left out, until there are no more: faults
+//! that cross one another so often leave blocks of a few voxels. In the end each fault divides one part alone.
 
 use super::Truncation;
 use super::build::Built;
@@ -16,10 +17,13 @@ use glam::DVec3;
 const PLACES: usize = 4000;
 /// A fault that goes on beyond another one by less than this ends at it, cells.
 const POKES_CELLS: f64 = 1.5;
-/// Most parts into which the volume is divided.
-const MOST_LEAVES: usize = 512;
-/// Shares of a fault that are left out of a part when there are too many, one after the other.
-const LEFT_OUT: [f64; 7] = [0.0, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16];
+/// Voxels of a part on average, and the fewest and most parts into which a volume may be divided: some more than there can
+/// be faults, and so many that each can have sheets.
+const PART_VOXELS: usize = 4096;
+const LEAVES: [usize; 2] = [72, 256];
+/// Shares of a fault that are left out of a part when there are too many, one after the other. What is more than half of
+/// a fault lies in one part.
+const LEFT_OUT: [f64; 9] = [0.0, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.51];
 
 /// A fault that divides a part of the volume, and what divides its two sides.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,17 +41,23 @@ pub(super) struct FaultTree {
 }
 
 impl FaultTree {
-    /// The tree of faults whose extents are known, in a volume of `size` voxels; `None` where there are too many parts.
-    pub(super) fn of(built: &[Built], truncation: &[Option<Truncation>], size: [usize; 3]) -> Option<Self> {
+    /// The tree of faults whose extents are known, in a volume of `size` voxels.
+    pub(super) fn of(built: &[Built], truncation: &[Option<Truncation>], size: [usize; 3]) -> Self {
         let places: Vec<Vec<DVec3>> = built.iter().map(|built| interpreted(built, size)).collect();
         let places: Vec<Vec<DVec3>> = (0..built.len()).map(|f| existing(built, truncation, f, &places[f])).collect();
         let order = by_size(built, truncation, &places);
-        LEFT_OUT.iter().find_map(|share| {
+        let voxels = size.iter().product::<usize>();
+        let most = (voxels / PART_VOXELS).clamp(LEAVES[0], LEAVES[1]);
+        let mut tree = Self { divisions: Vec::new(), root: None };
+        for share in LEFT_OUT {
             let least: Vec<usize> = places.iter().map(|places| (share * places.len() as f64) as usize + 1).collect();
-            let mut tree = Self { divisions: Vec::new(), root: None };
-            tree.root = tree.divide(built, &order, places.clone(), &least);
-            (tree.divisions.len() < MOST_LEAVES).then_some(tree)
-        })
+            tree.divisions.clear();
+            tree.root = tree.divide(built, &order, places.clone(), (&least, most));
+            if tree.divisions.len() < most {
+                break;
+            }
+        }
+        tree
     }
 
     /// Divides a part in which these places of each fault lie.
@@ -56,10 +66,10 @@ impl FaultTree {
         built: &[Built],
         order: &[usize],
         places: Vec<Vec<DVec3>>,
-        least: &[usize],
+        (least, most): (&[usize], usize),
     ) -> Option<usize> {
         let at = order.iter().position(|&f| places[f].len() >= least[f])?;
-        if self.divisions.len() >= MOST_LEAVES {
+        if self.divisions.len() >= most {
             return None;
         }
         let (fault, rest) = (order[at], &order[at + 1..]);
@@ -71,7 +81,7 @@ impl FaultTree {
             (sides[0][f], sides[1][f]) = (below, above);
         }
         drop(places);
-        let sides = sides.map(|places| self.divide(built, rest, places, least));
+        let sides = sides.map(|places| self.divide(built, rest, places, (least, most)));
         self.divisions[own].sides = sides;
         Some(own)
     }
@@ -149,7 +159,8 @@ fn divided(fault: &Built, places: &[DVec3]) -> [Vec<DVec3>; 2] {
         sided.iter().filter(|(side, _)| is_clear(*side)).count()
     };
     let [below, above] = [clear(false), clear(true)];
-    let is_mostly_above = if below == above { sided.iter().map(|(side, _)| side).sum::<f64>() >= 0.0 } else { above > below };
+    let is_mostly_above =
+        if below == above { sided.iter().map(|(side, _)| side).sum::<f64>() >= 0.0 } else { above > below };
     let mut sides = [Vec::new(), Vec::new()];
     for (side, p) in sided {
         let is_above = if side.abs() <= close { is_mostly_above } else { side > 0.0 };

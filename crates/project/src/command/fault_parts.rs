@@ -21,11 +21,7 @@ pub(super) struct Parts {
 ///
 /// # Errors
 /// [`ModelError`] where no surface fits it, nor a few parts of it.
-pub(super) fn of_surface(
-    document: &Document,
-    geometry: &SurveyGeometry,
-    fault: &Fault,
-) -> Result<Parts, ProjectError> {
+pub(super) fn of_surface(document: &Document, geometry: &SurveyGeometry, fault: &Fault) -> Result<Parts, ProjectError> {
     let parts = model::split(geometry, fault)?;
     let (faults, ends): (Vec<_>, Vec<_>) =
         parts.into_iter().map(|part| (Fault::new("", part.mesh), part.ends_at)).unzip();
@@ -63,7 +59,8 @@ pub(super) fn of_sticks(
     let mut first = 0;
     while first + 1 < order.len() {
         // As many sticks as have a surface: twice as many, then half of the difference.
-        let mut fits = fault_of(&(first..first + 2)).map(|fault| (first..first + 2, fault)).ok_or_else(|| folded.clone())?;
+        let mut fits =
+            fault_of(&(first..first + 2)).map(|fault| (first..first + 2, fault)).ok_or_else(|| folded.clone())?;
         let mut step = 1;
         let mut may_double = true;
         while step > 0 {
@@ -134,7 +131,10 @@ fn named(
         && !others.is_empty()
     {
         let others: Vec<String> = others.iter().map(|name| format!("\"{name}\"")).collect();
-        told.push(format!("it turns too far for one surface and was cut: \"{first}\" goes on as {}", others.join(", ")));
+        told.push(format!(
+            "it turns too far for one surface and was cut: \"{first}\" goes on as {}",
+            others.join(", ")
+        ));
     }
     if off_m > 0.0 {
         told.push(format!("where it folds over itself its surface is smooth, nine tenths of it within {off_m:.0} m"));

@@ -6,7 +6,7 @@
 
 use super::solid::SolidModel;
 use crate::content;
-use crate::derived::{self, load_blocks};
+use crate::derived::{self, FaultBlocks, load_blocks};
 use crate::error::ProjectError;
 use crate::facts::{Facts, Query};
 use model::{FaultNetwork, ModelError, ModelNote, ModelSettings, StructuralModel, SurfaceProblem};
@@ -27,6 +27,13 @@ pub(crate) fn check(facts: Facts<'_>, progress: &Progress) -> Result<Vec<ModelNo
             FaultNetwork::build(geometry, &faults.collect::<Result<Vec<Fault>, _>>()?, progress)?
         }
     };
+    check_among(facts, &blocks, progress)
+}
+
+/// The same where the fault blocks are known.
+fn check_among(facts: Facts<'_>, blocks: &FaultNetwork, progress: &Progress) -> Result<Vec<ModelNote>, ProjectError> {
+    let Facts { root, document } = facts;
+    let Some(geometry) = &document.geometry else { return Ok(Vec::new()) };
     if document.horizons.is_empty() {
         return Ok(Vec::new());
     }
@@ -38,7 +45,7 @@ pub(crate) fn check(facts: Facts<'_>, progress: &Progress) -> Result<Vec<ModelNo
         return Ok(notes.into_iter().filter(ModelNote::is_contradiction).collect());
     }
     let (strata, settings) = (document.stratigraphy(), ModelSettings::default());
-    Ok(StructuralModel::check_picks(geometry, &strata, &horizons, &blocks, &settings)?)
+    Ok(StructuralModel::check_picks(geometry, &strata, &horizons, blocks, &settings)?)
 }
 
 /// Refuses a state that cannot be drawn where the one before it could, and warns of what is resolved in it and was not
@@ -46,17 +53,16 @@ pub(crate) fn check(facts: Facts<'_>, progress: &Progress) -> Result<Vec<ModelNo
 ///
 /// # Errors
 /// What a picture of the state would say, or the user cancelled.
-pub(crate) fn refuse_undrawable(
-    before: Facts<'_>,
-    after: Facts<'_>,
-    progress: &Progress,
-) -> Result<(), ProjectError> {
+pub(crate) fn refuse_undrawable(before: Facts<'_>, after: Facts<'_>, progress: &Progress) -> Result<(), ProjectError> {
     let settings = ModelSettings::default();
     if derived::model_key(before.document, &settings) == derived::model_key(after.document, &settings) {
         return Ok(());
     }
     let quiet = progress.muted();
-    let error = match check(after, &quiet) {
+    // The blocks are kept: a picture needs them next.
+    let blocks = after.document.geometry.as_ref().map(|_| after.get(&FaultBlocks, &quiet)).transpose();
+    let notes = blocks.and_then(|blocks| blocks.map_or(Ok(Vec::new()), |blocks| check_among(after, &blocks, &quiet)));
+    let error = match notes {
         Ok(notes) => {
             tell(&notes, before, progress);
             return Ok(());
@@ -74,12 +80,16 @@ pub(crate) fn refuse_undrawable(
     Err(error.into())
 }
 
-/// Warns of contradictions that were not there before.
+/// Warns of horizons that cross a little and did not before.
 fn tell(notes: &[ModelNote], before: Facts<'_>, progress: &Progress) {
-    let crossed: Vec<&ModelNote> = notes.iter().filter(|note| matches!(note, ModelNote::Crossed { .. })).collect();
-    if crossed.is_empty() {
+    let pair = |note: &ModelNote| match note {
+        ModelNote::Crossed { younger, older, .. } => Some([younger.clone(), older.clone()]),
+        _ => None,
+    };
+    if notes.iter().all(|note| pair(note).is_none()) {
         return;
     }
     let known = check(before, &progress.muted()).unwrap_or_default();
-    crossed.into_iter().filter(|note| !known.contains(note)).for_each(|note| progress.warn(note.to_string()));
+    let is_new = |note: &&ModelNote| pair(note).is_some() && known.iter().all(|known| pair(known) != pair(note));
+    notes.iter().filter(is_new).for_each(|note| progress.warn(note.to_string()));
 }
