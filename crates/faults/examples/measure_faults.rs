@@ -148,7 +148,7 @@ fn network(size: usize, seed: u64, snr: f64) -> (Volume<f32>, Vec<Drawn>) {
                     for k in (0..faults.len()).rev() {
                         p = undone(&faults, k, p);
                     }
-                    let t = p[2] - a * (6.28 * p[0] / n / 1.3 + b).sin() - c * p[1];
+                    let t = p[2] - a * (std::f64::consts::TAU * p[0] / n / 1.3 + b).sin() - c * p[1];
                     reflectors.iter().filter(|(z, _)| (z - t).abs() < 12.0).map(|(z, r)| r * ricker(z - t)).sum::<f64>()
                         as f32
                 })
@@ -182,7 +182,6 @@ fn measure_network(size: usize, seed: u64, snr: f64, verbose: bool) {
         list(&found);
     }
     let found: Vec<&FaultSurface> = found.iter().filter(|f| f.is_accepted()).collect();
-    let n = size as f64;
     let is_there = |k: usize, mut p: [f64; 3], least: f64, within: f64| {
         // Younger faults have moved it.
         for younger in (k + 1..faults.len()).rev() {
@@ -194,9 +193,8 @@ fn measure_network(size: usize, seed: u64, snr: f64, verbose: bool) {
         off.abs() <= within && fault.throw(u, p[2]).abs() >= least && !behind
     };
     let (mut line, mut all, mut hits) = (String::new(), 0, 0);
-    for (k, fault) in faults.iter().enumerate() {
+    for k in 0..faults.len() {
         let (mut own, mut hit) = (0, 0);
-        let _ = fault;
         for x in 3..size - 3 {
             for y in 3..size - 3 {
                 for z in (0..size).step_by(4) {

@@ -53,7 +53,7 @@ pub(crate) fn seeds(
 ) -> Result<Vec<Seed>, Cancelled> {
     let is_chosen = |ridge: &Ridge| {
         let [x, y, z] = ridge.at.map(|at| at as usize);
-        (x + y + z / ROW) % 2 == 0
+        (x + y + z / ROW).is_multiple_of(2)
     };
     some(sides, ridges, greatest, &is_chosen, progress)
 }

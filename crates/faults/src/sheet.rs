@@ -105,7 +105,7 @@ impl Sheet {
             weights[n] += weight as f32;
             there[n] = true;
         }
-        let (sums, weights) = (blurred(sums, cells), blurred(weights, cells));
+        let (sums, weights) = (blurred(&sums, cells), blurred(&weights, cells));
         let height = (0..count)
             .map(|n| {
                 let (a, b) = ((n / cells[1]) as i32 + low[0], (n % cells[1]) as i32 + low[1]);
@@ -270,7 +270,7 @@ fn solved(mut matrix: [[f64; TERMS + 1]; TERMS]) -> [f64; TERMS] {
 }
 
 /// Values smoothed by a Gaussian along both axes of cells.
-pub(crate) fn blurred(values: Vec<f32>, cells: [usize; 2]) -> Vec<f32> {
+pub(crate) fn blurred(values: &[f32], cells: [usize; 2]) -> Vec<f32> {
     let reach = (2.5 * SMOOTH) as usize;
     let weights: Vec<f32> = (0..=reach).map(|n| (-0.5 * (n as f32 / SMOOTH).powi(2)).exp()).collect();
     let total: f32 = 2.0 * weights.iter().sum::<f32>() - 1.0;
@@ -286,6 +286,6 @@ pub(crate) fn blurred(values: Vec<f32>, cells: [usize; 2]) -> Vec<f32> {
         }
         out
     };
-    let down = pass(&values, cells[1], 1, &|line| line * cells[1], cells[0]);
+    let down = pass(values, cells[1], 1, &|line| line * cells[1], cells[0]);
     pass(&down, cells[0], cells[1], &|line| line, cells[1])
 }

@@ -189,8 +189,8 @@ impl Offsets {
     /// Where the surface has a throw: the largest part in which the gain, smoothed, is enough.
     pub(crate) fn told(&self, sheet: &Sheet) -> Vec<bool> {
         let known: Vec<f32> = self.cells.iter().map(|cell| f32::from(u8::from(cell.is_some()))).collect();
-        let gain = self.cells.iter().map(|cell| cell.map_or(0.0, |cell| cell.gain)).collect();
-        let (gain, known) = (blurred(gain, sheet.cells), blurred(known, sheet.cells));
+        let gain: Vec<f32> = self.cells.iter().map(|cell| cell.map_or(0.0, |cell| cell.gain)).collect();
+        let (gain, known) = (blurred(&gain, sheet.cells), blurred(&known, sheet.cells));
         let told: Vec<bool> =
             (0..gain.len()).map(|n| sheet.there[n] && known[n] > 0.0 && gain[n] / known[n] >= TOLD).collect();
         largest(&told, sheet.cells)

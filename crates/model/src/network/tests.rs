@@ -202,7 +202,7 @@ fn a_ribbon_that_wanders_farther_than_it_is_high_is_followed() {
 fn a_fault_that_turns_by_90_degrees_along_strike_and_flattens_is_followed() {
     // A listric fault around a quarter of a circle: steep at its top, lying at its foot.
     let bowl = mesh(40, |s, t| {
-        let (angle, flat) = (1.5708 * s, 1.35 * t);
+        let (angle, flat) = (std::f64::consts::FRAC_PI_2 * s, 1.35 * t);
         let radius = 38.0 - 14.0 * (1.0 - flat.cos());
         DVec3::new(radius * angle.cos() + 5.0, radius * angle.sin(), 5.0 + 35.0 * flat.sin())
     });

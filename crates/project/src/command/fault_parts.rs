@@ -26,7 +26,7 @@ pub(super) fn of_surface(document: &Document, geometry: &SurveyGeometry, fault: 
     let (faults, ends): (Vec<_>, Vec<_>) =
         parts.into_iter().map(|part| (Fault::new("", part.mesh), part.ends_at)).unzip();
     let kept = inside(geometry, fault, &faults)?;
-    named(document, geometry, fault, faults, &ends, &kept)
+    named(document, geometry, fault, &faults, &ends, &kept)
 }
 
 /// Takes sticks as one fault, or as parts that share a stick with their neighbour; also which sticks each part has.
@@ -44,7 +44,7 @@ pub(super) fn of_sticks(
     let folded = match model::fit_of(geometry, &whole) {
         Ok(_) => {
             let kept = inside(geometry, &whole, std::slice::from_ref(&whole))?;
-            let parts = named(document, geometry, &whole, vec![whole.clone()], &[None], &kept)?;
+            let parts = named(document, geometry, &whole, std::slice::from_ref(&whole), &[None], &kept)?;
             return Ok((parts, vec![(0..lines.len()).collect()]));
         }
         Err(folded @ ModelError::FoldedFault { .. }) => folded,
@@ -81,7 +81,7 @@ pub(super) fn of_sticks(
     let (ranges, faults): (Vec<_>, Vec<_>) = groups.into_iter().unzip();
     let ends = model::ends_of_parts(geometry, &faults, |part, at| part == at + 1)?;
     let kept = inside(geometry, &whole, &faults)?;
-    let parts = named(document, geometry, &whole, faults, &ends, &kept)?;
+    let parts = named(document, geometry, &whole, &faults, &ends, &kept)?;
     Ok((parts, kept.into_iter().map(|n| order[ranges[n].clone()].to_vec()).collect()))
 }
 
@@ -99,7 +99,7 @@ fn named(
     document: &Document,
     geometry: &SurveyGeometry,
     whole: &Fault,
-    parts: Vec<Fault>,
+    parts: &[Fault],
     ends: &[Option<usize>],
     kept: &[usize],
 ) -> Result<Parts, ProjectError> {

@@ -128,7 +128,10 @@ fn surface(draft: &mut Draft, drawn: usize, progress: &Progress) -> Result<Effec
 
 /// A summary, and what else was done.
 fn with(summary: String, told: Option<String>) -> String {
-    told.map_or(summary.clone(), |told| format!("{summary}; {told}"))
+    match told {
+        Some(told) => format!("{summary}; {told}"),
+        None => summary,
+    }
 }
 
 impl AcceptFault {

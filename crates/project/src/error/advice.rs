@@ -30,12 +30,8 @@ impl ProjectError {
             Self::ReadOnly { .. } => "copy the project to a folder you may write to; nothing was changed",
             Self::SeveralHorizons { .. } => "make the picks of each horizon in a separate step",
             Self::FlatSticks { .. } => "draw sticks next to one another, each along the dip of the fault",
-<<<<<<< HEAD
-            Self::NoEvidence => "import a volume, or assemble or import horizons first",
-=======
             Self::FaultElsewhere { .. } => "give at least some of it over the survey: check its coordinates",
-            Self::NoEvidence => "extract candidates with `petroglyph extract`, or assemble or import horizons first",
->>>>>>> f098845a (What cannot be drawn is refused by the command that brings it; check says it; many faults divide only where they were interpreted)
+            Self::NoEvidence => "import a volume, or assemble or import horizons first",
             Self::BadName { .. } => "use letters, digits, blanks, - and _",
             Self::Cancelled(_) => "nothing was changed",
             Self::OtherLattice { .. } => {
