@@ -111,7 +111,8 @@ pub fn magnitude_blocks(source: &dyn BoxSource) -> AttributeBlocks<'_> {
             "\n    /// Magnitude: how far samples are from zero.\n    Magnitude,",
             "    Envelope,",
         ),
-        Edit("crates/project/src/document/origin.rs", "[Self; 6] = [Self::Magnitude, ", "[Self; 5] = [", instead=True),
+        Edit("crates/project/src/document/origin.rs", "[Self; 8] =", "[Self; 7] =", instead=True),
+        Edit("crates/project/src/document/origin.rs", "[Self::Magnitude, Self::Semblance, ", "[Self::Semblance, ", instead=True),
         Edit("crates/project/src/document/origin.rs", '\n            Self::Magnitude => "magnitude",', 'Self::Envelope => "envelope",'),
         Edit(
             "crates/project/src/command/attribute.rs",
@@ -123,8 +124,8 @@ pub fn magnitude_blocks(source: &dyn BoxSource) -> AttributeBlocks<'_> {
         ),
         Edit(
             "crates/project/src/command/attribute.rs",
-            "AttributeKind::Magnitude | AttributeKind::Semblance |",
-            "AttributeKind::Semblance |",
+            "AttributeKind::Magnitude\n            | AttributeKind::Semblance\n",
+            "AttributeKind::Semblance\n",
             instead=True,
         ),
         Edit("src/cli/args/attribute.rs", "semblance|magnitude|envelope|dip", "semblance|envelope|dip", instead=True),
