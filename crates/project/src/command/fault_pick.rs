@@ -121,17 +121,9 @@ fn surface(draft: &mut Draft, drawn: usize, progress: &Progress) -> Result<Effec
             draft.document.sticks[drawn].sticks = sticks;
         }
     }
-    rebuild_all(draft, progress)?;
+    let fitted = rebuild_all(draft, progress)?;
     let summary = format!("fault {name}: {} sticks, {triangles} triangles", sticks.len());
-    Ok(Effect::Changed { summary: with(summary, told) })
-}
-
-/// A summary, and what else was done.
-fn with(summary: String, told: Option<String>) -> String {
-    match told {
-        Some(told) => format!("{summary}; {told}"),
-        None => summary,
-    }
+    Ok(Effect::changed(summary, told.into_iter().chain(fitted).collect()))
 }
 
 impl AcceptFault {
@@ -144,9 +136,9 @@ impl AcceptFault {
         for fault in &faults {
             put(draft, fault, Origin::Proposed { horizons: proposal.horizons.clone() })?;
         }
-        rebuild_all(draft, progress)?;
+        let fitted = rebuild_all(draft, progress)?;
         let summary = format!("fault {}: proposal {} accepted", self.name, self.id);
-        Ok(Effect::Changed { summary: with(summary, told) })
+        Ok(Effect::changed(summary, told.into_iter().chain(fitted).collect()))
     }
 }
 
