@@ -124,7 +124,8 @@ fn a_page_says_what_was_not_picked_and_what_nobody_interpreted() {
     assert!(root["name"].as_str().unwrap().contains("uninterpreted") && root["extras"]["warning"] == warning);
 
     // One horizon that a person clicked makes it an interpretation, and its rocks are named.
-    run_in(at, "layer set u.petro '4: continuous' --rock limestone").done();
+    let lowest = data["layers"].as_array().unwrap().last().unwrap()["name"].as_str().unwrap().to_owned();
+    run_in(at, &format!("layer set u.petro '{lowest}' --rock limestone")).done();
     run_in(at, "pick u.petro --at 110,510,100 --horizon Mine --by-time").done();
     run_in(at, &format!("review u.petro m.html --sections 0 {SMALL}")).done();
     let interpreted = self::data(&fs::read_to_string(at.join("m.html")).unwrap());

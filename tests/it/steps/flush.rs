@@ -41,7 +41,9 @@ fn a_flush_that_fails_is_reported_and_one_that_is_impossible_for_folders_is_not(
             };
             let what = format!("`{line}`, {} at step {step}", path.display());
             let failed = with(libc::EIO);
-            assert_eq!(failed.code, 1, "{what}: {}", failed.stdout);
+            // What is computed again where it is missing is used all the same, and what failed is said.
+            let is_derived = path.starts_with("p.petro/derived");
+            assert_eq!(failed.code, i32::from(!is_derived), "{what}: {}", failed.stdout);
             assert!(failed.stderr.contains("os error 5"), "{what}: {}", failed.stderr);
             // A part of what is written beside its target has the number of a process in its path.
             let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
@@ -49,7 +51,7 @@ fn a_flush_that_fails_is_reported_and_one_that_is_impossible_for_folders_is_not(
             assert!(is_beside || failed.stderr.contains(&name), "{what}: no \"{name}\" in {}", failed.stderr);
             for impossible in [libc::EINVAL, libc::EOPNOTSUPP] {
                 let run = with(impossible);
-                assert_eq!(run.code, i32::from(!is_folder), "{what}: {}", run.stderr);
+                assert_eq!(run.code, i32::from(!is_folder && !is_derived), "{what}: {}", run.stderr);
             }
         }
     }

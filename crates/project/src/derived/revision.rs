@@ -5,7 +5,7 @@
 //! result of each method with its revision, and fails when one changes without the other.
 
 /// The structural model: fault blocks, extension of horizons, contacts.
-pub(crate) const MODEL: u32 = 3;
+pub(crate) const MODEL: u32 = 4;
 
 /// The parameterization.
 pub(crate) const PARAMETERIZATION: u32 = 9;

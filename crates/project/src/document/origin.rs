@@ -176,7 +176,7 @@ impl fmt::Display for Origin {
                 write!(f, "{:.1} % of the thickness from {top} to {base}", 100.0 * share)
             }
             Self::Proposed { horizons } if horizons.is_empty() => {
-                f.write_str("proposed from reflections that end at it")
+                f.write_str("found in the volume")
             }
             Self::Proposed { horizons } => write!(f, "proposed from the offsets of {}", horizons.join(", ")),
         }

@@ -60,7 +60,7 @@ pub(crate) fn refuse_undrawable(before: Facts<'_>, after: Facts<'_>, progress: &
     }
     let quiet = progress.muted();
     // The blocks are kept: a picture needs them next.
-    let blocks = after.document.geometry.as_ref().map(|_| after.get(&FaultBlocks, &quiet)).transpose();
+    let blocks = after.document.geometry.as_ref().map(|_| after.get(&FaultBlocks, progress)).transpose();
     let notes = blocks.and_then(|blocks| blocks.map_or(Ok(Vec::new()), |blocks| check_among(after, &blocks, &quiet)));
     let error = match notes {
         Ok(notes) => {

@@ -116,11 +116,11 @@ fn of_found_faults() -> String {
 #[test]
 fn a_changed_result_has_a_changed_revision() {
     let known = [
-        ("MODEL", MODEL, of_model(), (3, "f3513521b9d7")),
+        ("MODEL", MODEL, of_model(), (4, "f3513521b9d7")),
         ("PARAMETERIZATION", PARAMETERIZATION, of_parameterization(), (9, "29c9a61fc71d")),
         ("EXTRACTION", EXTRACTION, of_extraction(), (2, "7a7715634834")),
         ("PROPOSALS", PROPOSALS, of_proposals(), (1, "1fc6c26217e7")),
-        ("FOUND_FAULTS", FOUND_FAULTS, of_found_faults(), (1, "e89afb8fab47")),
+        ("FOUND_FAULTS", FOUND_FAULTS, of_found_faults(), (2, "3ddfe0bebd9f")),
     ];
     let changed: Vec<String> = known
         .into_iter()
