@@ -298,6 +298,15 @@ pub enum ModelNote {
         /// Inline and crossline number of a place in both.
         lines: [f64; 2],
     },
+    /// A part of a fault does not divide the volume: too many faults cross one another there.
+    FaultLeftOut {
+        /// Its name.
+        fault: String,
+        /// The share of what was interpreted, percent.
+        percent: f64,
+        /// Number of other faults of which parts are left out as well.
+        others: usize,
+    },
     /// Two faults cross, and both go on beyond.
     FaultsCross {
         /// Their names.
@@ -314,7 +323,11 @@ impl ModelNote {
     pub fn is_contradiction(&self) -> bool {
         matches!(
             self,
-            Self::BodiesOverlap { .. } | Self::FaultsCross { .. } | Self::Misfit { .. } | Self::Crossed { .. }
+            Self::BodiesOverlap { .. }
+                | Self::FaultsCross { .. }
+                | Self::FaultLeftOut { .. }
+                | Self::Misfit { .. }
+                | Self::Crossed { .. }
         )
     }
 }
@@ -376,6 +389,18 @@ impl fmt::Display for ModelNote {
                 "bodies \"{younger}\" and \"{older}\" overlap near inline {inline:.0}, crossline {crossline:.0}; \
                  \"{younger}\", which is younger, is drawn there"
             ),
+            Self::FaultLeftOut { fault, percent, others } => {
+                write!(
+                    f,
+                    "{percent:.0} % of fault \"{fault}\" is not drawn: so many faults cross there that parts of them would \
+                     divide no rock; state where faults end at one another, or remove small ones"
+                )?;
+                match others {
+                    0 => Ok(()),
+                    1 => write!(f, ". So it is with another fault"),
+                    _ => write!(f, ". So it is with {others} other faults"),
+                }
+            }
             Self::FaultsCross { faults: [a, b], lines: [inline, crossline], others } => {
                 write!(
                     f,

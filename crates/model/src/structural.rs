@@ -142,6 +142,7 @@ impl StructuralModel {
         let faults = FaultNetwork::build(geometry, faults, progress)?;
         let size = geometry.size();
         report.notes.extend(faults.crossing_note(geometry));
+        report.notes.extend(faults.left_out_note(geometry.size()));
         let lattice = MarginLattice::with_margin(size, settings.margin_for(size));
         let rules = ContactRules::new(stratigraphy);
         let given = LevelSources { geometry, horizons: &ordered, contacts: rules.contacts(), faults: &faults };

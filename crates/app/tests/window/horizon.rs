@@ -8,8 +8,9 @@ use egui_kittest::kittest::Queryable;
 use files::ImportOptions;
 use glam::DVec3;
 use interp::ExtractSettings;
-use project::command::{AddHorizon, Age, Command};
+use project::command::{AddHorizon, Age, Command, Remove};
 use project::document::{HorizonEntry, PickEntry};
+use project::error::Noun;
 use state::{Action, How, PickingStep};
 use survey::Contact;
 
@@ -78,6 +79,8 @@ fn picks_of_a_former_extraction_are_made_again() {
 fn picks_that_no_longer_fit_are_named_and_left_out_where_that_is_asked_for() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = interpreting(folder.path());
+    // It would cross what is picked.
+    applied(&mut harness, &Command::Remove(Remove { noun: Noun::Horizon, name: "Top".into() }));
     pick(&mut harness, on_a_trough(), i32::MAX);
     // One leaf of the trough below; surfaces will be of one leaf each.
     pick(&mut harness, on_a_trough() + DVec3::Z * std::f64::consts::TAU / 0.7, 0);

@@ -3,7 +3,7 @@
 //! Each fault is looked at at some thousand nodes of its grid where it is real. One goes through another where, beside
 //! what is real of that one, its nodes lie on both of its sides by more than a few voxels, and one of them close to it.
 
-use super::{FaultNetwork, FaultSurface, build};
+use super::{FaultNetwork, FaultSurface, blocks, build};
 use crate::report::{ModelError, ModelNote};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -14,6 +14,9 @@ use survey::geometry::SurveyGeometry;
 const NODES: usize = 64;
 /// A fault that ends within so many cells of another one's far side ends at it.
 const BEYOND_CELLS: f64 = 4.0;
+
+/// The share of a fault, percent, that is left out without a word: what ends at another fault just before its tip.
+const LEAST_LEFT_OUT: f64 = 5.0;
 
 /// Two faults that cross, and where.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,23 +57,55 @@ impl FaultNetwork {
         note(&self.crossings(geometry.size()), &self.surfaces, geometry)
     }
 
+    /// The fault of which the largest share does not divide the volume, where there are so many faults that some do not.
+    pub(crate) fn left_out_note(&self, size: [usize; 3]) -> Option<ModelNote> {
+        if !self.in_parts {
+            return None;
+        }
+        let share = |f: usize| {
+            let (mut all, mut left_out) = (0, 0);
+            for p in self.places(f, size).filter(|&p| self.surfaces[f].extent_at(p) >= 0.0) {
+                let bits = self.bits_at(p.as_vec3());
+                let is_meant = blocks::existing(&self.truncation, &self.order, bits) >> f & 1 == 1;
+                all += usize::from(is_meant);
+                left_out += usize::from(is_meant && self.existing(bits) >> f & 1 == 0);
+            }
+            100.0 * left_out as f64 / all.max(1) as f64
+        };
+        let shares: Vec<f64> = (0..self.surfaces.len()).into_par_iter().map(share).collect();
+        let worst = (0..shares.len())
+            .filter(|&f| shares[f] >= LEAST_LEFT_OUT)
+            .max_by(|&a, &b| shares[a].total_cmp(&shares[b]))?;
+        Some(ModelNote::FaultLeftOut {
+            fault: self.surfaces[worst].name.clone(),
+            percent: shares[worst],
+            others: shares.iter().filter(|share| **share >= LEAST_LEFT_OUT).count() - 1,
+        })
+    }
+
     /// Nodes of a fault where it is real and inside the volume.
     fn real_places(&self, fault: usize, size: [usize; 3]) -> Vec<RealPlace> {
+        let real = |p: DVec3| {
+            let at = p.as_vec3();
+            self.is_real(fault, at).then(|| RealPlace { p, existing: self.existing(self.bits_at(at)) })
+        };
+        self.places(fault, size).filter_map(real).collect()
+    }
+
+    /// Some thousand nodes of a fault that are inside the volume, voxels.
+    fn places(&self, fault: usize, size: [usize; 3]) -> impl Iterator<Item = DVec3> {
         let surface = &self.surfaces[fault];
         let [nu, nv] = surface.surface.size;
         let voxel_from_frame = surface.frame_from_voxel.inverse();
         let last = DVec3::from_array(size.map(|n| n as f64 - 1.0));
         let step = nu.max(nv).div_ceil(NODES);
-        let nodes = (0..nu).step_by(step).flat_map(|i| (0..nv).step_by(step).map(move |j| (i, j)));
-        let place = |(i, j): (usize, usize)| {
+        let nodes = (0..nu).step_by(step).flat_map(move |i| (0..nv).step_by(step).map(move |j| (i, j)));
+        nodes.filter_map(move |(i, j)| {
             let [u, v] = [i as i32 + surface.surface.origin[0], j as i32 + surface.surface.origin[1]];
             let on_it = DVec3::new(f64::from(u), f64::from(v), f64::from(surface.surface.z[i * nv + j]));
             let p = voxel_from_frame * (on_it - surface.frame_offset);
-            let is_inside = p.cmpge(DVec3::ZERO).all() && p.cmple(last).all();
-            let at = p.as_vec3();
-            (is_inside && self.is_real(fault, at)).then(|| RealPlace { p, existing: self.existing(self.bits_at(at)) })
-        };
-        nodes.filter_map(place).collect()
+            (p.cmpge(DVec3::ZERO).all() && p.cmple(last).all()).then_some(p)
+        })
     }
 
     /// Where fault `a`, by its places, passes through what is real of `b` and goes on beyond.

@@ -175,9 +175,7 @@ impl fmt::Display for Origin {
             Self::Share { share, between: [top, base] } => {
                 write!(f, "{:.1} % of the thickness from {top} to {base}", 100.0 * share)
             }
-            Self::Proposed { horizons } if horizons.is_empty() => {
-                f.write_str("found in the volume")
-            }
+            Self::Proposed { horizons } if horizons.is_empty() => f.write_str("found in the volume"),
             Self::Proposed { horizons } => write!(f, "proposed from the offsets of {}", horizons.join(", ")),
         }
     }
