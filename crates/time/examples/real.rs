@@ -1,0 +1,137 @@
+//! How much of interpreted horizons one click by geologic time finds on a real survey where no fault is drawn:
+//! `cargo run --release -p time --example real SURVEY.sgy TRUTH [FAULT_EVIDENCE [--dump FILE]]`.
+//!
+//! The truth is a file as `docs/f3-chalk.txt` (horizon, what it follows, inline, first crossline, then the samples of every
+//! second crossline), or an OpendTect horizon (x, y, inline, crossline, value). A click starts at each of fifteen places of
+//! a horizon; a node counts as found within one sample. `--dump` writes what the click of the median found at each node.
+
+use files::segy;
+use interp::{GrowSettings, Surfaces, grow_surfaces};
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::path::Path;
+use std::time::Instant;
+use survey::{Progress, SurveyGeometry, Volume};
+use time::{Cut, Event, Reflections, Seed, TimeSettings, geologic_time};
+
+/// Distance within which a node is found, samples.
+const FOUND: f32 = 1.0;
+/// Count of places at which clicks start.
+const PLACES: usize = 15;
+/// Crosslines between the samples of a line of a truth.
+const STEP: usize = 2;
+
+/// A node of an interpretation.
+struct Known {
+    trace: [usize; 2],
+    z: f32,
+}
+
+/// The interpreted horizons of a file by name.
+fn horizons(path: &Path, geometry: &SurveyGeometry) -> Result<BTreeMap<String, Vec<Known>>, Box<dyn Error>> {
+    let [nx, ny, nz] = geometry.size();
+    let mut all: BTreeMap<String, Vec<Known>> = BTreeMap::new();
+    let mut add = |name: &str, lines: [f64; 2], z: f64| {
+        let at = geometry.voxel_from_lines(lines[0], lines[1]).round();
+        if at.x >= 0.0 && at.y >= 0.0 && at.x < nx as f64 && at.y < ny as f64 && z >= 0.0 && z <= (nz - 1) as f64 {
+            let known = Known { trace: [at.x as usize, at.y as usize], z: z as f32 };
+            all.entry(name.to_owned()).or_default().push(known);
+        }
+    };
+    for line in std::fs::read_to_string(path)?.lines().filter(|line| !line.starts_with('#')) {
+        let fields: Vec<&str> = line.split_whitespace().collect();
+        match fields[..] {
+            [_, _, inline, crossline, z] if fields[0].parse::<f64>().is_ok() => {
+                let z: f64 = z.parse()?;
+                add("horizon", [inline.parse()?, crossline.parse()?], geometry.vertical.index_of(z));
+            }
+            [name, _, inline, first, ref samples @ ..] => {
+                let (inline, first): (f64, f64) = (inline.parse()?, first.parse()?);
+                for (n, z) in samples.iter().enumerate().filter(|(_, z)| **z != "-") {
+                    add(name, [inline, first + (STEP * n) as f64], z.parse()?);
+                }
+            }
+            _ => return Err(format!("not understood: {line}").into()),
+        }
+    }
+    Ok(all)
+}
+
+/// Distance of the node of an event on each trace that is closest to a known one, signed; infinite where there is none.
+fn off(event: &Event, nodes: &[Known]) -> Vec<f32> {
+    let key = |x: u16, y: u16| [usize::from(x), usize::from(y)];
+    let nearest = |node: &Known| {
+        let from = event.nodes.partition_point(|at| key(at.x, at.y) < node.trace);
+        let own = event.nodes[from..].iter().take_while(|at| key(at.x, at.y) == node.trace);
+        own.map(|at| at.z - node.z).min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(f32::INFINITY)
+    };
+    nodes.iter().map(nearest).collect()
+}
+
+/// Prints what clicks find with some faults; returns what to dump.
+fn measure(
+    volume: &Volume<f32>,
+    surfaces: &Surfaces,
+    truth: &BTreeMap<String, Vec<Known>>,
+    cuts: &[Cut],
+    note: &str,
+) -> Result<String, Box<dyn Error>> {
+    let start = Instant::now();
+    let found = geologic_time(volume, surfaces, &cuts.into(), &TimeSettings::default(), &Progress::silent())?;
+    println!("{note}: {:.1} % known, {:.1} s", 100.0 * found.known, start.elapsed().as_secs_f64());
+    let reflections = Reflections::new(surfaces, cuts);
+    let mut dump = String::new();
+    for (name, nodes) in truth {
+        let mut shares: Vec<(f64, f64, Vec<f32>)> = Vec::new();
+        for place in 0..PLACES {
+            let node = &nodes[(2 * place + 1) * nodes.len() / (2 * PLACES)];
+            let seed = Seed { trace: node.trace, z: node.z };
+            let Some(event) = reflections.event(&found.tau, &[seed], cuts) else {
+                shares.push((0.0, 0.0, vec![f32::INFINITY; nodes.len()]));
+                continue;
+            };
+            let off = off(&event, nodes);
+            let share = |is: &dyn Fn(f32) -> bool| off.iter().filter(|off| is(**off)).count() as f64 / off.len() as f64;
+            shares.push((share(&|off| off.abs() <= FOUND), share(&|off| off.is_finite()), off));
+        }
+        let each: Vec<String> = shares.iter().map(|(share, _, _)| format!("{:.0}", 100.0 * share)).collect();
+        let mean = 100.0 * shares.iter().map(|(share, _, _)| share).sum::<f64>() / PLACES as f64;
+        shares.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (share, covered, off) = &shares[PLACES / 2];
+        println!(
+            "  {name}: median {:.1} %, mean {mean:.1} %; the median covers {:.1} % and is wrong at {:.1} %; places {}",
+            100.0 * share,
+            100.0 * covered,
+            100.0 * (covered - share),
+            each.join(" ")
+        );
+        for (node, off) in nodes.iter().zip(off) {
+            dump += &format!("{name} {} {} {} {off}\n", node.trace[0], node.trace[1], node.z);
+        }
+    }
+    Ok(dump)
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let typed: Vec<String> = std::env::args().skip(1).collect();
+    let [survey, truth, rest @ ..] = &typed[..] else { return Err("real SURVEY.sgy TRUTH [FAULT_EVIDENCE]".into()) };
+    let quiet = Progress::silent();
+    let file = segy::read(Path::new(survey), &Default::default(), &quiet)?;
+    let truth = horizons(Path::new(truth), &file.geometry)?;
+    let usual = GrowSettings::default();
+    let fault_evidence = rest.first().map_or(Ok(usual.fault_evidence), |text| text.parse())?;
+    let surfaces = grow_surfaces(&file.volume, &GrowSettings { fault_evidence, ..usual }, &quiet)?;
+    let start = Instant::now();
+    let found = faults::find(&file.volume, &file.geometry, &quiet)?;
+    let sure = found.iter().filter(|fault| fault.is_accepted());
+    let cuts: Vec<Cut> = sure.map(|fault| Cut::of_sheet(&fault.sheet, file.volume.size())).collect();
+    println!("{} faults found, {:.1} s", cuts.len(), start.elapsed().as_secs_f64());
+    measure(&file.volume, &surfaces, &truth, &[], "no faults")?;
+    let dump = measure(&file.volume, &surfaces, &truth, &cuts, "found faults")?;
+    if let [.., option, path] = rest
+        && option == "--dump"
+    {
+        std::fs::write(path, dump)?;
+    }
+    Ok(())
+}
