@@ -68,25 +68,26 @@ fn off(event: &Event, nodes: &[Known]) -> Vec<f32> {
     nodes.iter().map(nearest).collect()
 }
 
-/// Prints what clicks find with some faults; returns what to dump.
+/// Prints what clicks find with some faults, of which clicks know some; returns what to dump.
 fn measure(
     volume: &Volume<f32>,
     surfaces: &Surfaces,
     truth: &BTreeMap<String, Vec<Known>>,
     cuts: &[Cut],
+    known: &[Cut],
     note: &str,
 ) -> Result<String, Box<dyn Error>> {
     let start = Instant::now();
     let found = geologic_time(volume, surfaces, &cuts.into(), &TimeSettings::default(), &Progress::silent())?;
     println!("{note}: {:.1} % known, {:.1} s", 100.0 * found.known, start.elapsed().as_secs_f64());
-    let reflections = Reflections::new(surfaces, cuts);
+    let reflections = Reflections::new(surfaces, known);
     let mut dump = String::new();
     for (name, nodes) in truth {
         let mut shares: Vec<(f64, f64, Vec<f32>)> = Vec::new();
         for place in 0..PLACES {
             let node = &nodes[(2 * place + 1) * nodes.len() / (2 * PLACES)];
             let seed = Seed { trace: node.trace, z: node.z };
-            let Some(event) = reflections.event(&found.tau, &[seed], cuts) else {
+            let Some(event) = reflections.event(&found.tau, &[seed], known) else {
                 shares.push((0.0, 0.0, vec![f32::INFINITY; nodes.len()]));
                 continue;
             };
@@ -126,8 +127,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let sure = found.iter().filter(|fault| fault.is_accepted());
     let cuts: Vec<Cut> = sure.map(|fault| Cut::of_sheet(&fault.sheet, file.volume.size())).collect();
     println!("{} faults found, {:.1} s", cuts.len(), start.elapsed().as_secs_f64());
-    measure(&file.volume, &surfaces, &truth, &[], "no faults")?;
-    let dump = measure(&file.volume, &surfaces, &truth, &cuts, "found faults")?;
+    measure(&file.volume, &surfaces, &truth, &[], &[], "no faults")?;
+    measure(&file.volume, &surfaces, &truth, &cuts, &[], "found faults, unknown to clicks")?;
+    let dump = measure(&file.volume, &surfaces, &truth, &cuts, &cuts, "found faults")?;
     if let [.., option, path] = rest
         && option == "--dump"
     {
