@@ -218,8 +218,7 @@ fn case(side: usize, snr: f64, seed: u64, faults: Faults) -> Result<Case, Box<dy
     let mut coverage = Vec::new();
     if faults == Faults::Found {
         let found = faults::find(&survey.seismic, &survey.geometry, &progress)?;
-        let found = found.iter().filter(|fault| fault.is_accepted());
-        let found: Vec<Cut> = found.map(|fault| Cut::of_sheet(&fault.sheet, surfaces.size)).collect();
+        let found: Vec<Cut> = found.iter().map(|fault| Cut::of_sheet(&fault.sheet, surfaces.size)).collect();
         coverage = cuts.iter().map(|truth| covered(truth, &found)).collect();
         cuts = found;
     }

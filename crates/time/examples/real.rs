@@ -16,6 +16,8 @@ use time::{Cut, Event, Reflections, Seed, TimeSettings, geologic_time};
 
 /// Distance within which a node is found, samples.
 const FOUND: f32 = 1.0;
+/// Clicks after the first.
+const CLICKS: usize = 2;
 /// Count of places at which clicks start.
 const PLACES: usize = 15;
 /// Crosslines between the samples of a line of a truth.
@@ -68,6 +70,14 @@ fn off(event: &Event, nodes: &[Known]) -> Vec<f32> {
     nodes.iter().map(nearest).collect()
 }
 
+/// The wrong node that is farthest from every right one, in traces.
+fn farthest_wrong(nodes: &[Known], right: &[bool]) -> Option<usize> {
+    let (good, wrong): (Vec<usize>, Vec<usize>) = (0..nodes.len()).partition(|&n| right[n]);
+    let apart = |a: usize, b: usize| (0..2).map(|axis| nodes[a].trace[axis].abs_diff(nodes[b].trace[axis])).max();
+    let alone = |n: usize| good.iter().filter_map(|&m| apart(n, m)).min().unwrap_or(usize::MAX);
+    wrong.into_iter().max_by_key(|&n| alone(n))
+}
+
 /// Prints what clicks find with some faults, of which clicks know some; returns what to dump.
 fn measure(
     volume: &Volume<f32>,
@@ -84,6 +94,8 @@ fn measure(
     let mut dump = String::new();
     for (name, nodes) in truth {
         let mut shares: Vec<(f64, f64, Vec<f32>)> = Vec::new();
+        // What two and three clicks find, and how much of what was right before each of them is right after it.
+        let mut more = [(); CLICKS].map(|()| [Vec::new(), Vec::new()]);
         for place in 0..PLACES {
             let node = &nodes[(2 * place + 1) * nodes.len() / (2 * PLACES)];
             let seed = Seed { trace: node.trace, z: node.z };
@@ -93,7 +105,19 @@ fn measure(
             };
             let off = off(&event, nodes);
             let share = |is: &dyn Fn(f32) -> bool| off.iter().filter(|off| is(**off)).count() as f64 / off.len() as f64;
+            let mut before: Vec<bool> = off.iter().map(|off| off.abs() <= FOUND).collect();
             shares.push((share(&|off| off.abs() <= FOUND), share(&|off| off.is_finite()), off));
+            let mut seeds = vec![seed];
+            for [found_by, kept] in &mut more {
+                let Some(node) = farthest_wrong(nodes, &before) else { break };
+                seeds.push(Seed { trace: nodes[node].trace, z: nodes[node].z });
+                let Some(event) = reflections.event(&found.tau, &seeds, known) else { break };
+                let after: Vec<bool> = self::off(&event, nodes).iter().map(|off| off.abs() <= FOUND).collect();
+                let count = |is: &dyn Fn(usize) -> bool| (0..nodes.len()).filter(|&n| is(n)).count() as f64;
+                found_by.push(count(&|n| after[n]) / nodes.len() as f64);
+                kept.push(count(&|n| before[n] && after[n]) / count(&|n| before[n]).max(1.0));
+                before = after;
+            }
         }
         let each: Vec<String> = shares.iter().map(|(share, _, _)| format!("{:.0}", 100.0 * share)).collect();
         let mean = 100.0 * shares.iter().map(|(share, _, _)| share).sum::<f64>() / PLACES as f64;
@@ -106,6 +130,22 @@ fn measure(
             100.0 * (covered - share),
             each.join(" ")
         );
+        for (n, of_clicks) in more.iter_mut().enumerate().filter(|(_, [found_by, _])| !found_by.is_empty()) {
+            let [share, kept] = [0, 1].map(|which| {
+                of_clicks[which].sort_by(f64::total_cmp);
+                let all = &of_clicks[which];
+                let mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
+                [all.get(all.len() / 2).copied().unwrap_or(f64::NAN), mean].map(|share| 100.0 * share)
+            });
+            println!(
+                "    {} clicks: median {:.1} %, mean {:.1} %; of what was right before the last, mean {:.1} % stays, least {:.1} %",
+                n + 2,
+                share[0],
+                share[1],
+                kept[1],
+                100.0 * of_clicks[1].first().copied().unwrap_or(f64::NAN)
+            );
+        }
         for (node, off) in nodes.iter().zip(off) {
             dump += &format!("{name} {} {} {} {off}\n", node.trace[0], node.trace[1], node.z);
         }
@@ -124,11 +164,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let surfaces = grow_surfaces(&file.volume, &GrowSettings { fault_evidence, ..usual }, &quiet)?;
     let start = Instant::now();
     let found = faults::find(&file.volume, &file.geometry, &quiet)?;
-    let sure = found.iter().filter(|fault| fault.is_accepted());
-    let cuts: Vec<Cut> = sure.map(|fault| Cut::of_sheet(&fault.sheet, file.volume.size())).collect();
-    println!("{} faults found, {:.1} s", cuts.len(), start.elapsed().as_secs_f64());
+    let cut = |fault: &faults::FaultSurface| Cut::of_sheet(&fault.sheet, file.volume.size());
+    let cuts: Vec<Cut> = found.iter().filter(|fault| fault.is_accepted()).map(cut).collect();
+    let possible: Vec<Cut> = found.iter().map(cut).collect();
+    let seconds = start.elapsed().as_secs_f64();
+    println!("{} faults found and {} that may be ones, {seconds:.1} s", cuts.len(), possible.len() - cuts.len());
     measure(&file.volume, &surfaces, &truth, &[], &[], "no faults")?;
     measure(&file.volume, &surfaces, &truth, &cuts, &[], "found faults, unknown to clicks")?;
+    measure(&file.volume, &surfaces, &truth, &possible, &possible, "found faults and those that may be ones")?;
     let dump = measure(&file.volume, &surfaces, &truth, &cuts, &cuts, "found faults")?;
     if let [.., option, path] = rest
         && option == "--dump"

@@ -5,7 +5,9 @@
 //! Their distance is counted in traces; a step through a fault at the depth of the level counts [`THROUGH_FAULT`] of
 //! them, so that a claim fills its fault block and goes round a tip. A later seed corrects the ones before it: within
 //! [`TAKEN`] traces of what it holds they hold nothing, and a patch of the first seed's level is dropped as a whole where
-//! a later seed says that the event is another. The level at a trace is the mean of the seeds' times with weights 1/d⁸.
+//! a later seed says that the event is another. A patch that nothing joins to the first seed's own, as beyond a fault that
+//! nobody knows of, is held only where that one is closer than what a later seed holds. The level at a trace is the mean of the seeds'
+//! times with weights 1/d⁸.
 //!
 //! Memory: 12 bytes a trace for each seed while it spreads, and 4 bytes afterwards.
 
@@ -31,18 +33,27 @@ pub(crate) struct Holding {
     pub trace: usize,
     /// Traces of its patch.
     pub patch: Vec<usize>,
-    /// Traces of each other patch along its level.
-    pub others: Vec<Vec<usize>>,
+    /// The other patches along its level.
+    pub others: Vec<Along>,
     /// Fractional sample at which its level crosses each trace.
     pub depth: Vec<f32>,
 }
 
-/// The level at each trace (x·crosslines + y) of `count` inlines and crosslines.
-pub(crate) fn levels(holdings: &[Holding], cuts: &[Cut], count: [usize; 2]) -> Vec<f32> {
+/// A patch along the level of a seed.
+pub(crate) struct Along {
+    /// Its traces.
+    pub traces: Vec<usize>,
+    /// Whether patches join it to the seed's own, trace by trace.
+    pub is_joined: bool,
+}
+
+/// The level at each trace (x·crosslines + y) of `count` inlines and crosslines, and the number of the seed that it has
+/// most of.
+pub(crate) fn levels(holdings: &[Holding], cuts: &[Cut], count: [usize; 2]) -> Vec<(f32, usize)> {
     let mut distances: Vec<Vec<u32>> = Vec::with_capacity(holdings.len());
     for holding in holdings.iter().rev() {
         let is_left = |trace: &usize| distances.iter().all(|later| later[*trace] > TAKEN * STEP);
-        let is_dropped = |patch: &Vec<usize>| {
+        let is_dropped = |Along { traces: patch, .. }: &Along| {
             let taken = patch.iter().filter(|trace| distances.iter().any(|later| later[**trace] == 0)).count();
             taken as f64 >= DROPPED * patch.len() as f64
         };
@@ -50,7 +61,11 @@ pub(crate) fn levels(holdings: &[Holding], cuts: &[Cut], count: [usize; 2]) -> V
         held.extend(holding.patch.iter().copied().filter(is_left));
         let mut distance = spread(&held, &holding.depth, cuts, count);
         if !holding.others.is_empty() {
-            let kept = holding.others.iter().filter(|patch| !is_dropped(patch)).flatten().copied();
+            let kept = holding.others.iter().filter(|patch| !is_dropped(patch));
+            let is_closest = |trace: usize| distances.iter().all(|later| distance[trace] <= later[trace]);
+            let kept = kept.flat_map(|patch| {
+                patch.traces.iter().copied().filter(move |trace| patch.is_joined || is_closest(*trace))
+            });
             held.extend(kept.filter(|trace| distance[*trace] < THROUGH_FAULT * STEP).filter(is_left));
             distance = spread(&held, &holding.depth, cuts, count);
         }
@@ -58,14 +73,15 @@ pub(crate) fn levels(holdings: &[Holding], cuts: &[Cut], count: [usize; 2]) -> V
     }
     distances.reverse();
     let level = |trace: usize| {
-        let (mut sum, mut weights) = (0.0f64, 0.0f64);
-        for (Holding { time, .. }, distance) in holdings.iter().zip(&distances) {
+        let (mut sum, mut weights, mut most) = (0.0f64, 0.0f64, (0.0f64, 0));
+        for (n, (Holding { time, .. }, distance)) in holdings.iter().zip(&distances).enumerate() {
             let traces = (f64::from(distance[trace]) / f64::from(STEP)).max(0.1);
             let weight = traces.powi(-8);
             sum += weight * f64::from(*time);
             weights += weight;
+            most = if weight > most.0 { (weight, n) } else { most };
         }
-        (sum / weights) as f32
+        ((sum / weights) as f32, most.1)
     };
     (0..count[0] * count[1]).map(level).collect()
 }
@@ -114,8 +130,8 @@ mod tests {
         Holding { time, trace, patch, others: Vec::new(), depth: vec![5.0; COUNT[0] * COUNT[1]] }
     }
 
-    fn at(levels: &[f32], x: usize, y: usize) -> f32 {
-        levels[x * COUNT[1] + y]
+    fn at(levels: &[(f32, usize)], x: usize, y: usize) -> f32 {
+        levels[x * COUNT[1] + y].0
     }
 
     #[test]
@@ -149,7 +165,27 @@ mod tests {
     #[test]
     fn a_single_seed_has_its_time_everywhere() {
         let found = levels(&[holding(7.5, 0, Vec::new())], &[], COUNT);
-        assert!(found.iter().all(|level| *level == 7.5));
+        assert!(found.iter().all(|(level, _)| *level == 7.5));
+    }
+
+    #[test]
+    fn a_later_seed_bends_what_nothing_joins_to_the_first_and_leaves_what_is_joined() {
+        let row = |x: usize, y: std::ops::Range<usize>| y.map(move |y| x * COUNT[1] + y);
+        let part = |x: std::ops::Range<usize>| x.flat_map(|x| row(x, 0..30)).collect::<Vec<usize>>();
+        let click = |is_joined: bool| {
+            // The first seed's own patch, one that goes on, and one on the far side of the place that is clicked.
+            let on = [(11..24, true), (34..40, is_joined)];
+            let others = on.map(|(x, is_joined)| Along { traces: part(x), is_joined }).into_iter().collect();
+            let first = Holding { others, ..holding(1.0, 0, part(0..11)) };
+            levels(&[first, holding(2.0, 27 * COUNT[1] + 15, Vec::new())], &[], COUNT)
+        };
+        let (apart, joined) = (click(false), click(true));
+        assert!((at(&apart, 38, 15) - 2.0).abs() < 0.1, "{}", at(&apart, 38, 15));
+        assert!((at(&joined, 38, 15) - 1.0).abs() < 1e-3, "{}", at(&joined, 38, 15));
+        for (x, y) in (0..18).flat_map(|x| (0..30).map(move |y| (x, y))) {
+            assert!((at(&apart, x, y) - 1.0).abs() < 1e-3, "what was right stays: {x} {y} {}", at(&apart, x, y));
+        }
+        assert_eq!((apart[15].1, apart[38 * COUNT[1] + 15].1), (0, 1));
     }
 
     #[test]
@@ -157,6 +193,7 @@ mod tests {
         let row = |x: usize, y: std::ops::Range<usize>| y.map(move |y| x * COUNT[1] + y);
         let wrong: Vec<usize> = (25..40).flat_map(|x| row(x, 0..30)).collect();
         let right: Vec<usize> = (30..36).flat_map(|x| row(x, 10..20)).collect();
+        let wrong = Along { traces: wrong, is_joined: true };
         let first = Holding { others: vec![wrong], ..holding(1.0, 0, (0..24).flat_map(|x| row(x, 0..30)).collect()) };
         let found = levels(&[first, holding(2.0, 33 * COUNT[1] + 15, right)], &[], COUNT);
         assert!((at(&found, 39, 15) - 2.0).abs() < 0.1, "{}", at(&found, 39, 15));

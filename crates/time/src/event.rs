@@ -6,12 +6,12 @@
 //! corrects what the first got wrong around it, and in another fault block all of the block; what lies along the first
 //! seed's own patch stays. Nothing is solved for again. Space: voxels.
 
-use crate::claims::{Holding, levels};
+use crate::claims::{Along, Holding, levels};
 use crate::cuts::Cut;
 use crate::isochron::crossings;
 use crate::reflections::Reflections;
 use crate::solve::interpolate;
-use interp::Extremum;
+use interp::{Extremum, UnionFind};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use survey::Volume;
@@ -76,6 +76,8 @@ const ALONG: f32 = 2.0;
 const OFF: f32 = 6.0;
 /// Least share of the vertices of a patch that lie along the level.
 const LEAST_SHARE: f64 = 0.6;
+/// Traces between two patches up to which one goes on in the other.
+const JOINING: usize = 2;
 /// Traces around a seed within which its patch tells its time.
 const SEED_AROUND: usize = 8;
 /// What a seed may point at: a reflection, or the level through the seed.
@@ -84,6 +86,13 @@ struct SeedTarget {
     z: f32,
     kind: Option<Extremum>,
     hub: Option<u32>,
+}
+
+/// The level of an event on a trace, and what it follows there.
+#[derive(Debug, Clone, Copy)]
+struct TraceLevel {
+    time: f32,
+    kind: Option<Extremum>,
 }
 
 /// A seed that was looked at.
@@ -95,7 +104,8 @@ struct PlacedSeed {
 }
 
 impl Reflections {
-    /// The event through seeds in τ, a volume that is NaN where time is not known; the first seed says what it follows.
+    /// The event through seeds in τ, a volume that is NaN where time is not known; the first seed says what it follows, a
+    /// further one only where nothing of that kind reflects beside it.
     /// `None` where time is not known at a seed, and without seeds.
     ///
     /// Cost: one pass over τ and the vertices of all candidates.
@@ -108,12 +118,14 @@ impl Reflections {
         let first = placed.first()?;
         let own: Vec<u32> = placed.iter().filter_map(|seed| seed.hub).collect();
         if placed.len() == 1 {
-            return Some(self.along(tau, |_| first.time, first.time, first.kind, &own));
+            let of_all = |_| TraceLevel { time: first.time, kind: first.kind };
+            return Some(self.along(tau, of_all, first.time, first.kind, &own));
         }
         let mut holdings: Vec<Holding> = placed.iter().map(|seed| self.holding(tau, seed)).collect();
-        holdings[0].others = self.patches_along(tau, first);
+        holdings[0].others = self.patches_along(tau, first, &holdings[0].depth, cuts);
         let level = levels(&holdings, cuts, [tau.size()[0], tau.size()[1]]);
-        Some(self.along(tau, |trace| level[trace], first.time, first.kind, &own))
+        let on = |trace: usize| TraceLevel { time: level[trace].0, kind: placed[level[trace].1].kind };
+        Some(self.along(tau, on, first.time, first.kind, &own))
     }
 
     /// What a seed points at. The reflections within reach on its trace, and the level through the seed itself, are
@@ -131,9 +143,6 @@ impl Reflections {
         targets.extend(
             [Extremum::Peak, Extremum::Trough, Extremum::Zero].map(|kind| SeedTarget { kind: Some(kind), ..plain }),
         );
-        if let Some(kind) = kind {
-            targets.retain(|target| target.kind == kind);
-        }
         let score = |target: &SeedTarget| {
             let time = interpolate(tau.trace(x, y), target.z);
             let (mut on, mut all) = (0.0f32, 0.0f32);
@@ -146,8 +155,16 @@ impl Reflections {
             let bare = if target.hub.is_none() { BARE } else { 0.0 };
             on / all.max(1.0) - FARTHER * (target.z - seed.z).abs() - bare
         };
-        let best = targets.iter().map(|target| (score(target), target)).max_by(|a, b| a.0.total_cmp(&b.0));
-        match best {
+        let scored: Vec<(f32, &SeedTarget)> = targets.iter().map(|target| (score(target), target)).collect();
+        let best_of = |is: &dyn Fn(&SeedTarget) -> bool| {
+            scored.iter().filter(|(_, target)| is(target)).copied().max_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        // What the first seed follows, if it reflects beside this one.
+        let alike = kind.flatten().and_then(|kind| {
+            let is_beside = |target: &SeedTarget| target.kind == Some(kind) && (target.z - seed.z).abs() <= SNAP_REACH;
+            best_of(&is_beside).filter(|(score, _)| *score >= LEAST_ALONG)
+        });
+        match alike.or_else(|| best_of(&|_| true)) {
             Some((score, target)) if score >= LEAST_ALONG => *target,
             _ => SeedTarget { kind: kind.flatten(), ..plain },
         }
@@ -188,11 +205,17 @@ impl Reflections {
         Holding { time: *time, trace: seed.trace[0] * ny + seed.trace[1], patch, others: Vec::new(), depth }
     }
 
-    /// The traces of each patch but a seed's own that lies along the seed's level.
-    fn patches_along(&self, tau: &Volume<f32>, PlacedSeed { hub, kind, time, .. }: &PlacedSeed) -> Vec<Vec<usize>> {
+    /// The patches but a seed's own that lie along the seed's level, which crosses each trace at a depth.
+    fn patches_along(
+        &self,
+        tau: &Volume<f32>,
+        PlacedSeed { hub, kind, time, .. }: &PlacedSeed,
+        depth: &[f32],
+        cuts: &[Cut],
+    ) -> Vec<Along> {
         let hubs = self.hubs();
         let levels = self.levels(tau, |_| *time);
-        let belongs = self.belonging(&levels, *kind);
+        let belongs = self.belonging(&levels, |_| *kind);
         let mut patches = vec![Vec::new(); hubs.len()];
         for (trace, levels) in levels.iter().enumerate() {
             for v in hubs.on_trace(trace).filter(|&v| belongs[hubs.hub[v] as usize]) {
@@ -201,11 +224,49 @@ impl Reflections {
                 }
             }
         }
-        if let Some(own) = hub {
-            patches[*own as usize].clear();
+        let Some(own) = hub else {
+            let kept = patches.into_iter().filter(|patch| !patch.is_empty());
+            return kept.map(|traces| Along { traces, is_joined: true }).collect();
+        };
+        let joined = self.joined(&patches, *own as usize, depth, cuts);
+        patches[*own as usize].clear();
+        let kept = patches.into_iter().zip(joined).filter(|(patch, _)| !patch.is_empty());
+        kept.map(|(traces, is_joined)| Along { traces, is_joined }).collect()
+    }
+
+    /// Which patches, by their traces, steps from trace to trace along the level join to one of them.
+    fn joined(&self, patches: &[Vec<usize>], own: usize, depth: &[f32], cuts: &[Cut]) -> Vec<bool> {
+        let hubs = self.hubs();
+        let [nx, ny, _] = hubs.size;
+        // On each trace the patch that is closest to the level, and how far below it it lies.
+        let mut at: Vec<Option<(u32, f32)>> = vec![None; nx * ny];
+        for (hub, traces) in patches.iter().enumerate() {
+            for &trace in traces {
+                let off =
+                    hubs.on_trace(trace).filter(|&v| hubs.hub[v] as usize == hub).map(|v| hubs.z[v] - depth[trace]);
+                let Some(off) = off.min_by(|a, b| a.abs().total_cmp(&b.abs())) else { continue };
+                if at[trace].is_none_or(|(_, other)| off.abs() < other.abs()) {
+                    at[trace] = Some((hub as u32, off));
+                }
+            }
         }
-        patches.retain(|patch| !patch.is_empty());
-        patches
+        let mut sets = UnionFind::new(patches.len());
+        for trace in 0..nx * ny {
+            let Some((hub, off)) = at[trace] else { continue };
+            let (x, y) = (trace / ny, trace % ny);
+            for i in x..(x + JOINING + 1).min(nx) {
+                for j in y.saturating_sub(JOINING)..(y + JOINING + 1).min(ny) {
+                    let Some((other, there)) = at[i * ny + j].filter(|(other, _)| *other != hub) else { continue };
+                    let [za, zb] = [depth[trace] + off, depth[i * ny + j] + there];
+                    let is_apart = cuts.iter().any(|cut| cut.separates([x, y], za, [i, j], zb));
+                    if (off - there).abs() <= SNAP_REACH && !is_apart {
+                        sets.union(hub, other);
+                    }
+                }
+            }
+        }
+        let first = sets.find(own as u32);
+        (0..patches.len() as u32).map(|hub| sets.find(hub) == first).collect()
     }
 
     /// Where a level that may vary from trace to trace crosses each trace.
@@ -215,13 +276,13 @@ impl Reflections {
         (0..nx * ny).into_par_iter().map(on).collect()
     }
 
-    /// Which patches of a kind lie along a level with most of their vertices.
-    fn belonging(&self, levels: &[Vec<f32>], kind: Option<Extremum>) -> Vec<bool> {
+    /// Which patches of the kind that is followed on their traces lie along a level with most of their vertices.
+    fn belonging(&self, levels: &[Vec<f32>], kind: impl Fn(usize) -> Option<Extremum>) -> Vec<bool> {
         let hubs = self.hubs();
         // For each patch, how many of its vertices lie along the level, and how many have a level on their trace at all.
         let mut counts = vec![[0u32; 2]; hubs.len()];
         for (trace, levels) in levels.iter().enumerate() {
-            for v in hubs.on_trace(trace).filter(|&v| kind == Some(hubs.kind[hubs.hub[v] as usize])) {
+            for v in hubs.on_trace(trace).filter(|&v| kind(trace) == Some(hubs.kind[hubs.hub[v] as usize])) {
                 let off = off(levels, hubs.z[v]);
                 let count = &mut counts[hubs.hub[v] as usize];
                 count[0] += u32::from(off <= ALONG);
@@ -236,18 +297,19 @@ impl Reflections {
     fn along(
         &self,
         tau: &Volume<f32>,
-        level: impl Fn(usize) -> f32 + Sync,
+        on: impl Fn(usize) -> TraceLevel + Sync,
         time: f32,
         kind: Option<Extremum>,
         own: &[u32],
     ) -> Event {
         let hubs = self.hubs();
         let [nx, ny, _] = hubs.size;
-        let levels = self.levels(tau, level);
-        let belongs = self.belonging(&levels, kind);
+        let levels = self.levels(tau, |trace| on(trace).time);
+        let belongs = self.belonging(&levels, |trace| on(trace).kind);
         let nodes = (0..nx * ny)
             .into_par_iter()
             .flat_map_iter(|trace| {
+                let kind = on(trace).kind;
                 let nearest = |at: f32, reach: f32, patch: bool| {
                     hubs.on_trace(trace)
                         .filter(|&v| kind == Some(hubs.kind[hubs.hub[v] as usize]) && (hubs.z[v] - at).abs() <= reach)

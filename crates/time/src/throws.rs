@@ -173,6 +173,17 @@ impl Panels {
         scored(all, there as f32, terms)
     }
 
+    /// How well the best rival of a throw correlates: of other throws that were found, and of the same throw moved by more
+    /// than a few samples, so that there always is one. Nothing that hardly overlaps is a rival.
+    fn rival(&self, terms: &[f32; 6], greatest: f32, found: &[([f32; 6], f32)]) -> f32 {
+        let differs = |(other, _): &&([f32; 6], f32)| (other[0] - terms[0]).abs() > SAME_THROW;
+        let moved = |constant: f32| self.score(&[constant, terms[1], terms[2], terms[3], terms[4], terms[5]]);
+        let most = greatest as i32;
+        let constants = (-most..=most).map(|n| n as f32).filter(|n| (n - terms[0]).abs() > SAME_THROW);
+        let moved = constants.map(moved).fold(0.0, f32::max);
+        found.iter().filter(differs).map(|(_, score)| *score).fold(moved, f32::max)
+    }
+
     /// Improves a throw term by term.
     fn refine(&self, mut terms: [f32; 6], mut score: f32) -> ([f32; 6], f32) {
         for step in [2.0f32, 1.0, 0.5, 0.25] {
@@ -333,8 +344,7 @@ pub(crate) fn throw_of(volume: &Volume<f32>, links: &Links, cut: &Cut) -> Option
         chosen.into_par_iter().map(|(terms, score)| panels.refine(terms, score)).collect();
     refined.sort_by(|a, b| b.1.total_cmp(&a.1));
     let (terms, correlation) = *refined.first()?;
-    let other = refined.iter().find(|(other, _)| (other[0] - terms[0]).abs() > SAME_THROW);
-    let margin = correlation - other.map_or(0.0, |(_, score)| *score);
+    let margin = correlation - panels.rival(&terms, greatest, &refined);
     Some(Throw { terms, correlation, margin, size: cut.size })
 }
 
@@ -363,6 +373,20 @@ pub(crate) fn ties(cut: &Cut, size: [usize; 3], throw: &Throw, step: [usize; 2],
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_throw_is_not_clear_where_beds_repeat_though_no_other_was_found() {
+        let size = [12, 120];
+        let panels = |wave: &dyn Fn(f32) -> f32| {
+            let side = |shift: f32| (0..12 * 120).map(|n| wave((n % 120) as f32 + shift)).collect();
+            Panels { size, sides: [side(3.0), side(-3.0)], step: 1 }
+        };
+        let terms = [6.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let margin = |panels: &Panels| panels.score(&terms) - panels.rival(&terms, 19.0, &[]);
+        let repeating = margin(&panels(&|z| (z * std::f32::consts::TAU / 10.0).sin()));
+        let telling = margin(&panels(&|z| (0.31 * z + 0.05 * (0.23 * z).sin() * z).sin()));
+        assert!(repeating < 0.1 && telling > 0.3, "{repeating} {telling}");
+    }
 
     #[test]
     fn a_throw_of_whole_samples_is_scored_alike_by_what_was_looked_up() {

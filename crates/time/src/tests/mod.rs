@@ -4,7 +4,7 @@ use crate::{
     Across, Cut, GeologicTime, Interpretation, Jump, KnownHorizon, Place, Reflections, Seed, Support, TimeError,
     TimeSettings, geologic_time, isochron,
 };
-use interp::{GrowSettings, grow_surfaces};
+use interp::{Extremum, GrowSettings, grow_surfaces};
 use survey::{Progress, Volume};
 
 mod chaos;
@@ -172,4 +172,25 @@ fn an_event_goes_through_its_patch_where_time_is_off_and_a_second_seed_corrects_
         event.nodes.iter().filter(|n| (strat(f32::from(n.x), f32::from(n.y), n.z) - wanted).abs() < 0.2).count();
     // The second seed holds the rest of the patch.
     assert!(right as f32 > 0.85 * event.nodes.len() as f32, "{right} of {}, {off}", event.nodes.len());
+}
+
+#[test]
+fn a_further_seed_is_obeyed_where_nothing_that_the_first_follows_reflects_beside_it() {
+    let strat = |x: f32, y: f32, z: f32| z - 0.6 * x + 0.35 * y;
+    let volume = volume([40, 32, 80], strat);
+    let surfaces = grow_surfaces(&volume, &GrowSettings::default(), &Progress::silent()).unwrap();
+    let tau = time_of(&volume, &[]).tau;
+    let reflections = Reflections::new(&surfaces, &[]);
+    let at = |x: usize, kind: Extremum| {
+        let z = reflections.nearest([x, 16], 34.0 + 0.6 * (x as f32 - 8.0), Some(kind), 9.0).unwrap().z;
+        Seed { trace: [x, 16], z }
+    };
+    // The first follows a trough; the second points at a peak between two troughs.
+    let (first, second) = (at(8, Extremum::Trough), at(30, Extremum::Peak));
+    assert!(reflections.nearest([30, 16], second.z, Some(Extremum::Trough), 1.5).is_none());
+    let event = reflections.event(&tau, &[first, second], &[]).unwrap();
+    for seed in [first, second] {
+        let node = event.nodes.iter().find(|node| [node.x, node.y].map(usize::from) == seed.trace).unwrap();
+        assert!((node.z - seed.z).abs() < 0.2, "{node:?} for {seed:?}");
+    }
 }
