@@ -16,7 +16,7 @@ use survey::Progress;
 
 /// A kind of derived data, by its name.
 enum Computed<'a> {
-    /// Blocks or grids, in a file with its own hash.
+    /// Blocks, found faults or grids, in a file with its own hash.
     Hashed,
     Parameterization,
     /// Candidates; those that wait for an undo have their key in the name.
@@ -28,7 +28,7 @@ impl<'a> Computed<'a> {
     /// What a file of `derived/` is; `None` for one that is not ours.
     fn of(name: &'a str) -> Option<Self> {
         let between = |start: &str, end: &str| name.strip_prefix(start)?.strip_suffix(end);
-        if between("blocks-", ".bin").or(between("grids-", ".bin")).is_some() {
+        if ["blocks-", "found-faults-", "grids-"].into_iter().any(|kind| between(kind, ".bin").is_some()) {
             return Some(Self::Hashed);
         }
         if between("fault-proposals-", ".json").is_some() {

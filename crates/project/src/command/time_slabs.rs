@@ -7,7 +7,7 @@ use crate::document::{Document, VolumeEntry};
 use crate::facts::Facts;
 use crate::interpretation::candidates::Candidates;
 use crate::interpretation::extraction;
-use crate::interpretation::times::Obeyed;
+use crate::interpretation::times::{Obeyed, found_cuts};
 use ::time::{Cut, JoinedSlabs, Slabs, TimeSettings, geologic_time, surfaces_within};
 use interp::{Extremum, InterpError, Surface, Surfaces, Vertex};
 use std::borrow::Cow;
@@ -25,6 +25,8 @@ pub struct TimeSlabs {
     /// The volume of amplitudes.
     pub from: VolumeEntry,
     pub(super) obeyed: Obeyed,
+    /// Faults that were found where none is drawn; `None` where slabs look for their own.
+    found: Option<Vec<Cut>>,
     volume: StoredVolume,
     candidates: SlabCandidates,
     settings: TimeSettings,
@@ -124,7 +126,12 @@ impl TimeSlabs {
         let network = Facts::of(root, document).get(&FaultBlocks, progress)?;
         let obeyed = Obeyed::load(root, document, &network, progress)?;
         let volume = content::open_recorded(root, &from, geometry)?;
-        Ok(Self { from, obeyed, volume, candidates, settings: settings.clone(), slabs })
+        let is_whole = slabs.ranges().len() == 1;
+        let found = match obeyed.interpretation.cuts.is_empty() && is_whole {
+            true => Some(found_cuts(Facts::of(root, document), progress)?),
+            false => None,
+        };
+        Ok(Self { from, obeyed, found, volume, candidates, settings: settings.clone(), slabs })
     }
 
     /// The inlines of each slab; neighbouring ones have some in common.
@@ -156,11 +163,13 @@ impl TimeSlabs {
         };
         let mut told = self.obeyed.interpretation.within(range);
         let mut found = 0;
-        if told.cuts.is_empty() && self.obeyed.interpretation.cuts.is_empty() {
+        if let Some(cuts) = &self.found {
+            told.cuts.clone_from(cuts);
+            found = cuts.len();
+        } else if told.cuts.is_empty() && self.obeyed.interpretation.cuts.is_empty() {
             let geometry = &self.volume.info().geometry;
             let faults = faults::find(&part, geometry, progress)?;
-            let sure = faults.iter().filter(|fault| fault.is_accepted());
-            told.cuts = sure.map(|fault| Cut::of_sheet(&fault.sheet, part.size())).collect();
+            told.cuts = faults.iter().map(|fault| Cut::of_sheet(&fault.sheet, part.size())).collect();
             found = told.cuts.len();
         }
         Ok((geologic_time(&part, &surfaces, &told, &self.settings, progress)?.tau, found))

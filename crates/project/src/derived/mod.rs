@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! derived/blocks-KEY.bin          the faults continued through the volume, and the blocks between them
+//! derived/found-faults-KEY.bin    the faults that are found in the volume
 //! derived/grids-KEY.bin           the parameterization as lookups use it (one grid per layer and fault block)
 //! derived/parameterization.zarr   the same sampled on a lattice: i, j, k, layer, block, for other programs; its key inside
 //! ```
@@ -15,12 +16,15 @@
 
 mod blocks;
 mod file;
+mod found;
 mod grids;
 pub mod revision;
 mod scratch;
 
 pub(crate) use blocks::blocks_key;
 pub use blocks::{FaultBlocks, keep_blocks, load_blocks};
+pub(crate) use found::FINDING_BYTES;
+pub use found::FoundFaults;
 pub use grids::{holds_volumes, keep_grids, load_grids, volumes_path};
 pub(crate) use grids::{keep_volumes, load_volumes, model_key, parameterization_key, voxels_of};
 

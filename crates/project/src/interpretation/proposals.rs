@@ -7,7 +7,7 @@
 //! them. A fault that the project already has is reported but not proposed.
 
 use crate::content;
-use crate::derived::{FaultBlocks, Scratch, key_of, revision};
+use crate::derived::{FINDING_BYTES, FaultBlocks, Scratch, key_of, revision};
 use crate::document::{Document, Origin};
 use crate::error::{Noun, ProjectError};
 use crate::facts::Facts;
@@ -195,9 +195,6 @@ pub(crate) fn compute(
     write(root, document, &key, proposals.clone())?;
     Ok((key, proposals))
 }
-
-/// Memory that finding faults takes for each sample with the volume, bytes.
-const FINDING_BYTES: usize = faults::BYTES_A_VOXEL + size_of::<f32>();
 
 /// Distance of a surface from another within which they are the same fault, traces.
 const SAME_FAULT: f32 = 5.0;

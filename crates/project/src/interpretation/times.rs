@@ -3,12 +3,13 @@
 //! A caller that picks by time several times holds the result of [`Times::load`], so that the next pick reads nothing.
 
 use crate::content;
-use crate::derived::{FaultBlocks, blocks_key, key_of};
+use crate::derived::{FaultBlocks, FoundFaults, blocks_key, key_of, revision};
 use crate::document::{Document, HorizonEntry, Origin, VolumeEntry};
 use crate::error::ProjectError;
 use crate::facts::{Facts, Query};
 use crate::interpretation::candidates::Candidates;
-use ::time::{Cut, Interpretation, Jump, KnownHorizon, Place, Reflections};
+use crate::memory_budget::half_of_available;
+use ::time::{Cut, Interpretation, Jump, KnownHorizon, Place, Reflections, Slabs};
 use interp::reassembly::from_horizon;
 use model::FaultNetwork;
 use std::path::Path;
@@ -23,7 +24,7 @@ pub struct Times {
     pub tau: Volume<f32>,
     /// The vertices of all candidates.
     pub reflections: Reflections,
-    /// The faults.
+    /// The faults: those that are drawn, or found in the volume where none is.
     pub cuts: Vec<Cut>,
 }
 
@@ -45,7 +46,7 @@ impl Query for TimesOf<'_> {
 
     fn key(&self, facts: Facts<'_>) -> Result<String, ProjectError> {
         let extraction = facts.document.extraction.as_ref().map(|entry| &entry.key);
-        Ok(key_of(&(&self.0.file, &self.0.hash, extraction, blocks_key(facts.document))))
+        Ok(key_of(&(&self.0.file, &self.0.hash, extraction, blocks_key(facts.document), revision::FOUND_FAULTS)))
     }
 
     fn compute(&self, facts: Facts<'_>, progress: &Progress) -> Result<Times, ProjectError> {
@@ -53,7 +54,10 @@ impl Query for TimesOf<'_> {
         memory::check("geologic time and all reflections", &frame.size(), HELD_BYTES)?;
         let candidates = Candidates::load(facts, progress)?;
         let tau = content::read_volume(facts.root, self.0, frame, progress)?;
-        let cuts = Cut::of_network(&*facts.get(&FaultBlocks, progress)?, tau.size());
+        let mut cuts = Cut::of_network(&*facts.get(&FaultBlocks, progress)?, tau.size());
+        if cuts.is_empty() && Slabs::within(tau.size(), half_of_available()).ranges().len() == 1 {
+            cuts = found_cuts(facts, progress)?;
+        }
         let reflections = Reflections::new(&candidates.forest.surfaces, &cuts);
         Ok(Times { tau, reflections, cuts })
     }
@@ -61,6 +65,17 @@ impl Query for TimesOf<'_> {
     fn bytes(times: &Times) -> usize {
         times.tau.samples().len() * HELD_BYTES
     }
+}
+
+/// The faults that are found in the volume, as cuts: what geologic time obeys where no fault is drawn. Those that only may
+/// be faults count, too: a cut that is none is joined again by what matches across it, and by what goes round its tips.
+///
+/// # Errors
+/// There is no volume, data are damaged, they do not fit into memory, or the user cancelled.
+pub(crate) fn found_cuts(facts: Facts<'_>, progress: &Progress) -> Result<Vec<Cut>, ProjectError> {
+    let size = facts.document.frame()?.size();
+    let found = facts.get(&FoundFaults, progress)?;
+    Ok(found.iter().map(|sheet| Cut::of_sheet(sheet, size)).collect())
 }
 
 impl Times {
@@ -210,6 +225,43 @@ pub(crate) fn read_time(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Project;
+    use crate::command::{Command, ComputeTime, Extract, ImportVolume};
+    use crate::document::Polarity;
+    use ::time::TimeSettings;
+    use files::segy::{SegyOptions, WriteOptions};
+    use interp::ExtractSettings;
+    use survey::VerticalUnit;
+
+    #[test]
+    fn picks_know_the_faults_that_time_was_cut_at_where_none_is_drawn() {
+        let folder = tempfile::tempdir().unwrap();
+        let quiet = Progress::silent();
+        let size = [48, 40, 96];
+        let geometry = SurveyGeometry::regular(size, 25.0, 10.0, VerticalUnit::Metres);
+        let mut volume = Volume::filled(size, 0.0f32);
+        for (n, sample) in volume.samples_mut().iter_mut().enumerate() {
+            let [x, y, z] = [n / 96 / 40, n / 96 % 40, n % 96].map(|at| at as f32);
+            let t = z - 0.2 * y - if x > 22.0 + 0.3 * (z - 48.0) { 5.0 } else { 0.0 };
+            *sample = (t * 0.71).sin() + 0.8 * (t * 0.43 + 1.0).sin() + 0.5 * (t * 0.93 + 2.0).cos();
+        }
+        let path = folder.path().join("north.sgy");
+        files::segy::write(&path, &geometry, &volume, &WriteOptions::default(), &quiet).unwrap();
+        let mut new = Project::create(&folder.path().join("north.petro"), None).unwrap();
+        let (polarity, options) = (Polarity::default(), SegyOptions::default());
+        let import =
+            ImportVolume { path, name: None, polarity, options, origin: None, memory_bytes: None, moved: false };
+        let extract =
+            Extract { volume: None, settings: ExtractSettings::default(), memory_bytes: None, just_stored: false };
+        let time = ComputeTime { name: "time".to_owned(), settings: TimeSettings::default(), memory_bytes: None };
+        for command in [Command::Import(import), Command::Extract(extract), Command::Time(time)] {
+            new.project().apply(&command, &quiet).unwrap();
+        }
+        let project = new.publish().unwrap();
+        let times = Times::load(project.facts(), &quiet).unwrap();
+        assert_eq!(times.cuts.len(), 1);
+        assert!((times.cuts[0].at(20, 48.0) - 22.0).abs() < 2.0, "{}", times.cuts[0].at(20, 48.0));
+    }
 
     #[test]
     fn tops_of_one_name_pair_up_and_their_order_is_checked() {
