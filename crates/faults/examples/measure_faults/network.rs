@@ -3,26 +3,26 @@
 use survey::Volume;
 
 /// A fault of a network: an ellipse on a plane with the greatest throw in its middle.
-pub struct Drawn {
+pub(crate) struct Drawn {
     middle: [f64; 3],
     angle: f64,
-    pub run: f64,
+    pub(crate) run: f64,
     throw: f64,
     half: [f64; 2],
     /// The fault on whose other side it is not.
-    pub splays_from: Option<usize>,
+    pub(crate) splays_from: Option<usize>,
 }
 
 impl Drawn {
     /// Along strike, and across it from the plane.
-    pub fn place(&self, p: [f64; 3]) -> [f64; 2] {
+    pub(crate) fn place(&self, p: [f64; 3]) -> [f64; 2] {
         let (dx, dy) = (p[0] - self.middle[0], p[1] - self.middle[1]);
         let (c, s) = (self.angle.cos(), self.angle.sin());
         [dx * c + dy * s, -dx * s + dy * c - self.run * (p[2] - self.middle[2])]
     }
 
     /// Throw next to it, samples.
-    pub fn throw(&self, u: f64, z: f64) -> f64 {
+    pub(crate) fn throw(&self, u: f64, z: f64) -> f64 {
         let r = (u / self.half[0]).powi(2) + ((z - self.middle[2]) / self.half[1]).powi(2);
         if r < 1.0 { self.throw * (1.0 - r).sqrt() } else { 0.0 }
     }
@@ -42,7 +42,7 @@ impl Random {
 }
 
 /// A place before fault `k` moved it.
-pub fn undone(faults: &[Drawn], k: usize, mut p: [f64; 3]) -> [f64; 3] {
+pub(crate) fn undone(faults: &[Drawn], k: usize, mut p: [f64; 3]) -> [f64; 3] {
     let fault = &faults[k];
     let [u, off] = fault.place(p);
     let behind = fault.splays_from.is_some_and(|m| faults[m].place(p)[1] * faults[m].run < 0.0);
@@ -53,7 +53,7 @@ pub fn undone(faults: &[Drawn], k: usize, mut p: [f64; 3]) -> [f64; 3] {
 }
 
 /// A network of faults that cross, splay and die out, on gently folded beds 12 samples apart.
-pub fn network(size: usize, seed: u64, snr: f64) -> (Volume<f32>, Vec<Drawn>) {
+pub(crate) fn network(size: usize, seed: u64, snr: f64) -> (Volume<f32>, Vec<Drawn>) {
     let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x1234_5678);
     (0..10).for_each(|_| _ = random.next());
     let n = size as f64;

@@ -36,7 +36,8 @@ impl Rows {
     /// The value between four traces; 0 outside.
     fn at(&self, x: f32, y: f32, row: isize) -> f32 {
         let [nx, ny, rows] = self.size;
-        if !(x >= 0.0 && y >= 0.0 && x < (nx - 1) as f32 && y < (ny - 1) as f32) || !(0..rows as isize).contains(&row) {
+        let is_inside = x >= 0.0 && y >= 0.0 && x < (nx - 1) as f32 && y < (ny - 1) as f32;
+        if !is_inside || !(0..rows as isize).contains(&row) {
             return 0.0;
         }
         let (i, j) = (x as usize, y as usize);
@@ -248,7 +249,7 @@ fn through(cost: &[f32], steps: usize, index: impl Fn(usize, usize) -> usize, ot
 }
 
 /// Thinned semblance, thinned fault likelihood (Hale, Geophysics 78(2), 2013) and surface voting, at each threshold.
-pub fn peers<'a>(volume: &Volume<f32>, geometry: &SurveyGeometry) -> Vec<(String, Found<'a>)> {
+pub(crate) fn peers<'a>(volume: &Volume<f32>, geometry: &SurveyGeometry) -> Vec<(String, Found<'a>)> {
     let quiet = Progress::silent();
     let mut all = Vec::new();
     let mut add = |method: &str, seconds: f64, thin: &Rows| {

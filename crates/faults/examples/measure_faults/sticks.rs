@@ -5,7 +5,7 @@ use survey::SurveyGeometry;
 
 /// Prints which share of each fault that was drawn by hand lies within two traces of a found surface. Rows are fault,
 /// stick, inline, crossline, sample.
-pub fn measure(text: &str, geometry: &SurveyGeometry, found: &[FaultSurface]) {
+pub(crate) fn measure(text: &str, geometry: &SurveyGeometry, found: &[FaultSurface]) {
     let rows: Vec<Vec<&str>> =
         text.lines().filter(|line| !line.starts_with('#')).skip(1).map(|line| line.split(',').collect()).collect();
     let voxel = |row: &[&str]| {
