@@ -17,13 +17,13 @@ use std::path::{Path, PathBuf};
 use survey::{Contact, Progress, SurveyGeometry, VerticalUnit, Volume};
 
 const SIZE: [usize; 3] = [36, 32, 40];
-const CASES: u64 = 16;
+const CASES: u64 = 8;
 /// Faults of one case after another.
 const COUNTS: [usize; 8] = [1, 2, 3, 5, 8, 13, 2, 4];
 /// Every so many cases there are forty faults.
-const FORTY_EVERY: u64 = 12;
+const FORTY_EVERY: u64 = 8;
 /// Every so many cases there is a volume, of which time is computed.
-const TIMED_EVERY: u64 = 6;
+const TIMED_EVERY: u64 = 4;
 
 struct Random(u64);
 
