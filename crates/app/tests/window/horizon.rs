@@ -81,6 +81,10 @@ fn picks_that_no_longer_fit_are_named_and_left_out_where_that_is_asked_for() {
     let mut harness = interpreting(folder.path());
     // It would cross what is picked.
     applied(&mut harness, &Command::Remove(Remove { noun: Noun::Horizon, name: "Top".into() }));
+    click(&mut harness, "Interpret");
+    wait(&mut harness, "the candidates are read", |harness| {
+        harness.query_by_label_contains("surfaces,").is_some() && harness.state().as_ref().unwrap().is_settled()
+    });
     pick(&mut harness, on_a_trough(), i32::MAX);
     // One leaf of the trough below; surfaces will be of one leaf each.
     pick(&mut harness, on_a_trough() + DVec3::Z * std::f64::consts::TAU / 0.7, 0);
