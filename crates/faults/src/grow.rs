@@ -119,7 +119,7 @@ pub(crate) fn dilated(set: &[bool], cells: [usize; 2], reach: usize) -> Vec<bool
 }
 
 /// Closes gaps, and holes that are enclosed.
-fn closed(set: &[bool], cells: [usize; 2]) -> Vec<bool> {
+pub(crate) fn closed(set: &[bool], cells: [usize; 2]) -> Vec<bool> {
     let wide = dilated(set, cells, CLOSE);
     let outside: Vec<bool> = wide.iter().map(|set| !set).collect();
     let eroded = dilated(&outside, cells, CLOSE);

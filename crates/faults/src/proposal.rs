@@ -1,6 +1,7 @@
 //! Found surfaces as proposed faults, beside those that offset horizons give.
 
 use crate::FaultSurface;
+use crate::grow::closed;
 use crate::sheet::{Sheet, WIDTH};
 use attribute::likelihood::ROW;
 use glam::{DVec2, DVec3};
@@ -33,14 +34,16 @@ fn steps(count: usize) -> Vec<usize> {
     all
 }
 
+/// Its triangles. Where it tells of no throw in its midst it is a fault all the same: such gaps are closed.
 fn mesh(sheet: &Sheet, geometry: &SurveyGeometry) -> TriangleMesh {
+    let there = closed(&sheet.there, sheet.cells);
     let (columns, rows) = (steps(sheet.cells[0]), steps(sheet.cells[1]));
     let mut mesh = TriangleMesh::default();
     let mut index = vec![None; columns.len() * rows.len()];
     for (a, &column) in columns.iter().enumerate() {
         for (b, &row) in rows.iter().enumerate() {
             let n = column * sheet.cells[1] + row;
-            if sheet.there[n] {
+            if there[n] {
                 index[a * rows.len() + b] = Some(mesh.vertices.len() as u32);
                 mesh.vertices.push(geometry.world_from_voxel(voxel(sheet, n)));
             }
@@ -105,5 +108,26 @@ fn proposal(fault: &FaultSurface, geometry: &SurveyGeometry) -> Proposal {
         evidence: Some(fault.evidence),
         is_minor: !fault.is_accepted(),
         semblance: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sheet::Frame;
+    use survey::VerticalUnit;
+
+    #[test]
+    fn a_surface_has_no_hole_where_it_tells_of_no_throw() {
+        let geometry = SurveyGeometry::regular([64, 64, 64], 25.0, 10.0, VerticalUnit::Metres);
+        let frame = Frame { origin: [20.0, 10.0], along: [0.0, 1.0], across: [-1.0, 0.0] };
+        let cells = [17, 13];
+        let whole = Sheet { frame, low: [0, 2], cells, height: vec![0.5; 17 * 13], there: vec![true; 17 * 13] };
+        let mut holed = whole.clone();
+        for (a, b) in (4..13).flat_map(|a| (3..10).map(move |b| (a, b))) {
+            holed.there[a * cells[1] + b] = false;
+        }
+        let triangles = |sheet: &Sheet| mesh(sheet, &geometry).triangles.len();
+        assert_eq!((triangles(&whole), triangles(&holed)), (8 * 6 * 2, 8 * 6 * 2));
     }
 }

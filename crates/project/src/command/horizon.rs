@@ -74,10 +74,11 @@ impl AddHorizon {
         if !contact.is_intrusive()
             && let Some(border_m) = model::hole_m(&horizon, &geometry)
         {
-            report.warnings.push(Note::from(format!(
+            // Said at once: the surface may be refused, for that very hole.
+            progress.warn(format!(
                 "its triangles enclose a body but for a hole with an edge of {border_m:.0} m; it is taken as an open surface. If \
                  it is a body, close it, or give --contact intrusive to be told where it is open"
-            )));
+            ));
         }
         if !draft.document.faults.is_empty() {
             let blocks = draft.facts().get(&FaultBlocks, progress)?;
