@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Draws README's first picture, a section of the same rock, a page of four, a map, the throw along a fault, and the block in black and white, from the project of
-# `petroglyph demo` (`make demo`), and the blocks with salt and with an overturned limb from synthetic surveys that it makes in a temporary folder:
+# `petroglyph demo` (`make demo`), and the blocks with salt and with an overturned limb from synthetic surveys, one of them without an interpretation, that it makes in a temporary folder:
 #   docs/readme.sh out/demo/demo.petro [FOLDER]
 set -euo pipefail
 project=$1
@@ -70,3 +70,7 @@ for horizon in "$made"/outcrop/horizons/*.csv; do
     quietly horizon add "$made/outcrop.petro" "$horizon" --name "$(basename "$horizon" .csv)"
 done
 "$petroglyph" render "$made/outcrop.petro" "$folder/overturned.png" --size-cm 17x12 --dpi 200 --samples 4
+
+# Faults and layers without an interpretation.
+"$petroglyph" synth "$made/found" --size 128x128x128 --seed 1 > "$made/told"
+quietly illustrate "$made/found/survey.sgy" "$folder/illustrate-synthetic.png" --project "$made/illustrate-synthetic.petro"
