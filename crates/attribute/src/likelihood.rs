@@ -7,9 +7,9 @@
 //! ```
 //!
 //! Of the planes of all strikes and dips, the one of the smallest S counts. Dips are measured in metres: from the vertical
-//! to [`GENTLEST_DEG`], in steps in which a plane moves by at most [`STEP`] traces a sample. After smoothing down the trace,
-//! every third sample holds all there is: the scan works on such rows. Space: voxels; planes in traces across strike for a
-//! sample down.
+//! to 45 degrees, in steps in which a plane moves by at most a tenth of a trace for a sample down. After smoothing down the
+//! trace, every third sample holds all there is: the scan works on such rows. Space: voxels; planes in traces across strike
+//! for a sample down.
 
 use super::dip::{DipVolumes, like};
 use super::error::AttributeError;
