@@ -171,7 +171,7 @@ pub fn reach(geometry: &SurveyGeometry) -> usize {
 ///     *sample = (0.7 * depth).sin() + (0.43 * depth).cos();
 /// }
 /// let found = fault_likelihood(&volume, &geometry, &Progress::silent())?;
-/// assert!(found.at(15, 16, 32) > 0.9 && found.at(5, 16, 32) < 0.1);
+/// assert!(found.at(15, 16, 32) > 0.9 && found.at(3, 16, 32) < 0.1);
 /// # Ok::<(), attribute::AttributeError>(())
 /// ```
 pub fn fault_likelihood(
