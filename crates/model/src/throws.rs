@@ -7,7 +7,7 @@
 //!
 //! A throw is told from noise where it exceeds a sample, and twice the misfit of both sheets: the standard deviation of
 //! white noise on their nodes near the cut-offs, from third differences, which see no curvature. A fault has one sense: of
-//! its throws that can be told from noise, by their sum.
+//! its throws that can be told from noise, by their sum; none where they contradict one another.
 //!
 //! Spaces: voxels; metres along strike and on the map; throws in samples, positive where the positive side of the fault
 //! ([`crate::FaultNetwork::side`]) went down.
@@ -30,6 +30,8 @@ const SENSE_LINES: usize = 17;
 const LEAST_SAMPLES: f64 = 1.0;
 /// Throws below this many misfits of the sheets are not either.
 const LEAST_MISFITS: f64 = 2.0;
+/// A fault whose throws add up to less than this share of their sizes has no sense.
+const AGREEMENT: f64 = 1.0 / 3.0;
 /// Nodes on every side of a cut-off from which the misfit is taken.
 const MISFIT_NODES: i32 = 8;
 
@@ -101,6 +103,8 @@ pub struct FaultSense {
     pub is_positive_down: bool,
     /// Whether the side above the fault went down; `None` of an upright fault.
     pub is_normal: Option<bool>,
+    /// Whether every horizon that tells so was only continued to the fault.
+    pub is_inferred: bool,
 }
 
 /// The throws of a horizon along a fault.
@@ -354,17 +358,17 @@ impl<'a> FaultThrows<'a> {
         0.5 * (low + high)
     }
 
-    /// Which way the fault moved; `None` where no throw is told from noise.
+    /// Which way the fault moved; `None` where no throw is told from noise, or they contradict one another.
     pub fn sense(&self) -> Option<FaultSense> {
         let [first, last] = self.extent_m()?;
         let place = |n: usize| first + (last - first) * (n as f64 + 0.5) / SENSE_LINES as f64;
         let lines = (0..SENSE_LINES).into_par_iter().map(|n| self.at(place(n)));
         let mut told: Vec<Throw> = lines.flatten_iter().filter(Throw::is_told).collect();
-        if told.iter().any(|throw| !throw.is_inferred()) {
-            told.retain(|throw| !throw.is_inferred());
-        }
+        let is_inferred = told.iter().all(Throw::is_inferred);
+        told.retain(|throw| throw.is_inferred() == is_inferred);
         let sum: f64 = told.iter().map(Throw::samples).sum();
-        if told.is_empty() || sum == 0.0 {
+        let sizes: f64 = told.iter().map(|throw| throw.samples().abs()).sum();
+        if told.is_empty() || sum.abs() < AGREEMENT * sizes {
             return None;
         }
         let is_positive_down = sum > 0.0;
@@ -372,7 +376,7 @@ impl<'a> FaultThrows<'a> {
         let normal = (self.model.metric() * self.voxel_from_frame.z_axis).normalize_or_zero();
         let is_dipping = normal.z.abs() > UPRIGHT;
         let is_normal = is_dipping.then_some((normal.z < 0.0) == is_positive_down);
-        Some(FaultSense { is_positive_down, is_normal })
+        Some(FaultSense { is_positive_down, is_normal, is_inferred })
     }
 }
 

@@ -120,13 +120,18 @@ impl FaultProfile {
 
     /// "normal, down to the east".
     fn said(&self) -> String {
-        let Some(sense) = self.sense else { return "no throw is told from noise".to_owned() };
+        let Some(sense) = self.sense else {
+            let mut throws = self.horizons.iter().flat_map(|own| &own.throws);
+            let is_told = throws.any(Throw::is_told);
+            return if is_told { "of both senses" } else { "no throw is told from noise" }.to_owned();
+        };
         let kind = match sense.is_normal {
             Some(true) => "normal, ",
             Some(false) => "reverse, ",
             None => "",
         };
-        format!("{kind}down to the {}", self.down_to.unwrap_or_default())
+        let query = if sense.is_inferred { " (?)" } else { "" };
+        format!("{kind}down to the {}{query}", self.down_to.unwrap_or_default())
     }
 
     fn throw(&self, throw: &Throw) -> f64 {

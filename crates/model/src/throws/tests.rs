@@ -35,7 +35,7 @@ fn throw_and_heave_of_planes_are_exact() {
         }
     }
     let sense = throws.sense().unwrap();
-    assert_eq!(sense.is_normal, Some(true));
+    assert_eq!((sense.is_normal, sense.is_inferred), (Some(true), false));
     let east_is_positive = throws.positive_side().x > 0.0;
     assert_eq!(sense.is_positive_down, east_is_positive);
 }
@@ -106,4 +106,13 @@ fn a_throw_ends_at_the_tip() {
             assert!((throw.samples().abs() - 0.2 * (40.0 - y)).abs() < 0.3, "{y} {}", throw.samples());
         }
     }
+}
+
+#[test]
+fn a_fault_that_moved_both_ways_has_no_sense() {
+    // Scissors: as far down at one end as up at the other.
+    let scissors = form([-5.0, 65.0], |h, bits, _, y| level(h) + f64::from(bits) * 0.2 * (y - 29.5)).model();
+    let throws = FaultThrows::new(&scissors, 0);
+    assert_eq!(throws.sense(), None);
+    assert!(throws.profile(9).iter().flat_map(|found| &found.throws).any(Throw::is_told));
 }
