@@ -113,7 +113,8 @@ fn four_points_a_block_keep_the_throw() {
             assert!(arrows >= 4, "{file} has no half-arrows: {written}");
         }
         // Without the fault the points are joined as before.
-        run_in(at, "fault remove p.petro F1").done();
+        let removed = run_in(at, "fault remove p.petro F1").done().stdout;
+        assert!(removed.contains("horizon \"A\" was fitted again to its"), "{removed}");
         run_in(at, "check p.petro").done();
         assert!(error(at, "A", 700.0) > 50.0);
     }

@@ -134,12 +134,12 @@ impl SetTruncation {
         }
         draft.document.faults[index].truncated_by.clone_from(&self.by);
         draft.document.check_truncation()?;
-        rebuild_all(draft, progress)?;
+        let fitted = rebuild_all(draft, progress)?;
         let summary = match &self.by {
             Some(by) => format!("fault {} ends at {by}", self.fault),
             None => format!("fault {} ends at no other fault", self.fault),
         };
-        Ok(Effect::Changed { summary })
+        Ok(Effect::changed(summary, fitted))
     }
 }
 
@@ -148,11 +148,11 @@ impl SetFaultExtent {
         let index = draft.document.position(Noun::Fault, &self.fault)?;
         draft.document.faults[index].grown_m = self.grown_m;
         draft.document.check_growth()?;
-        rebuild_all(draft, progress)?;
+        let fitted = rebuild_all(draft, progress)?;
         let summary = match self.grown_m {
             0.0 => format!("fault {} ends where it was drawn", self.fault),
             grown_m => format!("fault {} reaches {grown_m} m beyond what was drawn", self.fault),
         };
-        Ok(Effect::Changed { summary })
+        Ok(Effect::changed(summary, fitted))
     }
 }

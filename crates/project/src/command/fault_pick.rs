@@ -113,10 +113,9 @@ fn surface(draft: &mut Draft, drawn: usize, progress: &Progress) -> Result<Effec
     let fault =
         fault_of_sticks(&name, &lines, &geometry).ok_or_else(|| ProjectError::FlatSticks { fault: name.clone() })?;
     put(draft, &fault, Origin::Drawn)?;
-    rebuild_all(draft, progress)?;
-    Ok(Effect::Changed {
-        summary: format!("fault {name}: {} sticks, {} triangles", sticks.len(), fault.mesh.triangles.len()),
-    })
+    let fitted = rebuild_all(draft, progress)?;
+    let summary = format!("fault {name}: {} sticks, {} triangles", sticks.len(), fault.mesh.triangles.len());
+    Ok(Effect::changed(summary, fitted))
 }
 
 impl AcceptFault {
@@ -125,8 +124,8 @@ impl AcceptFault {
         let proposal = proposals::find(draft.root(), &draft.document, self.id)?;
         let origin = Origin::Proposed { horizons: proposal.horizons.clone() };
         put(draft, &proposal.fault(&self.name), origin)?;
-        rebuild_all(draft, progress)?;
-        Ok(Effect::Changed { summary: format!("fault {}: proposal {} accepted", self.name, self.id) })
+        let fitted = rebuild_all(draft, progress)?;
+        Ok(Effect::changed(format!("fault {}: proposal {} accepted", self.name, self.id), fitted))
     }
 }
 

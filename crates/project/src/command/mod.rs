@@ -261,6 +261,11 @@ impl Command {
 }
 
 impl Effect {
+    /// What was changed, and what changed with it, one sentence each.
+    pub(crate) fn changed(summary: String, with_it: Vec<String>) -> Self {
+        Self::Changed { summary: std::iter::once(summary).chain(with_it).collect::<Vec<_>>().join("; ") }
+    }
+
     /// Whether the command may find everything as it wants it already; such a command does not become a step of the
     /// history.
     pub(crate) fn is_nothing_new(&self) -> bool {

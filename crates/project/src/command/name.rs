@@ -89,11 +89,9 @@ impl Remove {
             Noun::Figure => drop(document.figures.remove(index)),
             Noun::Layer => {}
         });
-        if *noun == Noun::Fault {
-            rebuild_all(draft, progress)?;
-        }
+        let fitted = if *noun == Noun::Fault { rebuild_all(draft, progress)? } else { Vec::new() };
         let with_it = if lost.is_empty() { String::new() } else { format!("; changed with it: {}", lost.join(", ")) };
-        Ok(Effect::Changed { summary: format!("removed {noun} {name}{with_it}") })
+        Ok(Effect::changed(format!("removed {noun} {name}{with_it}"), fitted))
     }
 }
 
