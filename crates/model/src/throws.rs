@@ -20,6 +20,9 @@ use survey::horizon::Quality;
 
 /// How far beside a fault its blocks are looked up, voxels.
 const BESIDE: f64 = 0.75;
+/// How far beyond the sides of the volume the cut-offs of a place on one of them may lie, voxels: the dip of a fault that
+/// runs at an angle to the side leads out of it.
+const BEYOND: f64 = 6.0;
 /// Places on a line down the dip at which horizons are looked for, at most.
 const MOST_PLACES: f64 = 192.0;
 /// Halvings that find a cut-off between two of them, and a tip between two lines.
@@ -164,9 +167,17 @@ impl<'a> FaultThrows<'a> {
         self.voxel_from_frame * (DVec3::new(u, v, w) - self.surface.frame_offset)
     }
 
-    fn is_in_volume(&self, p: DVec3) -> bool {
+    /// Whether a place lies in the volume, or no more than `beyond` voxels beside its sides.
+    fn is_in_volume(&self, p: DVec3, beyond: f64) -> bool {
         let size = self.model.size();
-        (0..3).all(|axis| p[axis] >= -1e-6 && p[axis] <= size[axis] as f64 - 1.0 + 1e-6)
+        let by = [beyond, beyond, 0.0].map(|by| by + 1e-6);
+        (0..3).all(|axis| p[axis] >= -by[axis] && p[axis] <= size[axis] as f64 - 1.0 + by[axis])
+    }
+
+    /// The place in the volume that is closest to one beside its sides.
+    fn inside(&self, p: DVec3) -> DVec3 {
+        let [nx, ny, _] = self.model.size().map(|count| count as f64 - 1.0);
+        DVec3::new(p.x.clamp(0.0, nx), p.y.clamp(0.0, ny), p.z)
     }
 
     /// The blocks beside a place on the fault, where it exists and parts two.
@@ -178,21 +189,30 @@ impl<'a> FaultThrows<'a> {
         (exists && blocks[0] != blocks[1]).then_some(blocks)
     }
 
-    /// The line down the dip at a place along strike, inside the volume.
-    fn line(&self, u: f64) -> Vec<DipPlace> {
+    /// The line down the dip at a place along strike, inside the volume and up to `beyond` voxels beside its sides.
+    fn line(&self, u: f64, beyond: f64) -> Vec<DipPlace> {
         let (first, count) = (self.surface.surface.origin[1], self.surface.surface.size[1]);
         let step = ((count - 1) as f64 / MOST_PLACES).max(1.0);
         let places = (0..).map(|n| f64::from(first) + step * f64::from(n));
         let places = places.take_while(|v| *v <= f64::from(first) + (count - 1) as f64);
         let known = places.map(|v| DipPlace { v, place: self.place(u, v), blocks: None });
-        let inside = known.filter(|known| self.is_in_volume(known.place));
+        let inside = known.filter(|known| self.is_in_volume(known.place, beyond));
         inside.map(|known| DipPlace { blocks: self.blocks(known.place), ..known }).collect()
     }
 
     /// The throws of all horizons that meet the fault from both sides at a place along its strike, m.
     pub fn at(&self, along_m: f64) -> Vec<Throw> {
+        self.on_line(along_m, 0.0)
+    }
+
+    /// The same at a place on the fault, voxels, which may lie on a side of the volume: its cut-offs may lie a little beyond.
+    pub fn near(&self, p: DVec3) -> Vec<Throw> {
+        self.on_line(self.along_m(p), BEYOND)
+    }
+
+    fn on_line(&self, along_m: f64, beyond: f64) -> Vec<Throw> {
         let u = along_m / self.surface.spacing_m;
-        let line = self.line(u);
+        let line = self.line(u, beyond);
         let horizons = (0..self.model.stratigraphy().horizons.len()).filter(|&horizon| !self.model.is_body(horizon));
         let throws = horizons.flat_map(|horizon| {
             let [negative, positive] = [0, 1].map(|side| self.cut_offs(&line, u, horizon, side));
@@ -201,7 +221,7 @@ impl<'a> FaultThrows<'a> {
                 let same = positive.iter().filter(|to| to.is_upright == from.is_upright);
                 let apart = |to: &&CutOff| (to.place.z - from.place.z).abs();
                 let to = *same.min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
-                let middle = 0.5 * (from.place + to.place);
+                let middle = self.inside(0.5 * (from.place + to.place));
                 let is_real = self.surface.is_interpreted_at(middle);
                 Some(Throw { horizon, along_m, cut_offs: [from, to], is_real })
             };
@@ -252,7 +272,8 @@ impl<'a> FaultThrows<'a> {
         let across = slope.dot(self.voxel_from_frame.z_axis);
         let crossing = down.abs() / down.hypot(across).max(1e-12);
         let is_level = model.level(horizon, block).is_some();
-        let quality = model.quality_at(horizon, block, place.x as f32, place.y as f32);
+        let known = self.inside(place);
+        let quality = model.quality_at(horizon, block, known.x as f32, known.y as f32);
         let is_inferred = !is_level && matches!(quality, Quality::Extrapolated | Quality::Hole);
         let misfit = if is_level { 0.0 } else { self.misfit(place, horizon, block) };
         Some(CutOff { place, is_inferred, misfit, is_upright, crossing })
@@ -300,7 +321,7 @@ impl<'a> FaultThrows<'a> {
         let (first, count) = (self.surface.surface.origin[0], self.surface.surface.size[0]);
         let step = (count / 256).max(1);
         let is_there = |u: f64| {
-            let line = self.line(u);
+            let line = self.line(u, 0.0);
             line.iter().any(|known| known.blocks.is_some() && self.surface.is_interpreted_at(known.place))
         };
         let there: Vec<f64> = (0..count)

@@ -52,6 +52,27 @@ fn beds_that_dip_across_a_fault_have_the_throw_of_their_cut_offs() {
 }
 
 #[test]
+fn a_place_on_a_side_of_the_volume_has_its_throws_where_the_dip_leads_out_of_it() {
+    // A fault at 35° to the side y = 0.
+    let fault = FaultForm {
+        at: |y, z| 25.0 + RUN * (z - 30.0) + 0.7 * (y - 5.0),
+        y: [-5.0, 65.0],
+        z: [-5.0, 65.0],
+        truncated_by: None,
+    };
+    let sheet = |h: usize, bits: u32, _: f64, _: f64| level(h) + 6.0 * f64::from(bits);
+    let model = ModelForm::new([70, 60, 60], vec![fault], vec![Contact::Conformable; 3], sheet).model();
+    let throws = FaultThrows::new(&model, 0);
+    for h in 0..3 {
+        let z = level(h) + 3.0;
+        let p = DVec3::new(25.0 + RUN * (z - 30.0) - 3.5, 0.0, z);
+        let near = throws.near(p);
+        let throw = near.iter().find(|throw| throw.horizon == h).expect("its cut-offs lie beside the volume");
+        assert!((throw.samples().abs() - 6.0).abs() < 0.1 && throw.is_told() && !throw.is_inferred(), "{throw:?}");
+    }
+}
+
+#[test]
 fn a_reverse_fault_is_reverse() {
     let up = form([-5.0, 65.0], |h, bits, x, y| level(h) + 0.1 * (x - y) - 5.0 * f64::from(bits)).model();
     let throws = FaultThrows::new(&up, 0);

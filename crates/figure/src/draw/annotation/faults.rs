@@ -150,7 +150,7 @@ impl FaultRun<'_> {
             };
             let at = |at: f64| {
                 let place = self.places[(at.round() as usize).min(self.places.len() - 1)].0;
-                let own = throws.at(throws.along_m(place)).into_iter().filter(move |throw| throw.horizon == horizon);
+                let own = throws.near(place).into_iter().filter(move |throw| throw.horizon == horizon);
                 let z = place.z;
                 let off = move |throw: &model::Throw| {
                     (0.5 * (throw.cut_offs[0].place.z + throw.cut_offs[1].place.z) - z).abs()
