@@ -132,7 +132,7 @@ fn data_are_renamed_removed_and_given_a_velocity() {
     harness.key_press(Key::Tab);
     wait(&mut harness, "the fault reaches farther", |harness| document(harness).faults[0].grown_m > 0.0);
     // Volume, two horizons, the fault.
-    harness.query_all_by_label("Remove").nth(3).unwrap().click();
+    harness.query_all_by_label("Remove").nth(3).unwrap().click_accesskit();
     wait(&mut harness, "the fault is gone", |harness| document(harness).faults.is_empty());
     harness.query_all_by_label("Velocity").last().unwrap().focus();
     harness.run_steps(2);
@@ -142,7 +142,7 @@ fn data_are_renamed_removed_and_given_a_velocity() {
     wait(&mut harness, "the velocity is another", |harness| {
         document(harness).geometry.as_ref().is_some_and(|geometry| geometry.velocity_m_s != 2000.0)
     });
-    harness.query_all_by_label("Remove").next().unwrap().click();
+    harness.query_all_by_label("Remove").next().unwrap().click_accesskit();
     wait(&mut harness, "the volume is gone", |harness| document(harness).volumes.is_empty());
 }
 
@@ -220,7 +220,7 @@ fn raw_colours_and_textures_by_value_are_changed_and_taken_away() {
     click(&mut harness, "Split");
     wait(&mut harness, "there are two", |harness| document(harness).style.scalars[0].intervals.len() == 2);
     wait(&mut harness, "both are listed", |harness| harness.query_by_label("Opacity of seismic 2").is_some());
-    harness.query_all_by_label("Remove").next().unwrap().click();
+    harness.query_all_by_label("Remove").next().unwrap().click_accesskit();
     wait(&mut harness, "they are gone", |harness| document(harness).style.scalars.is_empty());
 }
 

@@ -66,7 +66,7 @@ fn a_horizon_is_drawn_by_clicks_and_freehand_and_tracked_without_candidates() {
     click_in(&mut harness, "Inline section", [-10.0, 30.0], Modifiers::NONE);
     wait(&mut harness, "it is tracked", |harness| parts(harness).len() == 3);
     wait(&mut harness, "the panel lists it", |harness| harness.query_by_label_contains("tracking 3").is_some());
-    harness.query_all_by_label("Take out").next().unwrap().click();
+    harness.query_all_by_label("Take out").next().unwrap().click_accesskit();
     wait(&mut harness, "the first line is taken out", |harness| parts(harness).len() == 2);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     wait(&mut harness, "and comes back", |harness| parts(harness).len() == 3);

@@ -207,7 +207,7 @@ fn finished_horizons_are_folded_where_there_are_many() {
         // What is chosen takes room: the list may have moved out of sight.
         harness.get_by_label_contains("finished horizons").scroll_to_me();
         harness.run_steps(5);
-        harness.get_by_label_contains("finished horizons").click();
+        harness.get_by_label_contains("finished horizons").click_accesskit();
         harness.run_steps(20);
     };
     fold(&mut harness);

@@ -114,13 +114,13 @@ fn the_letters_of_a_label_are_changed_where_it_is_clicked() {
         larger[0].size_pt.unwrap()
     );
     // What is left out is named, and comes back as it was.
-    harness.get_by_label("Leave out").click();
+    harness.get_by_label("Leave out").click_accesskit();
     harness.run_steps(3);
     assert!(harness.state().1[0].is_hidden);
-    harness.get_by_label("Shale").click();
+    harness.get_by_label("Shale").click_accesskit();
     harness.run_steps(3);
     assert_eq!(harness.state().1, larger);
-    harness.get_by_label("As it was").click();
+    harness.get_by_label("As it was").click_accesskit();
     harness.run_steps(3);
     assert!(harness.state().1.is_empty());
 }

@@ -181,11 +181,11 @@ fn shift_adds_alt_takes_out_and_the_pick_list_moves_and_takes_back() {
     };
     wait(&mut harness, "both are in the log", |harness| log(harness).len() == 2);
     wait(&mut harness, "the list shows them", |harness| harness.query_all_by_label("Unpick").count() == 2);
-    harness.query_all_by_label("Up").next().unwrap().click();
+    harness.query_all_by_label("Up").next().unwrap().click_accesskit();
     harness.run_steps(2);
     wait(&mut harness, "the first pick is higher", |harness| log(harness)[0].up == 1);
     wait(&mut harness, "the list knows", |harness| harness.query_by_label("level 1").is_some());
-    harness.query_all_by_label("Unpick").next().unwrap().click();
+    harness.query_all_by_label("Unpick").next().unwrap().click_accesskit();
     harness.run_steps(2);
     wait(&mut harness, "one pick is left", |harness| log(harness).len() == 1);
     // What is not part of the horizon cannot be taken out, and this is said.

@@ -75,7 +75,7 @@ fn sections_have_the_proportions_that_are_chosen() {
     click(&mut harness, "Sections");
     let chosen = |harness: &Driven| state(harness).session.as_ref().unwrap().view.proportions;
     assert_eq!(harness.query_all_by_label("Fill").count(), 3);
-    harness.query_all_by_label("Fill").next().unwrap().click();
+    harness.query_all_by_label("Fill").next().unwrap().click_accesskit();
     harness.run_steps(3);
     click_last(&mut harness, "5 : 1");
     assert_eq!(chosen(&harness), Some(5.0));

@@ -123,7 +123,7 @@ fn what_cannot_be_written_is_said_in_the_dialogue_and_a_stop_leaves_nothing() {
     harness.run_steps(3);
     click(&mut harness, "Write the file");
     wait(&mut harness, "it is under way", |harness| harness.query_all_by_label("Stop").count() > 0);
-    harness.query_all_by_label("Stop").last().unwrap().click();
+    harness.query_all_by_label("Stop").last().unwrap().click_accesskit();
     wait(&mut harness, "it is stopped", is_idle);
     assert!(matches!(state(&harness).dialogue, Some(Dialogue::Share(_))), "it stays");
     let left: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();

@@ -164,7 +164,7 @@ fn a_horizon_is_hidden_and_shown_again() {
     click_last(&mut harness, "Show horizon Top");
     let removes: Vec<_> = harness.query_all_by_label("Remove").collect();
     assert_eq!(removes[1].accesskit_node().label().as_deref(), Some("Remove"));
-    removes[1].click();
+    removes[1].click_accesskit();
     harness.run_steps(2);
     wait(&mut harness, "it is gone", |harness| document(harness).horizons.len() == 1);
     assert!(!is_hidden(&harness));
