@@ -27,10 +27,11 @@ pub(crate) fn applied(harness: &mut Driven, command: &Command) {
     });
 }
 
-/// Chooses an entry of a list that opens under a label.
+/// Chooses an entry of a list that opens under a label, by the pointer, whose click closes the list.
 pub(crate) fn choose(harness: &mut Driven, list: &str, entry: &str) {
     click_last(harness, list);
-    click(harness, entry);
+    harness.get_by_label(entry).click();
+    harness.run_steps(3);
 }
 
 /// Clicks the last of the buttons with a label.

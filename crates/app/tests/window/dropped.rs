@@ -1,5 +1,6 @@
 //! Files dropped on the window.
 
+use crate::command::choose;
 use crate::driven::{Driven, click, document, driven, open, project, state, survey, wait};
 use egui_kittest::kittest::Queryable;
 use state::{Dialogue, FileContent};
@@ -72,8 +73,7 @@ fn a_horizon_is_put_where_it_is_told_and_in_the_shape_that_is_stated() {
         ("Shape", "a map".to_owned()),
         ("Place in the column", format!("just below {oldest}")),
     ] {
-        click(&mut harness, field);
-        click(&mut harness, &choice);
+        choose(&mut harness, field, &choice);
     }
     // The button can be pressed as soon as the file has been read in that way.
     wait(&mut harness, "it is added", |harness| {
