@@ -94,6 +94,21 @@ pub(crate) fn semblance<'py>(
     array(py, found?)
 }
 
+/// A volume that depends on a brick and the geometry of its survey.
+type OfSurvey = fn(&Volume<f32>, &SurveyGeometry, &Progress) -> Result<Volume<f32>, AttributeError>;
+
+fn along_faults<'py>(
+    py: Python<'py>,
+    samples: &Samples<'py>,
+    geometry: &str,
+    live: Option<PyReadonlyArray2<'py, bool>>,
+    measure: OfSurvey,
+) -> Result3<'py> {
+    let brick = brick(samples, live)?;
+    let geometry: SurveyGeometry = serde_json::from_str(geometry).map_err(wrong)?;
+    array(py, task(py, || measure(&brick, &geometry, &Progress::silent()))?)
+}
+
 /// The fault likelihood along the brick's own slopes; `geometry` is that of the survey.
 #[pyfunction]
 #[pyo3(signature = (samples, geometry, live=None))]
@@ -103,9 +118,7 @@ pub(crate) fn fault_likelihood<'py>(
     geometry: &str,
     live: Option<PyReadonlyArray2<'py, bool>>,
 ) -> Result3<'py> {
-    let brick = brick(&samples, live)?;
-    let geometry: SurveyGeometry = serde_json::from_str(geometry).map_err(wrong)?;
-    array(py, task(py, || attribute::fault_likelihood(&brick, &geometry, &Progress::silent()))?)
+    along_faults(py, &samples, geometry, live, attribute::fault_likelihood)
 }
 
 /// The throws where the fault likelihood has a ridge, samples; `geometry` is that of the survey.
@@ -117,9 +130,7 @@ pub(crate) fn throw<'py>(
     geometry: &str,
     live: Option<PyReadonlyArray2<'py, bool>>,
 ) -> Result3<'py> {
-    let brick = brick(&samples, live)?;
-    let geometry: SurveyGeometry = serde_json::from_str(geometry).map_err(wrong)?;
-    array(py, task(py, || faults::throw(&brick, &geometry, &Progress::silent()))?)
+    along_faults(py, &samples, geometry, live, faults::throw)
 }
 
 /// The angle of the reflections from the horizontal, degrees, from two dips; `geometry` is that of the survey.
