@@ -32,6 +32,8 @@ pub mod document;
 pub mod error;
 pub mod exports;
 pub mod facts;
+#[cfg(test)]
+mod fixture;
 pub mod folder;
 pub mod interpretation;
 pub mod memory_budget;

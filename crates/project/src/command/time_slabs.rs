@@ -254,11 +254,7 @@ pub(super) fn explain(error: store::StoreError) -> ProjectError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Project;
-    use crate::command::{Command, Extract, ImportVolume};
-    use crate::document::Polarity;
-    use files::segy::{SegyOptions, WriteOptions};
-    use interp::ExtractSettings;
+    use crate::fixture::extracted;
     use survey::{SurveyGeometry, VerticalUnit};
 
     #[test]
@@ -269,17 +265,7 @@ mod tests {
         let geometry = SurveyGeometry::regular(size, 25.0, 4.0, VerticalUnit::Milliseconds);
         let wave = |n: usize| ((n % 32) as f32 * 0.7 + (n / 32 / 20) as f32 * 0.3).sin();
         let volume = Volume::from_samples(size, (0..size.iter().product()).map(wave).collect()).unwrap();
-        let path = folder.path().join("north.sgy");
-        files::segy::write(&path, &geometry, &volume, &WriteOptions::default(), &quiet).unwrap();
-        let mut new = Project::create(&folder.path().join("north.petro"), None).unwrap();
-        let (polarity, options) = (Polarity::default(), SegyOptions::default());
-        let import =
-            ImportVolume { path, name: None, polarity, options, origin: None, memory_bytes: None, moved: false };
-        new.project().apply(&Command::Import(import), &quiet).unwrap();
-        let settings = ExtractSettings::default();
-        let extract = Extract { volume: None, settings, memory_bytes: None, just_stored: false };
-        new.project().apply(&Command::Extract(extract), &quiet).unwrap();
-        let project = new.publish().unwrap();
+        let project = extracted(folder.path(), &geometry, &volume);
         let stored = extraction::open(project.root(), project.document()).unwrap();
         let all = Candidates::load(project.facts(), &quiet).unwrap();
         assert!(all.forest.surfaces.surfaces.len() > 4);

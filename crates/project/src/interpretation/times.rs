@@ -8,8 +8,7 @@ use crate::document::{Document, HorizonEntry, Origin, VolumeEntry};
 use crate::error::ProjectError;
 use crate::facts::{Facts, Query};
 use crate::interpretation::candidates::Candidates;
-use crate::memory_budget::half_of_available;
-use ::time::{Cut, Interpretation, Jump, KnownHorizon, Place, Reflections, Slabs};
+use ::time::{Cut, Interpretation, Jump, KnownHorizon, Place, Reflections};
 use interp::reassembly::from_horizon;
 use model::FaultNetwork;
 use std::path::Path;
@@ -55,8 +54,14 @@ impl Query for TimesOf<'_> {
         let candidates = Candidates::load(facts, progress)?;
         let tau = content::read_volume(facts.root, self.0, frame, progress)?;
         let mut cuts = Cut::of_network(&*facts.get(&FaultBlocks, progress)?, tau.size());
-        if cuts.is_empty() && Slabs::within(tau.size(), half_of_available()).ranges().len() == 1 {
-            cuts = found_cuts(facts, progress)?;
+        if cuts.is_empty() {
+            cuts = match found_cuts(facts, progress) {
+                Err(ProjectError::Memory(error)) => {
+                    progress.warn(format!("picks by time do not know the faults that time was cut at: {error}"));
+                    Vec::new()
+                }
+                found => found?,
+            };
         }
         let reflections = Reflections::new(&candidates.forest.surfaces, &cuts);
         Ok(Times { tau, reflections, cuts })
@@ -225,12 +230,9 @@ pub(crate) fn read_time(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Project;
-    use crate::command::{Command, ComputeTime, Extract, ImportVolume};
-    use crate::document::Polarity;
+    use crate::command::{Command, ComputeTime};
+    use crate::fixture::extracted;
     use ::time::TimeSettings;
-    use files::segy::{SegyOptions, WriteOptions};
-    use interp::ExtractSettings;
     use survey::VerticalUnit;
 
     #[test]
@@ -245,19 +247,9 @@ mod tests {
             let t = z - 0.2 * y - if x > 22.0 + 0.3 * (z - 48.0) { 5.0 } else { 0.0 };
             *sample = (t * 0.71).sin() + 0.8 * (t * 0.43 + 1.0).sin() + 0.5 * (t * 0.93 + 2.0).cos();
         }
-        let path = folder.path().join("north.sgy");
-        files::segy::write(&path, &geometry, &volume, &WriteOptions::default(), &quiet).unwrap();
-        let mut new = Project::create(&folder.path().join("north.petro"), None).unwrap();
-        let (polarity, options) = (Polarity::default(), SegyOptions::default());
-        let import =
-            ImportVolume { path, name: None, polarity, options, origin: None, memory_bytes: None, moved: false };
-        let extract =
-            Extract { volume: None, settings: ExtractSettings::default(), memory_bytes: None, just_stored: false };
+        let mut project = extracted(folder.path(), &geometry, &volume);
         let time = ComputeTime { name: "time".to_owned(), settings: TimeSettings::default(), memory_bytes: None };
-        for command in [Command::Import(import), Command::Extract(extract), Command::Time(time)] {
-            new.project().apply(&command, &quiet).unwrap();
-        }
-        let project = new.publish().unwrap();
+        project.apply(&Command::Time(time), &quiet).unwrap();
         let times = Times::load(project.facts(), &quiet).unwrap();
         assert_eq!(times.cuts.len(), 1);
         assert!((times.cuts[0].at(20, 48.0) - 22.0).abs() < 2.0, "{}", times.cuts[0].at(20, 48.0));
