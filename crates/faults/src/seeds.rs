@@ -3,6 +3,7 @@
 use crate::ridges::Ridge;
 use crate::sides::{self, PairSums, Sides};
 use attribute::likelihood::{Plane, ROW, crossed};
+use interp::UnionFind;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use survey::{Cancelled, Progress, SurveyGeometry};
@@ -175,28 +176,20 @@ pub(crate) fn linked(ridges: &[Ridge], seeds: &[Seed]) -> Vec<Vec<usize>> {
     for (n, seed) in seeds.iter().enumerate() {
         bins.entry(bin(ridges[seed.ridge].at)).or_default().push(n);
     }
-    let mut parent: Vec<usize> = (0..seeds.len()).collect();
-    fn root(parent: &mut [usize], mut n: usize) -> usize {
-        while parent[n] != n {
-            parent[n] = parent[parent[n]];
-            n = parent[n];
-        }
-        n
-    }
+    let mut sets = UnionFind::new(seeds.len());
     for (n, seed) in seeds.iter().enumerate() {
         let [i, j, k] = bin(ridges[seed.ridge].at);
         for near in (0..27).map(|m| [i + m / 9 - 1, j + m / 3 % 3 - 1, k + m % 3 - 1]) {
             for &m in bins.get(&near).into_iter().flatten().filter(|&&m| m < n) {
                 if are_one(&ridges[seed.ridge], seed, &ridges[seeds[m].ridge], &seeds[m]) {
-                    let (a, b) = (root(&mut parent, n), root(&mut parent, m));
-                    parent[a.max(b)] = a.min(b);
+                    sets.union(n as u32, m as u32);
                 }
             }
         }
     }
-    let mut groups: HashMap<usize, Vec<usize>> = HashMap::new();
+    let mut groups: HashMap<u32, Vec<usize>> = HashMap::new();
     for n in 0..seeds.len() {
-        groups.entry(root(&mut parent, n)).or_default().push(n);
+        groups.entry(sets.find(n as u32)).or_default().push(n);
     }
     let mut groups: Vec<Vec<usize>> = groups.into_values().filter(|group| group.len() >= FEWEST).collect();
     groups.sort_by(|a, b| b.len().cmp(&a.len()).then(a[0].cmp(&b[0])));
