@@ -74,8 +74,8 @@ pub use levels::{
     surface_through,
 };
 pub use network::{
-    BlockSignature, FaultCrossing, FaultNetwork, FaultPart, FaultSurface, Truncation, drawn_crossing, ends_of_parts,
-    fit_of, split,
+    BlockSignature, FaultCrossing, FaultNetwork, FaultPart, FaultSurface, MOST_PARTS, Truncation, drawn_crossing,
+    ends_of_parts, fit_of, split,
 };
 pub use report::{InferredPlacement, ModelError, ModelNote, ModelReport, SurfaceProblem};
 pub use settings::ModelSettings;

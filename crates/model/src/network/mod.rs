@@ -20,7 +20,7 @@ mod surface;
 mod tree;
 
 pub use crossing::{FaultCrossing, drawn_crossing};
-pub use split::{FaultPart, ends_of_parts, fit_of, split};
+pub use split::{FaultPart, MOST_PARTS, ends_of_parts, fit_of, split};
 pub use surface::FaultSurface;
 
 use crate::report::ModelError;

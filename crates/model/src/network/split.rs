@@ -15,8 +15,8 @@ use survey::fault::Fault;
 use survey::geometry::SurveyGeometry;
 use survey::mesh::TriangleMesh;
 
-/// Most parts of a fault.
-const MOST_PARTS: usize = 8;
+/// Most parts into which a fault is cut.
+pub const MOST_PARTS: usize = 8;
 /// A part smaller than this share of the fault is given to a neighbour, or left out where it has none.
 const SLIVER: f64 = 0.02;
 /// Times that normals are averaged with those of their neighbours.

@@ -5,7 +5,7 @@ use crate::error::{Noun, ProjectError};
 use crate::placement;
 use files::{fault_of_sticks, sticks_along_strike};
 use glam::DVec3;
-use model::ModelError;
+use model::{MOST_PARTS, ModelError};
 use std::ops::Range;
 use survey::{Fault, SurveyGeometry};
 
@@ -84,9 +84,6 @@ pub(super) fn of_sticks(
     let parts = named(document, geometry, &whole, &faults, &ends, &kept)?;
     Ok((parts, kept.into_iter().map(|n| order[ranges[n].clone()].to_vec()).collect()))
 }
-
-/// Most parts of a fault.
-const MOST_PARTS: usize = 8;
 
 /// Which parts of a fault lie in the survey.
 fn inside(geometry: &SurveyGeometry, whole: &Fault, parts: &[Fault]) -> Result<Vec<usize>, ProjectError> {
