@@ -6,8 +6,8 @@
 //! them, so that a claim fills its fault block and goes round a tip. A later seed corrects the ones before it: within
 //! [`TAKEN`] traces of what it holds they hold nothing, and a patch of the first seed's level is dropped as a whole where
 //! a later seed says that the event is another. A patch that nothing joins to the first seed's own, as beyond a fault that
-//! nobody knows of, is held only where that one is closer than what a later seed holds. The level at a trace is the mean of the seeds'
-//! times with weights 1/d⁸.
+//! nobody knows of, is held only where that one is closer than what a later seed holds. The level at a trace is the mean of
+//! the seeds' times with weights 1/d⁸.
 //!
 //! Memory: 12 bytes a trace for each seed while it spreads, and 4 bytes afterwards.
 

@@ -1,8 +1,9 @@
 //! `petroglyph illustrate`: a block diagram of a survey that nobody has interpreted.
 //!
-//! SEG-Y → import → candidates → faults where both sides match after a throw → geologic time → layers between its strongest, most continuous levels → patterns by the
-//! character of the reflections → a block with a legend. The project is kept, to go on from. A pattern does not claim a
-//! rock: the legend says how the reflections look, and the title says that nothing was interpreted.
+//! SEG-Y → import → candidates → faults where both sides match after a throw → geologic time → layers between its
+//! strongest, most continuous levels → patterns by the character of the reflections → a block with a legend. The project
+//! is kept, to go on from. A pattern does not claim a rock: the legend says how the reflections look, and the title says
+//! that nothing was interpreted.
 
 use crate::Project;
 use crate::command::{

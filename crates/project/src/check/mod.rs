@@ -2,8 +2,8 @@
 //!
 //! [`check`] reads the state and every step of the history, every data file that one of them names, and what is
 //! derived. It compares recorded hashes and verifies checksums, and says what is damaged and what depends on it. Where
-//! nothing that the present state needs is damaged, it makes sure that the state can be drawn. It writes nothing, so it also works on a project that is read-only, that belongs to someone else, or whose
-//! `project.toml` cannot be read.
+//! nothing that the present state needs is damaged, it makes sure that the state can be drawn. It writes nothing, so it
+//! also works on a project that is read-only, that belongs to someone else, or whose `project.toml` cannot be read.
 //!
 //! [`repair`] holds the project's lock meanwhile. It removes leftovers, data files that no state names and damaged
 //! derived data, moves damaged steps to `damaged/`, and restores a damaged `project.toml` from the history. Data that a
