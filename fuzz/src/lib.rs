@@ -14,9 +14,9 @@ pub use inputs::{HAND_WRITTEN, WELL_FILES, interpretation, well_path};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::path::{Path, PathBuf};
 
+use files::ZUnit;
 use files::segy::{
-    ByteOrder, FileUnit, KeptDuplicate, LengthUnit, LineSource, NumberType, SampleFormat, SegyFile, SegyOptions,
-    TraceWeight,
+    ByteOrder, KeptDuplicate, LengthUnit, LineSource, NumberType, SampleFormat, SegyFile, SegyOptions, TraceWeight,
 };
 use survey::{Progress, SurveyGeometry, VerticalUnit};
 
@@ -118,7 +118,7 @@ pub fn segy_options(bytes: &[u8; 12]) -> SegyOptions {
         format: (format > 0).then(|| SampleFormat::from_code(u16::from(format % 17)).ok().flatten()).flatten(),
         interval: number(interval),
         start: number(start),
-        vertical_unit: [None, Some(FileUnit::Milliseconds), Some(FileUnit::Metres), Some(FileUnit::Feet)]
+        vertical_unit: [None, Some(ZUnit::Milliseconds), Some(ZUnit::Metres), Some(ZUnit::SurveyFeet)]
             [usize::from(vertical % 4)],
         coordinate_unit: [None, Some(LengthUnit::Metres), Some(LengthUnit::Feet)][usize::from(length % 3)],
         bin_m: if bin < 200 { number(bin) } else { None },

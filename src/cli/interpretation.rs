@@ -68,7 +68,8 @@ pub(super) fn attribute(typed: AttributeArgs) -> Result<Request, Usage> {
 }
 
 pub(super) fn import_options(typed: ReadingArgs) -> Result<ImportOptions, Usage> {
-    let units = [("ms", ZUnit::Milliseconds), ("s", ZUnit::Seconds), ("m", ZUnit::Metres), ("ft", ZUnit::Feet)];
+    let units = ZUnit::ALL.map(|unit| (unit.symbol(), unit));
+    let lengths = ZUnit::LENGTHS.map(|unit| (unit.symbol(), unit));
     let signs = [("down", ZPositive::Down), ("up", ZPositive::Up)];
     let orders = [
         ("columns", ValueOrder::Columns),
@@ -91,6 +92,7 @@ pub(super) fn import_options(typed: ReadingArgs) -> Result<ImportOptions, Usage>
     Ok(ImportOptions {
         format: typed.format.as_deref().map(format).transpose()?,
         z_unit: typed.z_unit.as_deref().map(|t| word("--z-unit", t, &units)).transpose()?,
+        xy_unit: typed.xy_unit.as_deref().map(|t| word("--xy-unit", t, &lengths)).transpose()?,
         z_positive: typed.z_positive.as_deref().map(|t| word("--z-positive", t, &signs)).transpose()?,
         z_factor,
         null: typed.null,

@@ -34,6 +34,7 @@ fn option(setting: Setting) -> (&'static str, &'static str) {
         Setting::Shape => ("--shape", ""),
         Setting::ValueOrder => ("--value-order", ""),
         Setting::MdUnit => ("--md-unit", ""),
+        Setting::XyUnit => ("--xy-unit", ""),
         Setting::RotatedGrids => ("--when-rotated", ""),
         Setting::Datum => ("--kb", " M"),
         Setting::Head => ("--head", " X,Y"),

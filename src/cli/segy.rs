@@ -3,8 +3,9 @@
 use super::args::SegyArgs;
 use super::interpretation::word;
 use super::request::Usage;
+use files::ZUnit;
 use files::segy::{
-    ByteOrder, FileUnit, KeptDuplicate, LengthUnit, LineSource, NumberType, SampleFormat, SegyOptions, TraceWeight,
+    ByteOrder, KeptDuplicate, LengthUnit, LineSource, NumberType, SampleFormat, SegyOptions, TraceWeight,
 };
 
 pub(super) fn segy_options(typed: &SegyArgs) -> Result<SegyOptions, Usage> {
@@ -16,8 +17,9 @@ pub(super) fn segy_options(typed: &SegyArgs) -> Result<SegyOptions, Usage> {
         ("coordinates-swapped", LineSource::CoordinatesSwapped),
     ];
     let weights = [("apply", TraceWeight::Apply), ("inverse", TraceWeight::Inverse), ("ignore", TraceWeight::Ignore)];
-    let vertical = [("ms", FileUnit::Milliseconds), ("m", FileUnit::Metres), ("ft", FileUnit::Feet)];
-    let length = [("m", LengthUnit::Metres), ("ft", LengthUnit::Feet)];
+    let vertical =
+        [ZUnit::Milliseconds, ZUnit::Metres, ZUnit::Feet, ZUnit::SurveyFeet].map(|unit| (unit.symbol(), unit));
+    let length = LengthUnit::ALL.map(|unit| (unit.symbol(), unit));
     let orders = [("big", ByteOrder::Big), ("little", ByteOrder::Little)];
     let kept = [("first", KeptDuplicate::First), ("last", KeptDuplicate::Last)];
     Ok(SegyOptions {

@@ -5,7 +5,7 @@ use super::interpretation::word;
 use super::report::Report;
 use super::request::{Listing, Request, Usage, coloured, numbers, remove, rename};
 use files::ZUnit;
-use files::well::{WellFiles, WellOptions, WellReport};
+use files::well::{WellColumn, WellFiles, WellOptions, WellReport};
 use project::Project;
 use project::command::{AddWell, Command, WellAdded};
 use project::content;
@@ -25,7 +25,7 @@ pub(super) fn well(action: WellAction) -> Result<Request, Usage> {
 }
 
 fn add(typed: WellAddArgs) -> Result<Request, Usage> {
-    let units = [("m", ZUnit::Metres), ("ft", ZUnit::Feet)];
+    let units = ZUnit::LENGTHS.map(|unit| (unit.symbol(), unit));
     if let Some(kb) = typed.datum_m.filter(|kb| !kb.is_finite()) {
         return Err(format!("--kb {kb}: expected a number of metres"));
     }
@@ -35,8 +35,18 @@ fn add(typed: WellAddArgs) -> Result<Request, Usage> {
         head: typed.head.map(|text| numbers::<2>("--head", &text, ',')).transpose()?,
         datum_m: typed.datum_m,
         md_unit: typed.md_unit.as_deref().map(|t| word("--md-unit", t, &units)).transpose()?,
+        xy_unit: typed.xy_unit.as_deref().map(|t| word("--xy-unit", t, &units)).transpose()?,
+        columns: typed.columns.as_deref().map(WellColumn::parse_list).transpose().map_err(|unknown| {
+            format!("--columns: \"{unknown}\" is no column; expected md, inc, dip, azi, x, y, dx, dy, tvd, tvdss, z, well or -")
+        })?,
     };
-    let files = WellFiles { deviation: typed.deviation, tops: typed.tops, las: typed.las, checkshot: typed.checkshot };
+    let files = WellFiles {
+        deviation: typed.deviation,
+        collar: typed.collar,
+        tops: typed.tops,
+        las: typed.las,
+        checkshot: typed.checkshot,
+    };
     let command = AddWell { name: typed.name, files, options };
     Ok(Request::Change { project: typed.project, command: Command::AddWell(command) })
 }

@@ -412,6 +412,7 @@ impl Tour {
             las: vec![beside("log.las")],
             deviation: deviation.clone(),
             checkshot: None,
+            collar: None,
         };
         let command = AddWell { name: "W-1".to_owned(), files, options: Default::default() };
         self.act(Action::Apply(Box::new(Command::AddWell(command))));

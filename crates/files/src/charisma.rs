@@ -4,9 +4,10 @@
 //! be 0 if they are not known: the point is then placed by X, Y. The format states neither unit nor sign.
 
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext};
-use super::table::UNDEFINED;
 use super::text::{self, Line, SourceFile};
 use super::{Codec, Format, FormatError};
+use crate::number;
+use crate::number::UNDEFINED;
 use glam::DVec2;
 use indexmap::IndexMap;
 
@@ -49,7 +50,7 @@ fn point_of(source: &SourceFile, line: Line<'_>) -> Result<(Option<String>, RawP
                 && !f.text.eq_ignore_ascii_case("XLINE")
                 && !f.text.eq_ignore_ascii_case("INLINE")
         })
-        .map_while(|f| text::number(f.text))
+        .map_while(|f| number::plain(f.text))
         .take(5)
         .collect();
     let &[il, xl, x, y, z] = numbers.as_slice() else { return Err(wrong()) };
@@ -68,6 +69,6 @@ fn point_of(source: &SourceFile, line: Line<'_>) -> Result<(Option<String>, RawP
         return Ok((None, point));
     }
     let [.., name, stick] = fields.get(6..).unwrap_or_default() else { return Err(wrong()) };
-    point.stick = Some(text::number(stick.text).filter(|v| v.is_finite()).ok_or_else(wrong)?);
+    point.stick = Some(number::plain(stick.text).filter(|v| v.is_finite()).ok_or_else(wrong)?);
     Ok((Some(name.text.to_string()), point))
 }

@@ -1,6 +1,6 @@
 //! The content of a table's column, from the name of the column.
 
-use super::unit::{Domain, ZPositive, ZUnit};
+use super::unit::{Domain, ZPositive, ZUnit, words};
 use serde::{Deserialize, Serialize};
 
 /// The content of a table's column.
@@ -75,36 +75,25 @@ pub(super) struct NamedColumn {
 
 /// Parses the name of a column: `Inline`, `XL`, `twt_ms`, `Depth (ft)`, `"X"`, `INT,Inline` …
 pub(super) fn of_name(name: &str) -> NamedColumn {
-    let mut name = name.trim().trim_matches('"').to_ascii_lowercase();
-    // Petrel writes the type before the name.
-    if let Some((_, after)) = name.split_once(',') {
-        name = after.trim().to_string();
-    }
-    let mut unit = None;
-    if let Some(open) = name.find(['(', '[']) {
-        unit = ZUnit::parse(name[open + 1..].trim_end_matches([')', ']']));
-        // "X (easting)" is still X.
-        name.truncate(open);
-    }
-    let mut word: String = name.trim().replace([' ', '-', '.', '#'], "_").trim_matches('_').to_string();
-    if let Some((stem, suffix)) = word.rsplit_once('_')
-        && let Some(found) = ZUnit::parse(suffix)
-    {
-        unit = unit.or(Some(found));
-        word = stem.to_string();
-    }
+    let words::ColumnName { word, unit } = words::of_column(name);
     let (column, domain, positive) = match word.as_str() {
         "inline" | "iline" | "il" | "inl" | "in_line" | "inline_number" | "inline_no" | "inlineno" | "iline_no"
         | "inline_3d" | "inline3d" | "i_line" => (Column::Inline, None, None),
         "crossline" | "xline" | "xl" | "crl" | "cross_line" | "x_line" | "crossline_number" | "crossline_no"
         | "crosslineno" | "xline_no" | "crossline_3d" | "crossline3d" => (Column::Crossline, None, None),
         "x" | "easting" | "east" | "utmx" | "utm_x" | "x_utm" | "cdp_x" | "cdpx" | "x_coord" | "xcoord" | "coord_x"
-        | "x_utme" | "x_coordinate" | "xcoordinate" | "x_world" | "world_x" => (Column::X, None, None),
+        | "x_utme" | "x_coordinate" | "xcoordinate" | "x_world" | "world_x" | "rechtswert" | "este" => {
+            (Column::X, None, None)
+        }
         "y" | "northing" | "north" | "utmy" | "utm_y" | "y_utm" | "cdp_y" | "cdpy" | "y_coord" | "ycoord"
-        | "coord_y" | "y_utmn" | "y_coordinate" | "ycoordinate" | "y_world" | "world_y" => (Column::Y, None, None),
+        | "coord_y" | "y_utmn" | "y_coordinate" | "ycoordinate" | "y_world" | "world_y" | "hochwert" | "norte" => {
+            (Column::Y, None, None)
+        }
         "z" | "z_value" | "zvalue" | "value" | "z_coordinate" => (Column::Z, None, None),
-        "twt" | "time" | "twt_auto" | "twtime" | "two_way_time" | "t" => (Column::Z, Some(Domain::Time), None),
-        "depth" | "tvd" | "tvdss" | "z_tvdss" | "z_depth" => (Column::Z, Some(Domain::Depth), None),
+        "twt" | "time" | "twt_auto" | "twt_picked" | "twtt" | "twtime" | "two_way_time" | "t" | "laufzeit" | "zeit"
+        | "temps" | "tiempo" | "tempo" => (Column::Z, Some(Domain::Time), None),
+        "depth" | "tvd" | "tvdss" | "tvdmsl" | "z_tvdss" | "z_depth" | "tiefe" | "teufe" | "profondeur"
+        | "profundidad" | "profundidade" => (Column::Z, Some(Domain::Depth), None),
         "elevation" | "elev" | "altitude" => (Column::Z, Some(Domain::Depth), Some(ZPositive::Up)),
         "name" | "horizon" | "surface" | "fault" | "horizon_name" | "fault_name" | "surface_name" => {
             (Column::Name, None, None)

@@ -36,13 +36,15 @@ pub(super) struct ColumnLayout {
     pub unit: Option<(ZUnit, String)>,
     pub domain: Option<(Domain, String)>,
     pub positive: Option<(ZPositive, String)>,
+    /// The unit of X and Y.
+    pub horizontal: Option<(ZUnit, String)>,
     pub notes: Vec<String>,
 }
 
 impl ColumnLayout {
     /// Columns whose names state nothing about the vertical axis.
     pub(crate) fn plain(columns: Vec<Column>) -> Self {
-        Self { columns, unit: None, domain: None, positive: None, notes: Vec::new() }
+        Self { columns, unit: None, domain: None, positive: None, horizontal: None, notes: Vec::new() }
     }
 
     /// Whether a point can be placed: Z, and lines or X, Y.
@@ -56,10 +58,7 @@ impl ColumnLayout {
 pub(super) fn from_header(names: &[&str], domain: Option<Domain>) -> ColumnLayout {
     let named: Vec<_> = names.iter().map(|n| of_name(n)).collect();
     let fits = |n: &NamedColumn| {
-        let own = n.domain.or(n.unit.map(|u| match u {
-            ZUnit::Milliseconds | ZUnit::Seconds => Domain::Time,
-            ZUnit::Metres | ZUnit::Feet => Domain::Depth,
-        }));
+        let own = n.domain.or(n.unit.map(Domain::of_unit));
         own == domain && own.is_some()
     };
     let vertical: Vec<_> = (0..named.len()).filter(|&n| named[n].column == Column::Z).collect();
@@ -70,6 +69,8 @@ pub(super) fn from_header(names: &[&str], domain: Option<Domain>) -> ColumnLayou
         let other_z = name.column == Column::Z && Some(n) != z;
         layout.columns.push(if again || other_z { Column::Other } else { name.column });
     }
+    let x = layout.columns.iter().position(|column| *column == Column::X);
+    layout.horizontal = x.and_then(|x| Some((named[x].unit?, format!("column '{}'", names[x].trim()))));
     if let Some(z) = z {
         let says = format!("column '{}'", names[z].trim());
         layout.unit = named[z].unit.map(|u| (u, says.clone()));

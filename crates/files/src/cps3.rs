@@ -15,6 +15,7 @@ use super::text::{self, SourceFile};
 use super::write::WriteFailure;
 use super::zmap::{from_columns, in_columns, unrotated};
 use super::{Codec, Format, FormatError, HorizonWriter, irap};
+use crate::number;
 use std::io::Write;
 use survey::geometry::SurveyGeometry;
 use survey::horizon::{Horizon, NodeGrid};
@@ -38,7 +39,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     let mut values = Vec::new();
     for line in text::lines(&text).filter(|l| !l.text.starts_with('!')) {
         let fields = text::fields(line.text, None);
-        let number = |n: usize| fields.get(n).and_then(|f| text::number(f.text));
+        let number = |n: usize| fields.get(n).and_then(|f| number::plain(f.text));
         match fields.first().map_or("", |f| f.text) {
             "FSASCI" => null = number(5),
             "FSLIMI" => {
@@ -58,8 +59,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
             word if word.starts_with("->") => name = Some(line.text[2..].trim().to_string()),
             _ => {
                 for field in &fields {
-                    let value = text::number(field.text);
-                    values.push(value.ok_or_else(|| source.syntax(line.number, "a grid value", field.text))?);
+                    values.push(source.grid_value(line.number, field.text)?);
                 }
             }
         }
@@ -69,9 +69,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     };
     let grid = unrotated(source, counts, x, y)?;
     source.check_values(grid.count, values.len())?;
-    let is_null =
-        |v: f64| v.abs() >= super::table::UNDEFINED || null.is_some_and(|n| (v - n).abs() <= 1e-6 * n.abs().max(1.0));
-    let file: Vec<f64> = values.into_iter().map(|v| if is_null(v) { f64::NAN } else { v }).collect();
+    let file: Vec<f64> = values.into_iter().map(|v| if number::is_null(v, null) { f64::NAN } else { v }).collect();
     let columns = from_columns(&file, grid.count);
     let rows = irap::transposed(&file, grid.count);
     let (usual, other) = (roughness(&columns, grid.count[1]), roughness(&rows, grid.count[1]));

@@ -31,22 +31,15 @@ pub(super) const CODEC: Codec = Codec {
 
 fn detect(source: &SourceFile) -> Option<String> {
     let text = source.text();
-    let mut rows = text::lines(&text).filter(|l| !table::is_comment(l.text));
-    let first = rows.next()?;
-    let second = rows.next().unwrap_or(first);
-    let cut = cut_of(first.text, second.text);
+    let rows: Vec<_> = text::lines(&text).filter(|l| !table::is_comment(l.text)).take(3).collect();
+    let first = rows.first()?;
+    let second = rows.get(1).unwrap_or(first);
+    let cut = LineCut::of(&rows);
     let numbers = cut.fields(second.text).iter().filter(|f| cut.number(f.text).is_some()).count();
     if numbers < 3 {
         return None;
     }
     Some(if is_header(first.text, cut) { "a table with a header line" } else { "a table of numbers" }.into())
-}
-
-/// The delimiter of a table, from its first line, and the decimal comma, from its numbers.
-fn cut_of(first: &str, second: &str) -> LineCut {
-    let cut = LineCut::of(first);
-    let comma = cut.delimiter != Some(',') && LineCut { delimiter: cut.delimiter, ..LineCut::of(second) }.decimal_comma;
-    LineCut { decimal_comma: cut.decimal_comma || comma, ..cut }
 }
 
 /// Whether a line is a header: it has at least two fields that are not numbers. (A row may have a name and words for
@@ -67,7 +60,7 @@ fn header_of(all: &[Line<'_>], rows: &[Line<'_>], cut: LineCut, context: &ReadCo
     }
     let comment = all.iter().take_while(|l| l.number < first.number).last()?;
     let words = comment.text.trim_start_matches(['#', '!', '%', '@', '/', ' ']);
-    let names = LineCut::of(words).fields(words);
+    let names = LineCut::of_line(words).fields(words);
     let layout = columns::from_header(&names.iter().map(|f| f.text).collect::<Vec<_>>(), context.domain());
     (layout.is_complete() && names.len() <= cut.fields(first.text).len()).then_some(layout)
 }
@@ -79,7 +72,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     let Some(first) = rows.first() else {
         return Err(source.empty(context.kind, "there are no rows"));
     };
-    let cut = cut_of(first.text, rows.get(1).map_or("", |l| l.text));
+    let cut = LineCut::of(&rows);
     let header = header_of(&all, &rows, cut, context);
     if is_header(first.text, cut) {
         rows.remove(0);
@@ -118,7 +111,7 @@ mod tests {
             ("\"green event\"\t1\t2\t3", false),
             ("1,2,nan", false),
         ] {
-            assert_eq!(is_header(line, LineCut::of(line)), header, "{line}");
+            assert_eq!(is_header(line, LineCut::of_line(line)), header, "{line}");
         }
     }
 }

@@ -12,6 +12,7 @@ use super::table::{self, LineCut};
 use super::text::{self, Line, SourceFile};
 use super::unit::Domain;
 use super::{Codec, Format, FormatError};
+use crate::number;
 
 pub(super) const CODEC: Codec = Codec { read_horizon: Some(read), ..Codec::of(Format::Dug, "dug", "ilclt", detect) };
 
@@ -49,7 +50,7 @@ fn on_subgrid(text: &str, rows: &[Line<'_>], cut: LineCut) -> bool {
     };
     let range = |word: &str| {
         let (first, last) = subgrid.split_once(word)?.1.split(['[', '+']).next()?.split_once('-')?;
-        let (first, last) = (text::number(first)?, text::number(last)?);
+        let (first, last) = (number::plain(first)?, number::plain(last)?);
         Some(first.min(last)..=first.max(last))
     };
     let (Some(inlines), Some(crosslines)) = (range("il:"), range("cl:")) else { return false };
@@ -64,7 +65,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     let text = source.text();
     let rows: Vec<_> = text::lines(&text).filter(|l| !table::is_comment(l.text)).collect();
     let named = of_extension(source);
-    let cut = LineCut::of(rows.first().map_or("", |l| l.text));
+    let cut = LineCut::of(&rows);
     let lines = || [Column::Inline, Column::Crossline, Column::Z];
     let columns = named.map(|(columns, _)| columns).or_else(|| on_subgrid(&text, &rows, cut).then(lines));
     let header = columns.map(|columns| ColumnLayout::plain(columns.to_vec()));

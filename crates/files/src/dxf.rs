@@ -10,6 +10,7 @@
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext};
 use super::text::{self, SourceFile};
 use super::{Codec, Format, FormatError};
+use crate::number;
 use glam::DVec3;
 use indexmap::IndexMap;
 use std::collections::HashMap;
@@ -228,7 +229,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
             Err(_) => return Err(source.syntax(number + 1, "a group code", code)),
         };
         let coordinate = || {
-            let found = text::number(value).filter(|v| v.is_finite() && v.abs() < 1e12);
+            let found = number::plain(value).filter(|v| v.is_finite() && v.abs() < 1e12);
             found.ok_or_else(|| source.syntax(number + 2, "a coordinate", value))
         };
         match code {

@@ -10,6 +10,7 @@ use super::table::{self, LineCut};
 use super::text::{self, SourceFile};
 use super::unit::ZUnit;
 use super::{Codec, Format, FormatError};
+use crate::number;
 
 pub(super) const CODEC: Codec = Codec {
     read_horizon: Some(read),
@@ -41,20 +42,18 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
                 let unit = words.next().and_then(ZUnit::parse).filter(|_| column == Column::Z);
                 layout.unit = unit.map(|u| (u, format!("Field: {value}"))).or(layout.unit);
             }
-            "Z_units" => layout.unit = ZUnit::parse(value).map(|u| (u, format!("Z_units: {value}"))).or(layout.unit),
-            "Null_value" => null = text::number(value),
+            "Null_value" => null = number::plain(value),
             "Description" => title = Some(value.to_string()),
             _ => {}
         }
     }
     layout.columns = if names.is_empty() { vec![Column::X, Column::Y, Column::Z] } else { names };
     let rows: Vec<_> = text::lines(&text).filter(|l| !table::is_comment(l.text)).collect();
-    let mut surfaces =
-        table::surfaces(source, &rows, LineCut::of(rows.first().map_or("", |l| l.text)), layout, context)?;
+    let mut surfaces = table::surfaces(source, &rows, LineCut::of(&rows), layout, context)?;
     for surface in &mut surfaces {
         surface.name = surface.name.take().or_else(|| title.clone());
         if let Some(null) = null {
-            for z in surface.shape.values_mut().filter(|z| (**z - null).abs() <= 1e-6 * null.abs().max(1.0)) {
+            for z in surface.shape.values_mut().filter(|z| number::is_null(**z, Some(null))) {
                 *z = f64::NAN;
             }
             surface.notes.push(format!("the file's null is {null}"));

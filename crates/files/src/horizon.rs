@@ -110,6 +110,7 @@ pub(super) fn build(
         range_in_file: counts.range_in_file,
         range: counts.range,
         unit: geometry.vertical.unit,
+        assumptions: rule.assumptions(),
         z_unit: rule.unit,
         z_positive: rule.positive,
         z_factor: rule.factor,

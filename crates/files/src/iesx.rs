@@ -8,10 +8,11 @@
 //! row's own numbers behind it and `EOD` before the next.
 
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
-use super::table::UNDEFINED;
 use super::text::{self, Line, SourceFile};
 use super::unit::ZUnit;
 use super::{Codec, Format, FormatError};
+use crate::number;
+use crate::number::UNDEFINED;
 use glam::DVec2;
 
 pub(super) const CODEC: Codec = Codec { read_horizon: Some(read), ..Codec::of(Format::Iesx, "iesx", "iesx", detect) };
@@ -52,7 +53,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
 
 /// Whether a line repeats numbers of the row before: it is too short for a row, and has no mark of an inline.
 fn is_echo(words: &str) -> bool {
-    let numbers: Option<Vec<f64>> = words.split_whitespace().map(text::number).collect();
+    let numbers: Option<Vec<f64>> = words.split_whitespace().map(number::plain).collect();
     numbers.is_some_and(|numbers| numbers.len() < WIDTHS.len())
 }
 
@@ -70,8 +71,8 @@ fn point(source: &SourceFile, line: Line<'_>, indent: usize) -> Result<RawPoint,
     let wrong =
         || source.syntax(line.number, "X, Y, two counts, Z, three crosslines, a value, I and the inline", line.text);
     let (left, right) = line.text.split_once(" I").ok_or_else(wrong)?;
-    let inline = right.split_whitespace().next().and_then(text::number).ok_or_else(wrong)?;
-    let free: Vec<f64> = left.split_whitespace().map_while(text::number).collect();
+    let inline = right.split_whitespace().next().and_then(number::plain).ok_or_else(wrong)?;
+    let free: Vec<f64> = left.split_whitespace().map_while(number::plain).collect();
     let numbers = if free.len() == WIDTHS.len() { Some(free) } else { fixed(left, indent).or_else(|| overflown(left)) };
     let numbers = numbers.ok_or_else(wrong)?;
     let [x, y, z, crossline] = [0, 1, 4, 7].map(|n| numbers[n]);
@@ -101,7 +102,7 @@ fn fixed(left: &str, indent: usize) -> Option<Vec<f64>> {
         .map(|width| {
             let field = padded.get(at..at + width)?;
             at += width;
-            text::number(field)
+            number::plain(field)
         })
         .collect()
 }
@@ -115,11 +116,11 @@ fn overflown(left: &str) -> Option<Vec<f64>> {
     let after_x = left.find('E')? + 4;
     let before_z = after_x + WIDTHS[1..4].iter().sum::<usize>();
     let after_z = left.len().checked_sub(WIDTHS[5..].iter().sum())?;
-    let mut numbers = vec![text::number(left.get(..after_x)?)?];
+    let mut numbers = vec![number::plain(left.get(..after_x)?)?];
     let mut at = after_x;
     for (n, width) in WIDTHS.iter().enumerate().skip(1) {
         let end = if n == 4 { after_z } else { at + width };
-        numbers.push(text::number(left.get(at..end)?)?);
+        numbers.push(number::plain(left.get(at..end)?)?);
         at = end;
     }
     (before_z < after_z).then_some(numbers)

@@ -8,7 +8,6 @@ use super::columns::ColumnLayout;
 use super::raw::{RawSurface, ReadContext};
 use super::table::{self, LineCut};
 use super::text::{self, SourceFile};
-use super::unit::ZUnit;
 use super::{Codec, Format, FormatError};
 
 pub(super) const CODEC: Codec = Codec { read_horizon: Some(read), ..Codec::of(Format::Ijxyz, "ijxyz", "dat", detect) };
@@ -23,19 +22,17 @@ fn detect(source: &SourceFile) -> Option<String> {
 
 fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
     let text = source.text();
-    let mut layout = ColumnLayout::plain(vec![Column::Inline, Column::Crossline, Column::X, Column::Y, Column::Z]);
+    let layout = ColumnLayout::plain(vec![Column::Inline, Column::Crossline, Column::X, Column::Y, Column::Z]);
     let mut name = None;
     for line in text::lines(&text).filter(|l| l.text.starts_with('#')) {
         let Some((key, value)) = line.text.split_once("->") else { continue };
         let value = value.trim().trim_matches('\'');
-        match key.trim_start_matches('#').trim_end_matches('_') {
-            "Horizon_name" => name = Some(value.to_string()),
-            "Export_Z_Unit" => layout.unit = ZUnit::parse(value).map(|u| (u, format!("Export_Z_Unit {value}"))),
-            _ => {}
+        if key.trim_start_matches('#').trim_end_matches('_') == "Horizon_name" {
+            name = Some(value.to_string());
         }
     }
     let rows: Vec<_> = text::lines(&text).filter(|l| !table::is_comment(l.text)).collect();
-    let cut = LineCut::of(rows.first().map_or("", |l| l.text));
+    let cut = LineCut::of(&rows);
     let mut surfaces = table::surfaces(source, &rows, cut, layout, context)?;
     surfaces.iter_mut().for_each(|s| s.name = name.clone());
     Ok(surfaces)

@@ -9,6 +9,7 @@ use super::raw::{RawShape, RawSurface, ReadContext};
 use super::text::{self, SourceFile};
 use super::write::WriteFailure;
 use super::{Codec, Format, FormatError, HorizonWriter};
+use crate::number;
 use glam::DVec2;
 use std::borrow::Cow;
 use std::io::Write;
@@ -75,7 +76,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     let mut header = [0.0; 19];
     for (n, slot) in header.iter_mut().enumerate() {
         let (line, token) = tokens.next().ok_or_else(|| source.length("header numbers", 19, n))?;
-        *slot = text::number(token).ok_or_else(|| source.syntax(line, "a header number", token))?;
+        *slot = number::plain(token).ok_or_else(|| source.syntax(line, "a header number", token))?;
     }
     if header[0] != -996.0 {
         return Err(source.syntax(1, "-996, the mark of an Irap grid", &header[0].to_string()));
@@ -91,7 +92,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     // The header may announce more values than there are; memory grows only with those that are there.
     let mut values = Vec::with_capacity(expected.min(source.bytes.len() / 2));
     for (line, token) in tokens {
-        let value = text::number(token).ok_or_else(|| source.syntax(line, "a grid value", token))?;
+        let value = source.grid_value(line, token)?;
         values.push(if value.abs() >= UNDEFINED { f64::NAN } else { value });
     }
     source.check_values(grid.count, values.len())?;

@@ -6,9 +6,9 @@
 
 use super::irap::{IrapHeader, transposed};
 use super::raw::{RawShape, RawSurface, ReadContext};
-use super::table::UNDEFINED;
 use super::text::SourceFile;
 use super::{Codec, Format, FormatError};
+use crate::number::UNDEFINED;
 use glam::DVec2;
 
 pub(super) const CODEC: Codec =

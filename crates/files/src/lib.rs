@@ -72,6 +72,7 @@ mod irap_binary;
 mod lattice;
 mod mesh_sticks;
 mod neighbours;
+mod number;
 mod opendtect;
 mod options;
 mod outline;
@@ -120,6 +121,8 @@ use survey::fault::Fault;
 use survey::geometry::SurveyGeometry;
 use survey::horizon::{Horizon, Sheet};
 use text::SourceFile;
+use unit::Domain;
+use unit::words::HeaderUnits;
 
 #[cfg(test)]
 mod tests;
@@ -345,9 +348,25 @@ fn read_source(
     if kind == SurfaceKind::Fault {
         surfaces = surfaces.into_iter().flat_map(outline::split).collect();
     }
-    let surfaces = selected(source, surfaces, options, kind)?;
+    let mut surfaces = selected(source, surfaces, options, kind)?;
+    let header = HeaderUnits::of(header_lines(source).iter().map(String::as_str));
+    let survey = geometry.map(|geometry| Domain::of(geometry.vertical.unit));
+    surfaces.iter_mut().for_each(|surface| surface.take_units(&header, survey));
     Ok((format, surfaces))
 }
+
+/// The comments at the beginning of a text file, which may state units.
+fn header_lines(source: &SourceFile) -> Vec<String> {
+    let start = &source.bytes[..source.bytes.len().min(HEADER_BYTES)];
+    if start.contains(&0) {
+        return Vec::new();
+    }
+    let start = String::from_utf8_lossy(start);
+    text::lines(&start).filter(|line| table::is_comment(line.text)).map(|line| line.text.to_owned()).collect()
+}
+
+/// Bytes in which the comments of a header are looked for.
+const HEADER_BYTES: usize = 1 << 16;
 
 /// What a file is that is known but not read, and what to export instead.
 fn known_by_name(bytes: &[u8]) -> Option<&'static str> {
@@ -442,7 +461,12 @@ fn built<T>(
 ) -> Result<Vec<(T, ImportReport)>, FormatError> {
     let (format, surfaces) = read_source(source, Some(geometry), options, kind)?;
     let name = |raw: &RawSurface| name_of(raw, source, options);
-    surfaces.into_iter().map(|raw| build(&source.path, name(&raw), format.clone(), raw, geometry, options)).collect()
+    let in_metres = |mut raw: RawSurface| {
+        raw.convert_places(options.xy_unit);
+        raw
+    };
+    let surfaces = surfaces.into_iter().map(in_metres);
+    surfaces.map(|raw| build(&source.path, name(&raw), format.clone(), raw, geometry, options)).collect()
 }
 
 /// Writes a horizon under a temporary name, then renames the file. A rotated grid is resampled for formats

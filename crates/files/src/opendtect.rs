@@ -13,6 +13,7 @@ use super::table::{self, LineCut};
 use super::text::{self, SourceFile};
 use super::write::{self, TableNode, WriteFailure};
 use super::{Codec, Format, FormatError, HorizonWriter};
+use crate::number;
 use std::io::Write;
 use survey::fault::Fault;
 use survey::geometry::SurveyGeometry;
@@ -38,9 +39,9 @@ fn detect(source: &SourceFile) -> Option<String> {
         return (fields.len() >= 3 && fields.iter().all(|f| f.quoted))
             .then(|| "its header line lists quoted columns".into());
     }
-    let cut = LineCut::of(first);
+    let cut = LineCut::of_line(first);
     let fields = cut.fields(first);
-    let is_row = fields.len() >= 4 && fields[0].quoted && fields[1..].iter().all(|f| text::number(f.text).is_some());
+    let is_row = fields.len() >= 4 && fields[0].quoted && fields[1..].iter().all(|f| number::plain(f.text).is_some());
     (cut.delimiter == Some('\t') && is_row).then(|| "a quoted name stands before numbers cut by tabs".into())
 }
 
@@ -66,10 +67,10 @@ fn header_of(text: &str, context: &ReadContext<'_>) -> Option<ColumnLayout> {
 fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
     let text = source.text();
     let rows: Vec<_> = text::lines(&text).filter(|l| !table::is_comment(l.text)).collect();
-    let Some(first) = rows.first() else {
+    if rows.is_empty() {
         return Err(source.empty(context.kind, "there are no rows"));
-    };
-    let cut = LineCut::of(first.text);
+    }
+    let cut = LineCut::of(&rows);
     let layout = table::settle_columns(source, context, header_of(&text, context), &rows, cut)?;
     table::surfaces(source, &rows, cut, layout, context)
 }

@@ -61,6 +61,9 @@ pub struct ImportOptions {
     pub format: Option<Format>,
     /// Vertical unit of the file; `None` = as the file says, else the survey's (reported as assumed).
     pub z_unit: Option<ZUnit>,
+    /// Unit of X and Y; `None` = as the file says, else metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub xy_unit: Option<ZUnit>,
     /// Sign of the file; `None` = as the file says, else positive down (reported as assumed).
     pub z_positive: Option<ZPositive>,
     /// Factor on the file's values, before sign and unit; 1 by default.
@@ -92,6 +95,7 @@ impl Default for ImportOptions {
         Self {
             format: None,
             z_unit: None,
+            xy_unit: None,
             z_positive: None,
             z_factor: 1.0,
             null: None,

@@ -31,6 +31,7 @@ pub(super) fn split(surface: RawSurface) -> Vec<RawSurface> {
             },
             shape: RawShape::Mesh(mesh),
             vertical: surface.vertical.clone(),
+            horizontal: surface.horizontal.clone(),
             notes: surface
                 .notes
                 .iter()

@@ -8,7 +8,6 @@ use super::columns;
 use super::raw::{RawSurface, ReadContext};
 use super::table::{self, LineCut};
 use super::text::{self, SourceFile};
-use super::unit::ZUnit;
 use super::{Codec, Format, FormatError};
 
 pub(super) const CODEC: Codec =
@@ -28,15 +27,9 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         return Err(source.syntax(1, "BEGIN HEADER and END HEADER", all.first().map_or("", |l| l.text)));
     };
     let names: Vec<&str> = all.get(begin + 1..end).unwrap_or_default().iter().map(|l| l.text).collect();
-    let mut layout = columns::from_header(&names, context.domain());
-    let stated = all[..begin].iter().find_map(|l| Some((l.text, l.text.split_once("depth:")?.1)));
-    if let Some((line, word)) = stated
-        && let Some(unit) = ZUnit::parse(word)
-    {
-        layout.unit = Some((unit, format!("'{}'", line.trim_start_matches(['#', ' ']))));
-    }
+    let layout = columns::from_header(&names, context.domain());
     let rows: Vec<_> = all[end + 1..].iter().copied().filter(|l| !table::is_comment(l.text)).collect();
-    let cut = LineCut { delimiter: None, ..LineCut::of(rows.first().map_or("", |l| l.text)) };
+    let cut = LineCut { delimiter: None, ..LineCut::of(&rows) };
     let mut surfaces = table::surfaces(source, &rows, cut, layout, context)?;
     for surface in &mut surfaces {
         let nulls = surface.shape.values_mut().filter(|z| **z == -999.0).map(|z| *z = f64::NAN).count();

@@ -7,8 +7,9 @@
 
 use super::irap::IrapHeader;
 use super::raw::{RawShape, RawSurface, ReadContext};
-use super::text::{self, SourceFile};
+use super::text::SourceFile;
 use super::{Codec, Format, FormatError};
+use crate::number;
 use glam::DVec2;
 use std::collections::HashMap;
 
@@ -28,10 +29,10 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     let text = String::from_utf8_lossy(&body[..end]).into_owned();
     let facts: HashMap<&str, &str> = text.split(',').filter_map(|pair| pair.split_once('=')).collect();
     let number = |key: &str| {
-        let value = facts.get(key).and_then(|v| text::number(v));
+        let value = facts.get(key).and_then(|v| number::plain(v));
         value.ok_or_else(|| source.bad_grid(format!("it has no number {key}")))
     };
-    let or = |key: &str, default: f64| facts.get(key).and_then(|v| text::number(v)).unwrap_or(default);
+    let or = |key: &str, default: f64| facts.get(key).and_then(|v| number::plain(v)).unwrap_or(default);
     let origin = DVec2::new(number("OriginX")?, number("OriginY")?);
     let pivot = DVec2::new(or("RotationOriginX", origin.x), or("RotationOriginY", origin.y));
     let rotation_deg = or("RotationAngle", 0.0);

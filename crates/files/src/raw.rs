@@ -2,12 +2,13 @@
 
 use super::SurfaceKind;
 use super::options::ImportOptions;
+use super::unit::words::{HeaderUnits, Quantity, Statement};
 use super::unit::{Domain, ZPositive, ZUnit};
 use glam::{DVec2, DVec3};
 use survey::geometry::SurveyGeometry;
 use survey::horizon::{NodeGrid, Quality};
 use survey::mesh::TriangleMesh;
-use survey::remedy::Note;
+use survey::remedy::{Note, Setting};
 
 /// What a reader may use besides its file.
 pub(super) struct ReadContext<'a> {
@@ -93,6 +94,8 @@ pub(super) struct RawSurface {
     pub name: Option<String>,
     pub shape: RawShape,
     pub vertical: VerticalFacts,
+    /// The unit of X and Y that the file states, with its words.
+    pub horizontal: Option<(ZUnit, String)>,
     pub notes: Vec<String>,
     /// What the user should check.
     pub warnings: Vec<Note>,
@@ -101,6 +104,63 @@ pub(super) struct RawSurface {
 impl RawSurface {
     /// A surface of which the file says nothing more.
     pub(crate) fn new(name: Option<String>, shape: RawShape) -> Self {
-        Self { name, shape, vertical: VerticalFacts::default(), notes: Vec::new(), warnings: Vec::new() }
+        let vertical = VerticalFacts::default();
+        Self { name, shape, vertical, horizontal: None, notes: Vec::new(), warnings: Vec::new() }
+    }
+
+    /// Takes what the header of the file states about units where the surface's own part of it is silent, and shows both
+    /// where they contradict one another.
+    pub(crate) fn take_units(&mut self, header: &HeaderUnits, survey: Option<Domain>) {
+        let quote = |said: &Statement| format!("'{}'", said.quote);
+        let domain = self.vertical.domain.as_ref().map(|(domain, _)| *domain);
+        if let Some((said, other)) =
+            header.vertical(domain.or(self.vertical.unit.as_ref().map(|u| Domain::of_unit(u.0))), survey)
+        {
+            let (unit, words) = self.vertical.unit.get_or_insert_with(|| (said.unit, quote(said))).clone();
+            let against = [Some(said), other].into_iter().flatten().find(|said| said.unit != unit);
+            if let Some(against) = against {
+                self.warnings.push(Note::unless(
+                    format!(
+                        "the file gives the vertical unit twice: {} ({words}) and {} ({}); {} is taken",
+                        unit.symbol(),
+                        against.unit.symbol(),
+                        quote(against),
+                        unit.symbol()
+                    ),
+                    Setting::ZUnit.stated_as(against.unit.symbol()),
+                ));
+            }
+        }
+        if let Some((said, _)) = header.find(&[Quantity::Horizontal]).filter(|(said, _)| !said.unit.is_time()) {
+            self.horizontal.get_or_insert_with(|| (said.unit, quote(said)));
+        }
+    }
+
+    /// Brings X and Y to metres, by the option or the file's own words.
+    pub(crate) fn convert_places(&mut self, told: Option<ZUnit>) {
+        let told = told.map(|unit| (unit, "as told".to_owned()));
+        let stated = self.horizontal.take().map(|(unit, words)| (unit, format!("the file says {words}")));
+        let Some((unit, why)) = told.or(stated).filter(|(unit, _)| *unit != ZUnit::Metres && !unit.is_time()) else {
+            return;
+        };
+        let metres = unit.in_survey();
+        match &mut self.shape {
+            RawShape::Grid { grid, .. } => {
+                grid.origin *= metres;
+                grid.u_step *= metres;
+                grid.v_step *= metres;
+            }
+            RawShape::Points(points) => {
+                for point in points {
+                    point.xy = point.xy.map(|xy| xy * metres);
+                    point.normal = point.normal.map(|n| DVec3::new(n.x / metres, n.y / metres, n.z));
+                }
+            }
+            RawShape::Mesh(mesh) => {
+                mesh.vertices.iter_mut().for_each(|v| *v *= DVec3::new(metres, metres, 1.0));
+            }
+        }
+        let note = format!("X and Y are in {} and were converted to metres ({why})", unit.symbol());
+        self.notes.push(note);
     }
 }

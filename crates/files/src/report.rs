@@ -156,6 +156,8 @@ pub struct ImportReport {
     pub sheets: usize,
     /// Number of nodes with more than one depth.
     pub multivalued: usize,
+    /// What was assumed, each with what to state otherwise.
+    pub assumptions: Vec<Note>,
     /// Further facts for the user, one sentence each.
     pub notes: Vec<String>,
     /// What the user should check, one sentence each.
@@ -163,6 +165,13 @@ pub struct ImportReport {
     /// How many scattered points lie far off a map through their neighbours, and the warning that says so.
     #[serde(skip)]
     pub off_map: Option<(usize, Note)>,
+}
+
+impl ImportReport {
+    /// Every note whose remedy a user interface may reword.
+    pub fn notes_mut(&mut self) -> impl Iterator<Item = &mut Note> {
+        self.assumptions.iter_mut().chain(&mut self.warnings)
+    }
 }
 
 impl fmt::Display for ImportReport {
@@ -193,6 +202,7 @@ impl fmt::Display for ImportReport {
                 self.outside_survey, self.outside_range
             )?;
         }
+        self.assumptions.iter().try_for_each(|note| writeln!(f, "  assumed     {note}"))?;
         self.notes.iter().try_for_each(|note| writeln!(f, "  note        {note}"))?;
         self.warnings.iter().try_for_each(|warning| writeln!(f, "  warning     {warning}"))
     }

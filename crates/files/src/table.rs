@@ -5,39 +5,52 @@ use super::column::Column;
 use super::columns::{self, ColumnLayout};
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Field, Line, SourceFile};
+use crate::number::{self, NumberStyle};
 use glam::{DVec2, DVec3};
 use indexmap::IndexMap;
 use std::collections::HashMap;
-
-/// From here on a magnitude means "undefined" in the formats that write 1e30 for it.
-pub(super) const UNDEFINED: f64 = 1e29;
 
 /// How the lines of a table are cut into numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LineCut {
     /// The delimiter; `None` = blanks.
     pub delimiter: Option<char>,
-    /// Whether numbers have a decimal comma.
-    pub decimal_comma: bool,
+    /// How numbers are written.
+    pub style: NumberStyle,
 }
 
 impl LineCut {
-    /// How a line is cut: by `;`, tab or comma, whichever it has, in this order, else by blanks.
+    /// How lines are cut: by `;`, tab or comma, whichever the first has, in this order, else by blanks.
     ///
-    /// A comma between digits of a table cut by `;` or tab is a decimal comma.
-    pub(crate) fn of(line: &str) -> Self {
+    /// How numbers are written is seen from up to 2000 lines: commas of a table that they do not cut are decimal commas
+    /// or separate thousands.
+    pub(crate) fn of(rows: &[Line<'_>]) -> Self {
+        let first = rows.first().map_or("", |line| line.text);
         // A tab next to blanks belongs to a table with blanks; OpendTect separates by tabs alone.
-        let delimiter = [';', '\t', ','].into_iter().find(|&d| line.contains(d));
-        let delimiter =
-            if delimiter == Some('\t') && !line.contains("\t\t") && !line.contains('"') { None } else { delimiter };
-        let decimal_comma = delimiter != Some(',')
-            && text::fields(line, delimiter).iter().any(|f| {
-                f.text.split_once(',').is_some_and(|(a, b)| {
-                    a.bytes().last().is_some_and(|c| c.is_ascii_digit())
-                        && b.bytes().next().is_some_and(|c| c.is_ascii_digit())
-                }) && text::number(&f.text.replacen(',', ".", 1)).is_some()
-            });
-        Self { delimiter, decimal_comma }
+        let delimiter = [';', '\t', ','].into_iter().find(|&d| first.contains(d));
+        let is_blank = delimiter == Some('\t') && !first.contains("\t\t") && !first.contains('"');
+        let delimiter = if is_blank { None } else { delimiter };
+        // Numbers with a decimal comma between blanks.
+        let are_numbers = |first: &str| {
+            let mut tokens = first.split_whitespace();
+            tokens.clone().count() > 2 && tokens.all(|token| NumberStyle::Comma.number(token).is_some())
+        };
+        let delimiter = if delimiter == Some(',') && are_numbers(first) { None } else { delimiter };
+        let stride = (rows.len() / 2000).max(1);
+        let has_comma = delimiter != Some(',') && rows.iter().step_by(stride).any(|line| line.text.contains(','));
+        let style = if has_comma {
+            let fields: Vec<Field<'_>> =
+                rows.iter().step_by(stride).flat_map(|line| text::fields(line.text, delimiter)).collect();
+            NumberStyle::among(fields.iter().map(|field| field.text))
+        } else {
+            NumberStyle::Point
+        };
+        Self { delimiter, style }
+    }
+
+    /// How one line is cut.
+    pub(crate) fn of_line(line: &str) -> Self {
+        Self::of(&[Line { number: 1, text: line }])
     }
 
     /// The fields of a line.
@@ -47,15 +60,12 @@ impl LineCut {
 
     /// A field as a number.
     pub(crate) fn number(&self, field: &str) -> Option<f64> {
-        if self.decimal_comma { text::number(&field.replacen(',', ".", 1)) } else { text::number(field) }
+        self.style.number(field)
     }
 
-    /// A field as a vertical value: words for "nothing" are NaN.
-    fn vertical(&self, field: &str) -> Option<f64> {
-        match field.to_ascii_lowercase().as_str() {
-            "" | "-" | "null" | "none" | "na" | "n/a" | "undef" | "undefined" => Some(f64::NAN),
-            _ => self.number(field),
-        }
+    /// A field as a value that may be missing: NaN then.
+    pub(crate) fn value(&self, field: &str) -> Option<f64> {
+        number::or_missing(field, self.style)
     }
 }
 
@@ -146,6 +156,7 @@ pub(super) fn surfaces(
         .into_iter()
         .map(|(name, points)| RawSurface {
             vertical: vertical.clone(),
+            horizontal: layout.horizontal.clone(),
             notes: layout.notes.clone(),
             ..RawSurface::new(name, RawShape::Points(points))
         })
@@ -183,9 +194,9 @@ fn point_of(
             Column::X => x = Some(finite("X")?),
             Column::Y => y = Some(finite("Y")?),
             Column::Z => {
-                let value = cut.vertical(field.text);
+                let value = cut.value(field.text);
                 let value = value.ok_or_else(|| source.syntax(line.number, "a number for Z", field.text))?;
-                point.z = if value.abs() < UNDEFINED { value } else { f64::NAN };
+                point.z = if value.abs() < number::UNDEFINED { value } else { f64::NAN };
             }
             Column::Name => name = Some(field.text.to_string()),
             Column::Stick => point.stick = Some(finite("stick")?),
@@ -244,12 +255,13 @@ mod tests {
 
     #[test]
     fn the_cut_is_seen_in_the_line() {
-        assert_eq!(LineCut::of("1;2;3").delimiter, Some(';'));
-        assert_eq!(LineCut::of("1, 2, 3").delimiter, Some(','));
-        assert_eq!(LineCut::of("1 2\t3").delimiter, None);
-        let german = LineCut::of("1,5;2,25;3");
-        assert!(german.decimal_comma);
+        assert_eq!(LineCut::of_line("1;2;3").delimiter, Some(';'));
+        assert_eq!(LineCut::of_line("1, 2, 3").delimiter, Some(','));
+        assert_eq!(LineCut::of_line("1 2\t3").delimiter, None);
+        let german = LineCut::of_line("1,5;2,25;3");
         assert_eq!(german.number("2,25"), Some(2.25));
-        assert!(!LineCut::of("1,5").decimal_comma);
+        assert_eq!(LineCut::of_line("456.000,5;6.000.123;1.234").number("1.234"), Some(1234.0));
+        assert_eq!(LineCut::of_line("456000,5 6000123,25 -1234,5").number("-1234,5"), Some(-1234.5));
+        assert_eq!(LineCut::of_line("1,5").delimiter, Some(','));
     }
 }

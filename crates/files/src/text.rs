@@ -1,8 +1,9 @@
-//! A file in memory, its lines and its numbers.
+//! A file in memory, its lines and their fields.
 //!
 //! Lines may end in LF, CRLF or CR and in blanks; text that is not UTF-8 is read with replacement characters,
 //! so that a stray byte in a comment does no harm and one in a number is reported with its line.
 
+use super::number::{self, NumberStyle};
 use super::{FormatError, SurfaceKind};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -51,6 +52,12 @@ impl SourceFile {
         FormatError::Syntax { file: self.path.clone(), line, expected: expected.into(), found: excerpt(found) }
     }
 
+    /// A value of a grid; NaN where it is missing.
+    pub(crate) fn grid_value(&self, line: usize, token: &str) -> Result<f64, FormatError> {
+        let value = number::or_missing(token, NumberStyle::Point);
+        value.ok_or_else(|| self.syntax(line, "a grid value", token))
+    }
+
     /// An error of counts.
     pub(crate) fn length(&self, what: &'static str, expected: usize, found: usize) -> FormatError {
         FormatError::Length { file: self.path.clone(), what, expected, found }
@@ -97,18 +104,6 @@ pub(crate) fn excerpt(text: &str) -> String {
         short.push('…');
     }
     format!("'{short}'")
-}
-
-/// A number as programs write them: also with a Fortran exponent (`1.5D+03`).
-pub(crate) fn number(token: &str) -> Option<f64> {
-    let token = token.trim();
-    if let Ok(value) = token.parse() {
-        return Some(value);
-    }
-    if token.bytes().any(|b| matches!(b, b'd' | b'D')) && token.bytes().all(|b| b"0123456789+-.dD".contains(&b)) {
-        return token.replace(['d', 'D'], "e").parse().ok();
-    }
-    None
 }
 
 /// Splits a line at a delimiter, or at blanks; double quotes hold a field together.
@@ -176,14 +171,5 @@ mod tests {
             let found: Vec<_> = lines(text).map(|l| (l.number, l.text)).collect();
             assert_eq!(found, [(1, "a"), (2, "b"), (4, "c")]);
         }
-    }
-
-    #[test]
-    fn numbers_as_fortran_writes_them() {
-        assert_eq!(number("1.5D+03"), Some(1500.0));
-        assert_eq!(number(" -2e1 "), Some(-20.0));
-        assert!(number("nan").unwrap().is_nan());
-        assert_eq!(number("d"), None);
-        assert_eq!(number("12a"), None);
     }
 }

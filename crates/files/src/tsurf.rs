@@ -14,6 +14,7 @@ use super::text::{self, Line, SourceFile};
 use super::unit::{Domain, ZPositive, ZUnit};
 use super::write::WriteFailure;
 use super::{Codec, Format, FormatError, HorizonWriter};
+use crate::number;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use std::io::Write;
@@ -125,7 +126,7 @@ impl GocadObject {
     fn read_vertex(&mut self, source: &SourceFile, line: Line<'_>, rest: &str) -> Result<(), FormatError> {
         let mut words = rest.split_whitespace();
         let id = words.next().and_then(|w| w.parse().ok());
-        let mut coordinate = || words.next().and_then(text::number).filter(|v| v.is_finite() && v.abs() < 1e12);
+        let mut coordinate = || words.next().and_then(number::plain).filter(|v| v.is_finite() && v.abs() < 1e12);
         let (Some(id), Some(x), Some(y), Some(z)) = (id, coordinate(), coordinate(), coordinate()) else {
             return Err(source.syntax(line.number, "VRTX id x y z", line.text));
         };

@@ -6,18 +6,15 @@
 //! report says so. A result outside the survey's range is refused, with the option that would make it fit
 //! when one would.
 
+use super::number;
 use super::options::ImportOptions;
 use super::raw::{RawShape, VerticalFacts};
 use super::report::{Provenance, Settled};
-use super::unit::Domain;
-use super::unit::{ZPositive, ZUnit};
+use super::unit::{Domain, FOOT_M, ZPositive, ZUnit};
 use super::{FormatError, SurfaceKind};
 use std::path::Path;
 use survey::geometry::{VerticalAxis, VerticalUnit};
 use survey::remedy::{Note, Remedy, Setting};
-
-/// Metres in an international foot.
-const FOOT_M: f64 = 0.3048;
 
 /// How values are converted.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,13 +34,6 @@ pub(super) struct VerticalCounts {
     pub nulls: usize,
     pub range_in_file: [f64; 2],
     pub range: [f64; 2],
-}
-
-fn domain_of(unit: ZUnit) -> Domain {
-    match unit {
-        ZUnit::Milliseconds | ZUnit::Seconds => Domain::Time,
-        ZUnit::Metres | ZUnit::Feet => Domain::Depth,
-    }
 }
 
 impl VerticalRule {
@@ -68,7 +58,7 @@ impl VerticalRule {
             survey: survey.symbol(),
         };
         let unit = Settled::of(options.z_unit, facts.unit.clone(), own);
-        if domain_of(unit.value) != Domain::of(survey) {
+        if Domain::of_unit(unit.value) != Domain::of(survey) {
             let evidence = match &unit.source {
                 Provenance::File(words) => format!("says {words}"),
                 _ => "as told".into(),
@@ -82,19 +72,25 @@ impl VerticalRule {
             return Err(mismatch(found, format!("says {words}")));
         }
         let positive = Settled::of(options.z_positive, facts.positive.clone(), ZPositive::Down);
-        let of_unit = match unit.value {
-            ZUnit::Milliseconds | ZUnit::Metres => 1.0,
-            ZUnit::Seconds => 1000.0,
-            ZUnit::Feet => FOOT_M,
-        };
         let sign = if positive.value == ZPositive::Up { -1.0 } else { 1.0 };
-        Ok(Self {
-            unit,
-            positive,
-            factor: options.z_factor,
-            scale: options.z_factor * sign * of_unit,
-            null: options.null,
-        })
+        let scale = options.z_factor * sign * unit.value.in_survey();
+        Ok(Self { unit, positive, factor: options.z_factor, scale, null: options.null })
+    }
+
+    /// What was assumed, each with the option that states it.
+    pub(crate) fn assumptions(&self) -> Vec<Note> {
+        let mut found = Vec::new();
+        if self.unit.source == Provenance::Assumed {
+            let unit = self.unit.value;
+            let others = if unit.is_time() { "s" } else { "ft, usft or km" };
+            let fact = format!("the vertical unit is {}, the survey's: the file states none", unit.symbol());
+            found.push(Note::unless(fact, Setting::ZUnit.stated_as(others)));
+        }
+        if self.positive.source == Provenance::Assumed {
+            let fact = "vertical values grow downwards: the file does not say";
+            found.push(Note::unless(fact, Setting::ZPositive.stated_as("up")));
+        }
+        found
     }
 
     /// Converts in place; nulls become NaN.
@@ -104,7 +100,7 @@ impl VerticalRule {
         let widen = |range: &mut [f64; 2], v: f64| *range = [range[0].min(v), range[1].max(v)];
         for value in shape.values_mut() {
             counts.values += 1;
-            let is_null = self.null.is_some_and(|null| (*value - null).abs() <= 1e-6 * null.abs().max(1e-6));
+            let is_null = number::is_null(*value, self.null);
             let converted = *value * self.scale;
             if is_null || !converted.is_finite() || converted.abs() > 1e12 {
                 *value = f64::NAN;

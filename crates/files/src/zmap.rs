@@ -11,6 +11,7 @@ use super::raw::{RawShape, RawSurface, ReadContext};
 use super::text::{self, Line, SourceFile};
 use super::write::{self, WriteFailure};
 use super::{Codec, Format, FormatError, HorizonWriter, SurfaceKind, irap};
+use crate::number;
 use glam::DVec2;
 use std::io::Write;
 use survey::geometry::SurveyGeometry;
@@ -102,7 +103,7 @@ fn numbers(source: &SourceFile, line: Line<'_>) -> Result<Vec<Option<f64>>, Form
         .map(str::trim)
         .map(|f| match f {
             "" => Ok(None),
-            f => text::number(f).map(Some).ok_or_else(|| source.syntax(line.number, "a number", f)),
+            f => number::plain(f).map(Some).ok_or_else(|| source.syntax(line.number, "a number", f)),
         })
         .collect()
 }
@@ -120,7 +121,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     // The second null is text and may be anything.
     let mut parts = line.text.split(',').map(str::trim);
     let width = parts.next().and_then(|w| w.parse::<usize>().ok());
-    let null = parts.next().filter(|w| !w.is_empty()).or_else(|| parts.next()).and_then(text::number);
+    let null = parts.next().filter(|w| !w.is_empty()).or_else(|| parts.next()).and_then(number::plain);
     let line = header("NROW, NCOL, XMIN, XMAX, YMIN, YMAX")?;
     let &[Some(nrow), Some(ncol), Some(x0), Some(x1), Some(y0), Some(y1), ..] = numbers(source, line)?.as_slice()
     else {
@@ -136,9 +137,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
             _ => return Err(source.length("grid values", expected, free?.len())),
         },
     };
-    let is_null =
-        |v: f64| v.abs() >= super::table::UNDEFINED || null.is_some_and(|n| (v - n).abs() <= 1e-6 * n.abs().max(1.0));
-    let file: Vec<f64> = values.into_iter().map(|v| if is_null(v) { f64::NAN } else { v }).collect();
+    let file: Vec<f64> = values.into_iter().map(|v| if number::is_null(v, null) { f64::NAN } else { v }).collect();
     let name = title.text.trim_start_matches('@').split(',').next().unwrap_or("").trim();
     let name = name.trim_end_matches("HEADER").trim();
 
@@ -153,8 +152,7 @@ fn values(source: &SourceFile, data: &[Line<'_>], width: Option<usize>) -> Resul
     let mut found = Vec::new();
     for line in data {
         let mut add = |token: &str| {
-            let value = text::number(token).ok_or_else(|| source.syntax(line.number, "a grid value", token))?;
-            found.push(value);
+            found.push(source.grid_value(line.number, token)?);
             Ok::<(), FormatError>(())
         };
         match width {

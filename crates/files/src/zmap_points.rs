@@ -5,9 +5,9 @@
 //! new polygon. Lines beginning with `!` or `+` are comments.
 
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext};
-use super::table::UNDEFINED;
 use super::text::{self, Line, SourceFile};
 use super::{Codec, Format, FormatError};
+use crate::number::{self, NumberStyle};
 use glam::DVec2;
 
 pub(super) const CODEC: Codec = Codec {
@@ -51,7 +51,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         let (Some(from), Some(to)) = (character(4), character(5)) else {
             return Err(source.syntax(line.number, "a column with its first and last character", line.text));
         };
-        let null = fields.get(7).and_then(|f| text::number(f));
+        let null = fields.get(7).and_then(|f| number::plain(f));
         columns.push((fields[0].to_ascii_uppercase(), ColumnSpan { from: from - 1, to, null }));
     }
     let column = |word: &str| columns.iter().find(|(name, _)| name.starts_with(word)).map(|(_, place)| place);
@@ -61,16 +61,15 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     let segment = column("SEG");
     let mut points = Vec::new();
     for line in lines.filter(|l| !l.text.trim().is_empty() && !is_comment(l.text.trim_start())) {
-        let number = |place: &ColumnSpan| {
-            let end = place.to.min(line.text.len());
-            line.text.get(place.from..end).and_then(text::number)
-        };
+        let text_of = |place: &ColumnSpan| line.text.get(place.from..place.to.min(line.text.len()));
+        let number = |place: &ColumnSpan| text_of(place).and_then(number::plain);
         let wrong = |what: &str| source.syntax(line.number, format!("a number for {what}"), line.text);
         let coordinate = |place: &ColumnSpan, what: &str| {
             number(place).filter(|v| v.is_finite() && v.abs() < 1e12).ok_or_else(|| wrong(what))
         };
-        let value = number(z).ok_or_else(|| wrong("Z"))?;
-        let is_null = value.abs() >= UNDEFINED || z.null.is_some_and(|n| (value - n).abs() <= 1e-6 * n.abs().max(1.0));
+        let value =
+            text_of(z).and_then(|text| number::or_missing(text, NumberStyle::Point)).ok_or_else(|| wrong("Z"))?;
+        let is_null = number::is_null(value, z.null);
         points.push(RawPoint {
             xy: Some(DVec2::new(coordinate(x, "X")?, coordinate(y, "Y")?)),
             z: if is_null { f64::NAN } else { value },

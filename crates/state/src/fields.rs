@@ -29,6 +29,7 @@ pub fn field(setting: Setting) -> Option<&'static str> {
         Setting::Shape => "Shape",
         Setting::ValueOrder => "Order of values",
         Setting::MdUnit => "Lengths along the well",
+        Setting::XyUnit => "Unit of X and Y",
         Setting::Datum => "Datum above sea level, m",
         Setting::Head => "Head X, Y, m",
         Setting::WellInFile => "Name in the files",

@@ -64,6 +64,8 @@ pub enum Setting {
     ValueOrder,
     /// Unit of lengths along a well.
     MdUnit,
+    /// Unit of X and Y of a horizon, a fault or a well.
+    XyUnit,
     /// What is done with a rotated grid that a format cannot hold.
     RotatedGrids,
     /// Height of a well's datum.
@@ -107,6 +109,7 @@ impl Setting {
             Self::Shape => "shape",
             Self::ValueOrder => "order of values",
             Self::MdUnit => "unit along the well",
+            Self::XyUnit => "unit of X and Y",
             Self::RotatedGrids => "rotated grids",
             Self::Datum => "datum above sea level",
             Self::Head => "X and Y of the head",

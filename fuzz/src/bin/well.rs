@@ -5,7 +5,7 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use files::well::{WellOptions, describe, parse_checkshot, parse_deviation, parse_las, parse_tops};
+use files::well::{WellOptions, WellReport, describe, parse_checkshot, parse_deviation, parse_las, parse_tops};
 use survey::well::WellPath;
 
 static KIND: LazyLock<String> = LazyLock::new(|| std::env::var("FUZZ_FORMAT").unwrap_or_default());
@@ -13,7 +13,7 @@ static PATH: LazyLock<WellPath> = LazyLock::new(fuzz::well_path);
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| {
     let text = String::from_utf8_lossy(data);
-    let (file, options, mut notes) = (Path::new("input"), WellOptions::default(), Vec::new());
+    let (file, options, mut notes) = (Path::new("input"), WellOptions::default(), WellReport::default());
     let _ = describe(file, &text);
     match KIND.as_str() {
         "deviation" => drop(parse_deviation(file, &text, &options)),

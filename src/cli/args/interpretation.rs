@@ -218,8 +218,11 @@ pub(in crate::cli) struct ReadingArgs {
     #[arg(long)]
     pub(in crate::cli) format: Option<String>,
     /// Vertical unit of the file [default: as the file says, else the project's]
-    #[arg(long, value_name = "ms|s|m|ft")]
+    #[arg(long, value_name = "ms|s|us|m|ft|usft|km|in")]
     pub(in crate::cli) z_unit: Option<String>,
+    /// Unit of X and Y of the file [default: as the file says, else m]
+    #[arg(long, value_name = "m|ft|usft|km")]
+    pub(in crate::cli) xy_unit: Option<String>,
     /// Direction in which the values of the file increase [default: as the file says, else down]
     #[arg(long, value_name = "down|up")]
     pub(in crate::cli) z_positive: Option<String>,

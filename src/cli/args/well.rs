@@ -10,9 +10,11 @@ pub(in crate::cli) enum WellAction {
                       \n  petroglyph well add north.petro A-1.csv --name A-1 --kb 25 --tops tops.csv --las \
                       A-1.las\
                       \n  petroglyph well add north.petro A-2.dev --name A-2 --head 460000,5930000 --kb 25 \
-                      --checkshot A-2.ckb\n\
-                      \nThe deviation's header names its columns: md, inclination, azimuth (minimum \
-                      curvature); or x, y, tvdss; or dx, dy, tvd.")]
+                      --checkshot A-2.ckb\
+                      \n  petroglyph well add mine.petro survey.csv --name DDH-1 --collar collar.csv --tops \
+                      lithology.csv\n\
+                      \nThe deviation's header names its columns, or --columns does: x, y, tvdss (places, which win); md, \
+                      inclination, azimuth (minimum curvature); or dx, dy, tvd. Tops may be intervals (from, to, rock).")]
     Add(Box<WellAddArgs>),
     /// List the wells
     #[command(after_help = "Example:\n  petroglyph well list north.petro")]
@@ -82,9 +84,19 @@ pub(in crate::cli) struct WellAddArgs {
     /// Height of the datum (kelly bushing) above sea level in metres [default: as the deviation says]
     #[arg(long = "kb", value_name = "M", allow_hyphen_values = true)]
     pub(in crate::cli) datum_m: Option<f64>,
-    /// Unit of depths whose columns do not state one [default: m]
-    #[arg(long, value_name = "m|ft")]
+    /// Collars of drill holes (hole, X, Y, elevation, length), where the deviation is a survey of them
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) collar: Option<PathBuf>,
+    /// Columns of the deviation, in order, instead of what it says: md, inc, dip, azi, x, y, dx, dy, tvd, tvdss, z, well,
+    /// and - for what is not read
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub(in crate::cli) columns: Option<String>,
+    /// Unit of depths whose columns do not state one [default: as the file says, else m]
+    #[arg(long, visible_alias = "unit", value_name = "m|ft|usft|km")]
     pub(in crate::cli) md_unit: Option<String>,
+    /// Unit of X and Y whose columns do not state one [default: as the file says, else m]
+    #[arg(long, value_name = "m|ft|usft|km")]
+    pub(in crate::cli) xy_unit: Option<String>,
     /// Name of the well in files that hold several [default: --name]
     #[arg(long, value_name = "NAME")]
     pub(in crate::cli) well_in_file: Option<String>,

@@ -14,7 +14,8 @@ use eframe::egui::{
     Align, Button, CollapsingHeader, Color32, ComboBox, Context, DragValue, Grid, Layout, Mesh, Pos2, Rect, Role,
     ScrollArea, Sense, Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
-use files::segy::{FileUnit, KeptDuplicate, LengthUnit, LineSource, SegyInfo, SegyOptions, TraceWeight};
+use files::ZUnit;
+use files::segy::{KeptDuplicate, LengthUnit, LineSource, SegyInfo, SegyOptions, TraceWeight};
 use glam::DVec2;
 use image::RgbaImage;
 use project::command::ImportVolume;
@@ -129,8 +130,8 @@ impl Import {
             ui.add_space(6.0);
             Grid::new("units").num_columns(2).min_col_width(LABELS).spacing([12.0, 7.0]).show(ui, |ui| {
                 let found = info.map_or(AS_FOUND.to_owned(), |info| format!("{} (found)", info.vertical_unit.symbol()));
-                let units =
-                    [FileUnit::Milliseconds, FileUnit::Metres, FileUnit::Feet].map(|unit| (unit, unit.symbol()));
+                let units = [ZUnit::Milliseconds, ZUnit::Metres, ZUnit::Feet, ZUnit::SurveyFeet]
+                    .map(|unit| (unit, unit.symbol()));
                 form::choice(ui, Setting::VerticalUnit, &mut options.vertical_unit, &found, &units);
                 let combo = ComboBox::from_id_salt("polarity").selected_text(polarity.to_string());
                 let both = [Polarity::Normal, Polarity::Reverse].map(|choice| (choice, choice.to_string()));
@@ -251,7 +252,7 @@ fn more(ui: &mut Ui, options: &mut SegyOptions) {
     Grid::new("more").num_columns(2).min_col_width(LABELS - ui.spacing().indent).spacing([12.0, 7.0]).show(ui, |ui| {
         form::number(ui, Setting::Interval, &mut options.interval);
         form::number(ui, Setting::Start, &mut options.start);
-        let units = [LengthUnit::Metres, LengthUnit::Feet].map(|unit| (unit, unit.symbol()));
+        let units = LengthUnit::ALL.map(|unit| (unit, unit.symbol()));
         form::choice(ui, Setting::CoordinateUnit, &mut options.coordinate_unit, AS_FOUND, &units);
         let mut scalar = options.coordinate_scalar.map(f64::from);
         form::number(ui, Setting::CoordinateScalar, &mut scalar);

@@ -101,8 +101,7 @@ impl Interpretation {
     fn form(&mut self, ui: &mut Ui, session: &Session, kind: FileContent) {
         Grid::new("interpretation").num_columns(2).spacing([12.0, 8.0]).show(ui, |ui| {
             form::row(ui, "Name", |ui| ui.add(TextEdit::singleline(&mut self.name).desired_width(240.0)));
-            let units =
-                [ZUnit::Milliseconds, ZUnit::Seconds, ZUnit::Metres, ZUnit::Feet].map(|unit| (unit, unit.symbol()));
+            let units = ZUnit::ALL.map(|unit| (unit, unit.symbol()));
             form::choice(ui, Setting::ZUnit, &mut self.options.z_unit, form::AS_FILE, &units);
             let signs = [(ZPositive::Down, "positive down"), (ZPositive::Up, "positive up")];
             form::choice(ui, Setting::ZPositive, &mut self.options.z_positive, form::AS_FILE, &signs);
@@ -175,6 +174,8 @@ impl Interpretation {
                     ui.end_row();
                 }
             }
+            let lengths = ZUnit::LENGTHS.map(|unit| (unit, unit.symbol()));
+            form::choice(ui, Setting::XyUnit, &mut options.xy_unit, form::AS_FILE, &lengths);
             form::number(ui, Setting::Null, &mut options.null);
             let by = [(PlaceBy::Lines, "line numbers"), (PlaceBy::World, "X and Y")];
             form::choice(ui, Setting::PlaceBy, &mut options.place_by, "line numbers, if X and Y agree", &by);

@@ -11,7 +11,7 @@ use crate::work::folder::{Folder, FolderListing};
 use crate::work::scan::Reading;
 use eframe::egui::{Button, Context, Grid, ScrollArea, Spinner, TextEdit, Ui};
 use files::ZUnit;
-use files::well::{WellFiles, WellOptions, read_well};
+use files::well::{WellColumn, WellFiles, WellOptions, read_well};
 use project::command::{AddWell, Command};
 use state::fields;
 use std::path::{Path, PathBuf};
@@ -34,6 +34,10 @@ pub(crate) struct WellDialogue {
     head: String,
     in_file: String,
     md_unit: Option<ZUnit>,
+    xy_unit: Option<ZUnit>,
+    collar: String,
+    /// Columns of the deviation as they are typed.
+    columns: String,
     beside: Folder,
     reading: Reading<(WellFiles, WellOptions), Vec<String>>,
 }
@@ -51,7 +55,7 @@ impl WellDialogue {
         self.reading.follow(ctx, work, "Reading the well", &asked, move |_| {
             let (_, report) =
                 read_well(&files_read, &options_read).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
-            Ok(report.notes.iter().chain(&report.warnings).map(fields::note).collect())
+            Ok(report.notes.iter().chain(&report.assumptions).chain(&report.warnings).map(fields::note).collect())
         });
         let modal = dialogue::show(ctx, "well", |ui| {
             ui.set_width(620.0_f32.min(ctx.content_rect().width() - 60.0));
@@ -93,6 +97,13 @@ impl WellDialogue {
             let beside = self.beside.listing(ui.ctx(), folder);
             for (name, hint, endings, text) in [
                 ("Name", "", &[][..], &mut self.name),
+                ("Collars", "CSV of holes, X, Y, elevation, for surveys of drill holes", &TABLES[..], &mut self.collar),
+                (
+                    form::name_of(Setting::Columns),
+                    "as the file says, or md, inc, azi, x, y, tvdss, -",
+                    &[][..],
+                    &mut self.columns,
+                ),
                 ("Tops", "CSV of measured depth and name; may stay empty", &TABLES[..], &mut self.tops),
                 ("Logs", "LAS files, separated by semicolons; may stay empty", &["las"][..], &mut self.las),
                 (
@@ -114,8 +125,9 @@ impl WellDialogue {
                 });
                 ui.end_row();
             }
-            let units = [ZUnit::Metres, ZUnit::Feet].map(|unit| (unit, unit.symbol()));
+            let units = ZUnit::LENGTHS.map(|unit| (unit, unit.symbol()));
             form::choice(ui, Setting::MdUnit, &mut self.md_unit, "as the file says, or metres", &units);
+            form::choice(ui, Setting::XyUnit, &mut self.xy_unit, "as the file says, or metres", &units);
         });
     }
 
@@ -130,9 +142,17 @@ impl WellDialogue {
         });
     }
 
+    /// The columns that are typed, or the word that is none.
+    fn stated_columns(&self) -> Option<Result<Vec<WellColumn>, String>> {
+        (!self.columns.trim().is_empty()).then(|| WellColumn::parse_list(self.columns.trim()))
+    }
+
     /// The first entry that cannot be understood.
     fn unclear(&self) -> Option<String> {
         let options = self.options();
+        if let Some(Err(unknown)) = self.stated_columns() {
+            return Some(format!("“{unknown}” is no column of a well"));
+        }
         let is_unclear = |text: &str, is_known: bool| !text.trim().is_empty() && !is_known;
         if is_unclear(&self.kb, options.datum_m.is_some()) {
             return Some(format!("“{}” is no height in metres", self.kb.trim()));
@@ -145,6 +165,7 @@ impl WellDialogue {
         let path = |text: &str| (!text.trim().is_empty()).then(|| PathBuf::from(text.trim()));
         WellFiles {
             deviation: self.deviation.clone(),
+            collar: path(&self.collar),
             tops: path(&self.tops),
             las: self.las.split(';').filter_map(path).collect(),
             checkshot: path(&self.checkshot),
@@ -158,6 +179,8 @@ impl WellDialogue {
             head: numbers(&self.head),
             datum_m: numbers(&self.kb).map(|[kb]: [f64; 1]| kb),
             md_unit: self.md_unit,
+            xy_unit: self.xy_unit,
+            columns: self.stated_columns().and_then(Result::ok),
         }
     }
 }

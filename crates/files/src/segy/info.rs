@@ -7,11 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::candidate::{Candidate, LineSummary};
 use super::sample::{ByteOrder, SampleFormat};
 use super::text::TextEncoding;
+use crate::unit::ZUnit;
 use survey::geometry::LineAxis;
 use survey::remedy::Note;
-
-/// Metres in an international foot.
-pub(super) const METRES_PER_FOOT: f64 = 0.3048;
 
 /// A length or an area in words: two decimals, or three figures where it is less than a tenth.
 pub(super) fn in_figures(value: f64) -> String {
@@ -22,36 +20,18 @@ pub(super) fn in_figures(value: f64) -> String {
     format!("{value:.decimals$}").trim_end_matches('0').to_owned()
 }
 
-/// Unit of the vertical axis in a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum FileUnit {
-    /// Two-way travel time in ms.
-    #[serde(rename = "ms")]
-    Milliseconds,
-    /// Depth in metres.
-    #[serde(rename = "m")]
-    Metres,
-    /// Depth in international feet (0.3048 m).
-    #[serde(rename = "ft")]
-    Feet,
-}
-
-impl FileUnit {
-    /// `ms`, `m` or `ft`.
-    pub fn symbol(self) -> &'static str {
-        match self {
-            Self::Milliseconds => "ms",
-            Self::Metres => "m",
-            Self::Feet => "ft",
-        }
-    }
-
-    pub(super) fn description(self) -> &'static str {
-        match self {
-            Self::Milliseconds => "two-way time in ms",
-            Self::Metres => "depth in metres",
-            Self::Feet => "depth in feet",
-        }
+/// The vertical axis in a unit, in words.
+pub(super) fn axis_in(unit: ZUnit) -> &'static str {
+    match unit {
+        ZUnit::Metres => "depth in metres",
+        ZUnit::Feet => "depth in feet",
+        ZUnit::SurveyFeet => "depth in US survey feet",
+        ZUnit::Kilometres => "depth in kilometres",
+        ZUnit::Centimetres => "depth in centimetres",
+        ZUnit::Inches => "depth in inches",
+        ZUnit::Seconds => "two-way time in s",
+        ZUnit::Microseconds => "two-way time in us",
+        ZUnit::Milliseconds => "two-way time in ms",
     }
 }
 
@@ -64,23 +44,36 @@ pub enum LengthUnit {
     /// International feet (0.3048 m).
     #[serde(rename = "ft")]
     Feet,
+    /// US survey feet (1200/3937 m).
+    #[serde(rename = "usft")]
+    SurveyFeet,
 }
 
 impl LengthUnit {
-    /// `m` or `ft`.
-    pub fn symbol(self) -> &'static str {
+    /// Every unit.
+    pub const ALL: [Self; 3] = [Self::Metres, Self::Feet, Self::SurveyFeet];
+
+    /// That unit, if it is one of X and Y.
+    pub(super) fn of(unit: ZUnit) -> Option<Self> {
+        Self::ALL.into_iter().find(|length| length.unit() == unit)
+    }
+
+    fn unit(self) -> ZUnit {
         match self {
-            Self::Metres => "m",
-            Self::Feet => "ft",
+            Self::Metres => ZUnit::Metres,
+            Self::Feet => ZUnit::Feet,
+            Self::SurveyFeet => ZUnit::SurveyFeet,
         }
+    }
+
+    /// `m`, `ft` or `usft`.
+    pub fn symbol(self) -> &'static str {
+        self.unit().symbol()
     }
 
     /// Length of the unit in metres.
     pub fn metres(self) -> f64 {
-        match self {
-            Self::Metres => 1.0,
-            Self::Feet => METRES_PER_FOOT,
-        }
+        self.unit().in_survey()
     }
 }
 
@@ -159,7 +152,7 @@ pub struct SegyInfo {
     /// Value of the first sample in `vertical_unit`.
     pub start: f64,
     /// Unit of the vertical axis in the file.
-    pub vertical_unit: FileUnit,
+    pub vertical_unit: ZUnit,
     /// Format of the samples.
     pub sample_format: SampleFormat,
     /// Code of the format at byte 3225.

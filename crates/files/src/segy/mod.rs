@@ -77,7 +77,7 @@ pub use bytes::Stamp;
 pub use candidate::{Candidate, LineSummary, Verdict};
 pub use error::{SegyError, SegyProblem};
 pub use file::SegyFile;
-pub use info::{BytePositions, FileUnit, GeometrySummary, LengthUnit, SegyInfo, SurveyCorner};
+pub use info::{BytePositions, GeometrySummary, LengthUnit, SegyInfo, SurveyCorner};
 pub use number_type::NumberType;
 pub use options::{KeptDuplicate, LineSource, SegyOptions, TraceWeight};
 pub use read::{Amplitudes, SegyVolume};

@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::info::{FileUnit, LengthUnit};
+use super::info::LengthUnit;
 use super::number_type::NumberType;
 use super::sample::{ByteOrder, SampleFormat};
+use crate::unit::ZUnit;
 
 /// What the trace weighting factor N at byte 169 does. The standard (revisions 1 and 2) calls it 2^−N volts
 /// for the least significant bit; some programs multiply by 2^N. Factors beyond ±50 are no weights and are
@@ -88,7 +89,7 @@ pub struct SegyOptions {
     /// Value of the first sample in the vertical unit.
     pub start: Option<f64>,
     /// Unit of the vertical axis.
-    pub vertical_unit: Option<FileUnit>,
+    pub vertical_unit: Option<ZUnit>,
     /// Unit of X and Y.
     pub coordinate_unit: Option<LengthUnit>,
     /// Size of square bins in metres. When it is stated, X and Y are ignored and the lattice begins at the

@@ -8,8 +8,10 @@ use super::columns::{Columns, HeaderColumn};
 use super::error::SegyProblem;
 use super::frame::FileLayout;
 use super::header::{Field, at};
-use super::info::{FileUnit, Findings, LengthUnit, METRES_PER_FOOT};
+use super::info::{Findings, LengthUnit, axis_in};
 use super::vertical_words::{Said, Words};
+use crate::unit::ZUnit;
+use crate::unit::words::{HeaderUnits, Quantity};
 use survey::geometry::{VerticalAxis, VerticalUnit};
 use survey::remedy::{Note, Setting};
 
@@ -21,7 +23,7 @@ const MAX_LENGTHENING: usize = 4;
 pub(super) struct Vertical {
     pub first: f64,
     pub interval: f64,
-    pub unit: FileUnit,
+    pub unit: ZUnit,
     /// Samples of the volume: those of a trace, and what later starts add.
     pub samples: usize,
     /// Samples by which each trace starts later than `first`; none if all start together.
@@ -49,7 +51,7 @@ impl Vertical {
         };
         let unit = unit(frame, micro, options, findings);
         let mut interval = micro / 1000.0;
-        if options.interval.is_none() && unit != FileUnit::Milliseconds && micro < FEWEST_THOUSANDTHS {
+        if options.interval.is_none() && !unit.is_time() && micro < FEWEST_THOUSANDTHS {
             interval = micro;
             findings.assumption(Note::unless(
                 format!(
@@ -74,11 +76,8 @@ impl Vertical {
 
     /// The same axis in ms or m.
     pub(super) fn axis(&self) -> VerticalAxis {
-        let (factor, unit) = match self.unit {
-            FileUnit::Milliseconds => (1.0, VerticalUnit::Milliseconds),
-            FileUnit::Metres => (1.0, VerticalUnit::Metres),
-            FileUnit::Feet => (METRES_PER_FOOT, VerticalUnit::Metres),
-        };
+        let factor = self.unit.in_survey();
+        let unit = if self.unit.is_time() { VerticalUnit::Milliseconds } else { VerticalUnit::Metres };
         VerticalAxis { first: self.first * factor, interval: self.interval * factor, count: self.samples, unit }
     }
 }
@@ -157,31 +156,31 @@ impl Plausibility {
     }
 
     /// Whether one of both kinds is plausible and the other not: the unit for it, where depths are in `in_depth`.
-    fn only(&self, in_depth: FileUnit) -> Option<FileUnit> {
+    fn only(&self, in_depth: ZUnit) -> Option<ZUnit> {
         match (self.time, self.depth) {
-            (true, false) => Some(FileUnit::Milliseconds),
+            (true, false) => Some(ZUnit::Milliseconds),
             (false, true) => Some(in_depth),
             _ => None,
         }
     }
 
     /// Samples, interval and length in words.
-    fn length(&self, unit: FileUnit) -> String {
-        let step = self.steps[usize::from(unit != FileUnit::Milliseconds)];
+    fn length(&self, unit: ZUnit) -> String {
+        let step = self.steps[usize::from(!unit.is_time())];
         let long = step * self.samples.saturating_sub(1) as f64;
         format!("{} samples every {step} {1} span {long} {1}", self.samples, unit.symbol())
     }
 
-    fn tell(&self, unit: FileUnit, findings: &mut Findings) {
+    fn tell(&self, unit: ZUnit, findings: &mut Findings) {
         let words = |is_plausible: bool| if is_plausible { "plausible" } else { "not plausible" };
         findings.evidence(format!(
             "length of a trace: {} ({}), or as a depth {} ({})",
-            self.length(FileUnit::Milliseconds),
+            self.length(ZUnit::Milliseconds),
             words(self.time),
-            self.length(FileUnit::Metres),
+            self.length(ZUnit::Metres),
             words(self.depth)
         ));
-        let is_plausible = if unit == FileUnit::Milliseconds { self.time } else { self.depth };
+        let is_plausible = if unit.is_time() { self.time } else { self.depth };
         if !is_plausible {
             findings.warning(Note::unless(
                 format!("{}, which is unlikely", self.length(unit)),
@@ -192,8 +191,8 @@ impl Plausibility {
 }
 
 /// The units to state where the axis is not in this one.
-fn others(unit: FileUnit) -> &'static str {
-    if unit == FileUnit::Milliseconds { "m or ft" } else { "ms" }
+fn others(unit: ZUnit) -> &'static str {
+    if unit.is_time() { "m, ft or usft" } else { "ms" }
 }
 
 /// Sample intervals of two-way time, from profilers of the sea floor to refraction data.
@@ -213,13 +212,13 @@ const LENGTH: u8 = 2;
 /// The unit by what the sentences of the text header weigh, for either kind, together with the length of a trace.
 fn weighed(
     words: &Words,
-    likely: Option<FileUnit>,
-    in_depth: FileUnit,
+    likely: Option<ZUnit>,
+    in_depth: ZUnit,
     plausibility: &Plausibility,
     findings: &mut Findings,
-) -> FileUnit {
-    let time = FileUnit::Milliseconds;
-    let weight = |said: &Option<Said>, unit: FileUnit| {
+) -> ZUnit {
+    let time = ZUnit::Milliseconds;
+    let weight = |said: &Option<Said>, unit: ZUnit| {
         said.as_ref().map_or(0, |said| said.weight as u8) + if likely == Some(unit) { LENGTH } else { 0 }
     };
     let unit = if weight(&words.depth, in_depth) > weight(&words.time, time) { in_depth } else { time };
@@ -239,18 +238,18 @@ fn weighed(
                 format!(
                     "the text header speaks {here}of {} (\"{against}\"); the axis is taken as {}{alone}",
                     word(unit != time),
-                    unit.description(),
+                    axis_in(unit),
                 ),
                 Setting::VerticalUnit.stated_as(others(unit)),
             ));
         }
         (None, None) => {
             let why = match unit {
-                FileUnit::Milliseconds => String::new(),
-                _ => format!(", and {} would be unlikely", plausibility.length(FileUnit::Milliseconds)),
+                ZUnit::Milliseconds => String::new(),
+                _ => format!(", and {} would be unlikely", plausibility.length(ZUnit::Milliseconds)),
             };
             findings.assumption(Note::unless(
-                format!("the vertical axis is {}: the file does not say{why}", unit.description()),
+                format!("the vertical axis is {}: the file does not say{why}", axis_in(unit)),
                 Setting::VerticalUnit.stated_as(others(unit)),
             ));
         }
@@ -260,27 +259,37 @@ fn weighed(
 
 /// The unit of the axis: stated; or written in the text next to the interval; or by what the sentences of the text and
 /// the length of a trace weigh.
-fn unit(frame: &FileLayout, micro: f64, options: &SegyOptions, findings: &mut Findings) -> FileUnit {
+fn unit(frame: &FileLayout, micro: f64, options: &SegyOptions, findings: &mut Findings) -> ZUnit {
     if let Some(unit) = options.vertical_unit {
-        findings.evidence(format!("vertical axis: {}, as stated", unit.description()));
+        findings.evidence(format!("vertical axis: {}, as stated", axis_in(unit)));
         return unit;
     }
     let in_depth = match frame.binary.measurement {
-        2 => FileUnit::Feet,
-        _ => FileUnit::Metres,
+        2 => ZUnit::Feet,
+        _ => ZUnit::Metres,
     };
     let words = Words::find(frame.text.iter().chain(&frame.extended_text), micro / 1000.0);
+    if let Some([(unit, quote), (other, against)]) = &words.contradiction {
+        findings.warning(Note::unless(
+            format!(
+                "the text header gives the unit of the vertical axis twice: {} (\"{quote}\") and {} (\"{against}\")",
+                unit.symbol(),
+                other.symbol()
+            ),
+            Setting::VerticalUnit.stated_as(format_args!("{} or {}", unit.symbol(), other.symbol())),
+        ));
+    }
     let plausibility = Plausibility::of(micro, frame.samples);
     let likely = plausibility.only(in_depth);
     let unit = match &words.unit {
         Some((unit, quote)) => {
-            findings.evidence(format!("vertical axis: {}, text header: \"{quote}\"", unit.description()));
+            findings.evidence(format!("vertical axis: {}, text header: \"{quote}\"", axis_in(*unit)));
             *unit
         }
         None => weighed(&words, likely, in_depth, &plausibility, findings),
     };
     plausibility.tell(unit, findings);
-    if unit != FileUnit::Milliseconds && unit != in_depth && frame.binary.measurement != 0 {
+    if !unit.is_time() && unit != in_depth && frame.binary.measurement != 0 {
         findings.warning(Note::unless(
             format!(
                 "the text header gives the vertical axis in {} and byte 3255 says {}; the text is followed",
@@ -298,7 +307,7 @@ fn starts(
     columns: &Columns,
     dead: &[bool],
     interval: f64,
-    unit: FileUnit,
+    unit: ZUnit,
     options: &SegyOptions,
     findings: &mut Findings,
 ) -> Result<(f64, Option<Vec<u32>>), SegyProblem> {
@@ -340,7 +349,7 @@ fn starts(
     if shifts.is_some() {
         findings.warning(format!(
             "traces start at different {}: the volume begins at the earliest, {base} {}, and later traces are padded with zeros",
-            if unit == FileUnit::Milliseconds { "times" } else { "depths" },
+            if unit.is_time() { "times" } else { "depths" },
             unit.symbol()
         ));
     }
@@ -364,25 +373,52 @@ pub(super) fn scaled(field: i32, scalar: i32) -> f64 {
     }
 }
 
-/// The unit of X and Y: stated, or byte 3255.
+/// The unit of X and Y: stated, or byte 3255, or where that is neither, or a kind of foot, the text header.
 pub(super) fn coordinate_unit(frame: &FileLayout, options: &SegyOptions) -> LengthUnit {
-    match (options.coordinate_unit, frame.binary.measurement) {
-        (Some(unit), _) => unit,
-        (None, 2) => LengthUnit::Feet,
-        (None, _) => LengthUnit::Metres,
+    let said = said_of_coordinates(frame).map(|(unit, _)| unit);
+    match (options.coordinate_unit, frame.binary.measurement, said) {
+        (Some(unit), _, _) => unit,
+        (None, 2, Some(said)) if said != LengthUnit::Metres => said,
+        (None, 2, _) => LengthUnit::Feet,
+        (None, 1, _) => LengthUnit::Metres,
+        (None, _, said) => said.unwrap_or(LengthUnit::Metres),
     }
+}
+
+/// The unit of X and Y in the text header, and the line that says it.
+fn said_of_coordinates(frame: &FileLayout) -> Option<(LengthUnit, String)> {
+    let header = HeaderUnits::of(frame.text.iter().chain(&frame.extended_text).map(String::as_str));
+    let (said, _) = header.find(&[Quantity::Horizontal])?;
+    Some((LengthUnit::of(said.unit)?, said.quote.clone()))
 }
 
 /// Says why X and Y are in that unit.
 pub(super) fn note_coordinate_unit(frame: &FileLayout, options: &SegyOptions, findings: &mut Findings) {
-    match (options.coordinate_unit, frame.binary.measurement) {
-        (Some(unit), _) => findings.evidence(format!("X and Y in {}, as stated", unit.symbol())),
-        (None, 1) => {}
-        (None, 2) => findings.assumption(Note::unless(
+    let unit = coordinate_unit(frame, options);
+    let said = said_of_coordinates(frame);
+    if let Some((said, quote)) = said.as_ref().filter(|(said, _)| *said != unit && options.coordinate_unit.is_none()) {
+        findings.warning(Note::unless(
+            format!(
+                "the text header gives X and Y in {} (\"{quote}\") and byte 3255 says {}; {} is taken",
+                said.symbol(),
+                unit.symbol(),
+                unit.symbol()
+            ),
+            Setting::CoordinateUnit.stated_as(said.symbol()),
+        ));
+        return;
+    }
+    match (options.coordinate_unit, frame.binary.measurement, said) {
+        (Some(unit), _, _) => findings.evidence(format!("X and Y in {}, as stated", unit.symbol())),
+        (None, 1, _) => {}
+        (None, _, Some((_, quote))) => {
+            findings.evidence(format!("X and Y in {}, text header: \"{quote}\"", unit.symbol()));
+        }
+        (None, 2, None) => findings.assumption(Note::unless(
             "X and Y are in feet, as byte 3255 is 2; the project converts them to metres",
-            Setting::CoordinateUnit.stated_as("m"),
+            Setting::CoordinateUnit.stated_as("m or usft"),
         )),
-        (None, other) => findings.assumption(Note::unless(
+        (None, other, None) => findings.assumption(Note::unless(
             format!("X and Y are in metres: byte 3255 holds {other}, neither 1 (metres) nor 2 (feet)"),
             Setting::CoordinateUnit.stated(),
         )),

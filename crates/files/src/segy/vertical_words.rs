@@ -4,7 +4,8 @@
 //! method (`PSDM`, `TIME MIGRATION`), and that more than a mention (`DEPTH`, `500 MS`). Depths of the acquisition
 //! (`CABLE DEPTH 7 M`, `COMMON DEPTH POINT`), names of files and templates that offer both weigh nothing.
 
-use super::info::FileUnit;
+use crate::unit::ZUnit;
+use crate::unit::words::{self, Quantity};
 
 /// How much a sentence weighs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -29,7 +30,9 @@ pub(super) struct Said {
 pub(super) struct Words {
     /// The unit that is said to be that of the axis (`Z UNITS: FEET`), or stands beside the number that is the sample
     /// interval.
-    pub unit: Option<(FileUnit, String)>,
+    pub unit: Option<(ZUnit, String)>,
+    /// Two sentences that say different units.
+    pub contradiction: Option<[(ZUnit, String); 2]>,
     pub time: Option<Said>,
     pub depth: Option<Said>,
 }
@@ -37,8 +40,6 @@ pub(super) struct Words {
 /// Words beside TIME or DEPTH that make it the vertical axis.
 const AXIS: [&str; 12] =
     ["DOMAIN", "AXIS", "RANGE", "MIN", "MAX", "MINIMUM", "MAXIMUM", "SECTION", "STEP", "UNIT", "UNITS", "STRETCHED"];
-/// Words before UNIT that make it the unit of the axis.
-const OF_AXIS: [&str; 6] = ["VERTICAL", "Z", "DEPTH", "TIME", "SAMPLING", "INTERVAL"];
 /// Words before TIME or DEPTH that make it the domain of the result.
 const INTO: [&str; 3] = ["IN", "TO", "INTO"];
 /// What is measured in depth by those who acquire data.
@@ -76,7 +77,6 @@ impl Words {
     /// Reads the lines of a header; `interval` is the sample interval as the file holds it, in thousandths.
     pub(super) fn find<'a>(lines: impl Iterator<Item = &'a String>, interval: f64) -> Self {
         let mut found = Self::default();
-        let mut contradicted = false;
         for line in lines {
             let upper = line.to_ascii_uppercase();
             let said: Vec<&str> = upper.split_whitespace().filter(|piece| !is_file_name(piece)).collect();
@@ -87,19 +87,10 @@ impl Words {
             let words = words(said);
             let words = as_strs(&words);
             let is_of_gear = words.iter().any(|word| GEAR.contains(word) || SPREAD.contains(word));
-            for index in 0..words.len() {
-                let next = words.get(index + 1).copied().unwrap_or("");
-                let Some((unit, factor)) = unit_word(next) else { continue };
-                let is_interval = words[index].parse::<f64>().is_ok_and(|number| {
-                    (unit == FileUnit::Milliseconds || !is_of_gear)
-                        && (number * factor - interval).abs() < 1e-6 * interval
-                });
-                let is_of_axis = matches!(words[index], "UNIT" | "UNITS" | "IN")
-                    && !is_of_gear
-                    && OF_AXIS.contains(&beside(&words, index, -1));
-                if is_interval || is_of_axis {
-                    contradicted |= found.unit.as_ref().is_some_and(|(other, _)| *other != unit);
-                    found.unit.get_or_insert((unit, line.clone()));
+            for unit in units_of_axis(said, interval, is_of_gear) {
+                let first = found.unit.get_or_insert_with(|| (unit, line.clone()));
+                if first.0 != unit && found.contradiction.is_none() {
+                    found.contradiction = Some([first.clone(), (unit, line.clone())]);
                 }
             }
             let is_only = |word: &str| is_answer && words.first() == Some(&word);
@@ -107,10 +98,40 @@ impl Words {
             note(&mut found.time, answer("TIME").or_else(|| time(&words)), line);
             note(&mut found.depth, answer("DEPTH").or_else(|| depth(&words)), line);
         }
-        if contradicted {
+        if found.contradiction.is_some() {
             found.unit = None;
         }
         found
+    }
+}
+
+/// The units that a line gives the axis: of the vertical axis by name, or beside the number that is the sample interval.
+fn units_of_axis(line: &str, interval: f64, is_of_gear: bool) -> Vec<ZUnit> {
+    let is_interval = |said: &words::Statement| {
+        let number = said.number.map(|number| number * to_thousandths(said.unit));
+        (said.unit.is_time() || !is_of_gear) && number.is_some_and(|number| (number - interval).abs() < 1e-6 * interval)
+    };
+    let is_of_axis = |said: &words::Statement| {
+        let vertical = [Quantity::Depth, Quantity::Time, Quantity::Vertical];
+        said.number.is_none() && !is_of_gear && said.quantity.is_some_and(|quantity| vertical.contains(&quantity))
+    };
+    let said = words::statements(line).into_iter().filter(|said| is_interval(said) || is_of_axis(said));
+    said.map(|said| axis_unit(said.unit)).collect()
+}
+
+/// What a sample interval in a unit is multiplied by to be what the file holds, in ms, m or feet.
+fn to_thousandths(unit: ZUnit) -> f64 {
+    if matches!(unit, ZUnit::Feet | ZUnit::SurveyFeet | ZUnit::Inches) { 1.0 } else { unit.in_survey() }
+}
+
+/// The unit of an axis that text gives in a unit: SEG-Y holds thousandths of ms, m and feet.
+fn axis_unit(unit: ZUnit) -> ZUnit {
+    match unit {
+        unit if unit.is_time() => ZUnit::Milliseconds,
+        ZUnit::Feet | ZUnit::SurveyFeet => unit,
+        ZUnit::Inches => ZUnit::Feet,
+        ZUnit::Metres | ZUnit::Kilometres | ZUnit::Centimetres => ZUnit::Metres,
+        _ => unit,
     }
 }
 
@@ -180,9 +201,7 @@ fn time(words: &[&str]) -> Option<Weight> {
             "TWT" | "TWTT" | "PSTM" => Some(Weight::Method),
             "TIME" if !template && (after.starts_with("MIGRAT") || before == "WAY") => Some(Weight::Method),
             // A template that was not filled in has units without numbers.
-            word if unit_word(word).is_some_and(|(unit, _)| unit == FileUnit::Milliseconds)
-                && before.parse::<f64>().is_ok() =>
-            {
+            word if unit_word(word).is_some_and(ZUnit::is_time) && before.parse::<f64>().is_ok() => {
                 Some(Weight::Mention)
             }
             _ => None,
@@ -219,16 +238,9 @@ fn is_file_name(piece: &str) -> bool {
         || piece.contains(['/', '\\']) && piece.contains('.')
 }
 
-/// The unit that a word names, and what a number in it is multiplied by.
-fn unit_word(word: &str) -> Option<(FileUnit, f64)> {
-    Some(match word {
-        "MS" | "MSEC" | "MSECS" | "MILLISECOND" | "MILLISECONDS" => (FileUnit::Milliseconds, 1.0),
-        "US" | "USEC" | "MICROSECOND" | "MICROSECONDS" | "MICROSEC" => (FileUnit::Milliseconds, 1e-3),
-        "S" | "SEC" | "SECS" | "SECOND" | "SECONDS" => (FileUnit::Milliseconds, 1e3),
-        "M" | "METER" | "METERS" | "METRE" | "METRES" => (FileUnit::Metres, 1.0),
-        "FT" | "FEET" | "FOOT" => (FileUnit::Feet, 1.0),
-        _ => return None,
-    })
+/// The unit that a word names.
+fn unit_word(word: &str) -> Option<ZUnit> {
+    ZUnit::parse(word).filter(|unit| *unit != ZUnit::Inches)
 }
 
 #[cfg(test)]
@@ -280,25 +292,41 @@ mod tests {
     #[test]
     fn the_unit_beside_the_interval_is_found_however_it_is_written() {
         for (line, unit) in [
-            ("SAMPLE INTERVAL 4 MS", FileUnit::Milliseconds),
-            ("SAMPLE INTERVAL: 4MS", FileUnit::Milliseconds),
-            ("SAMPLE RATE 4000 MICROSECONDS", FileUnit::Milliseconds),
-            ("SAMPLE RATE: 0.004 S", FileUnit::Milliseconds),
-            ("DEPTH STEP: 4.0m", FileUnit::Metres),
-            ("STEP 4 FEET", FileUnit::Feet),
-            ("Z UNITS: FEET", FileUnit::Feet),
-            ("VERTICAL UNIT = METER", FileUnit::Metres),
-            ("SAMPLING UNITS (MS)", FileUnit::Milliseconds),
-            ("SAMPLES ARE DEPTHS IN FEET BELOW SEA LEVEL", FileUnit::Feet),
+            ("SAMPLE INTERVAL 4 MS", ZUnit::Milliseconds),
+            ("SAMPLE INTERVAL: 4MS", ZUnit::Milliseconds),
+            ("SAMPLE RATE 4000 MICROSECONDS", ZUnit::Milliseconds),
+            ("SAMPLE RATE: 0.004 S", ZUnit::Milliseconds),
+            ("DEPTH STEP: 4.0m", ZUnit::Metres),
+            ("STEP 4 FEET", ZUnit::Feet),
+            ("Z UNITS: FEET", ZUnit::Feet),
+            ("VERTICAL UNIT = METER", ZUnit::Metres),
+            ("SAMPLING UNITS (MS)", ZUnit::Milliseconds),
+            ("SAMPLES ARE DEPTHS IN FEET BELOW SEA LEVEL", ZUnit::Feet),
+            ("DEPTH IN US SURVEY FEET", ZUnit::SurveyFeet),
+            ("DEPTH UNITS: US SURVEY FEET, DATUM MSL", ZUnit::SurveyFeet),
+            ("DEPTH VOLUME IN FEET", ZUnit::Feet),
+            ("TVDSS (FEET)", ZUnit::Feet),
+            ("Trace unit: ft", ZUnit::Feet),
+            ("PROFONDEUR EN PIEDS", ZUnit::Feet),
+            ("TIEFE IN METERN", ZUnit::Metres),
+            ("INTERVALO 0,004 SEGUNDOS", ZUnit::Milliseconds),
         ] {
             let words = Words::find([line.to_owned()].iter(), 4.0);
             assert_eq!(words.unit.map(|(unit, _)| unit), Some(unit), "{line}");
         }
-        for line in
-            ["SOURCE DEPTH 4 M", "BIN SIZE 4 M", "XY UNITS: M", "UNITS M", "WATER DEPTH UNIT: M", "WATER DEPTH IN M"]
-        {
+        for line in [
+            "SURVEY ACQUIRED IN THE US",
+            "VELOCITIES IN FEET PER SECOND",
+            "SOURCE DEPTH 4 M",
+            "BIN SIZE 4 M",
+            "XY UNITS: M",
+            "UNITS M",
+            "WATER DEPTH UNIT: M",
+            "WATER DEPTH IN M",
+        ] {
             assert!(Words::find([line.to_owned()].iter(), 4.0).unit.is_none(), "{line}");
         }
-        assert!(Words::find(["4 MS".to_owned(), "4 M".to_owned()].iter(), 4.0).unit.is_none());
+        let both = Words::find(["4 MS".to_owned(), "4 M".to_owned()].iter(), 4.0);
+        assert!(both.unit.is_none() && both.contradiction.is_some());
     }
 }

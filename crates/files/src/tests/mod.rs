@@ -1,6 +1,7 @@
 //! Whole files, in and out: the formats' own examples, round trips, bad input, and real data.
 
 mod bounds;
+mod cases;
 mod drawings;
 mod faults;
 mod foreign;
@@ -11,6 +12,7 @@ mod real;
 mod refusals;
 mod round_trips;
 mod tables;
+mod units;
 mod vectors;
 
 use super::*;

@@ -6,10 +6,9 @@
 use super::columns::WellColumn;
 use super::error::WellFileError;
 use super::options::WellOptions;
+use super::report::WellReport;
 use super::table::Table;
-use crate::unit::ZUnit;
 use std::path::Path;
-use survey::remedy::Note;
 use survey::well::{Checkshot, WellPath};
 
 /// Reads a checkshot table: a depth (TVDSS, TVD, Z or MD along `path`) and a time (TWT, or OWT one-way) a
@@ -22,7 +21,7 @@ pub fn parse_checkshot(
     text: &str,
     path: &WellPath,
     options: &WellOptions,
-    notes: &mut Vec<Note>,
+    report: &mut WellReport,
 ) -> Result<Checkshot, WellFileError> {
     let mut table = Table::parse(file, text);
     if table.rows.is_empty() {
@@ -30,7 +29,7 @@ pub fn parse_checkshot(
     }
     if table.columns.is_empty() {
         table.assume(&[WellColumn::Tvdss, WellColumn::Twt]);
-        notes.push("checkshots: no header; columns taken as TVDSS, TWT".into());
+        report.note("checkshots: no header; columns taken as TVDSS, TWT");
     }
     table.keep_well(&options.well_in_file, &[])?;
     let time = [WellColumn::Twt, WellColumn::Owt].into_iter().find_map(|c| Some((c, table.position(c)?)));
@@ -44,18 +43,25 @@ pub fn parse_checkshot(
             example: "tvdss_m,twt_ms",
         });
     };
-    let to_m = table.length_to_m(depth_at, options.md_unit, notes)?;
+    let to_m = table.length_to_m(depth_at, options.md_unit, report)?;
     let ways = if time_column == WellColumn::Owt { 2.0 } else { 1.0 };
     let mut rows = Vec::with_capacity(table.rows.len());
     for row in &table.rows {
-        rows.push([table.number(row, depth_at)? * to_m, table.number(row, time_at)? * ways]);
+        let pair = [table.value(row, depth_at)? * to_m, table.value(row, time_at)? * ways];
+        if pair.iter().all(|value| value.is_finite()) {
+            rows.push(pair);
+        }
+    }
+    if rows.len() < table.rows.len() {
+        let missing = table.rows.len() - rows.len();
+        report.warn_once(format!("checkshots: {missing} of {} rows lack a number and were left out", table.rows.len()));
     }
     // The sign of depths and times: both grow downwards in some files, both fall in others (elevations,
     // negative times).
     for (axis, what) in [(0, "depths"), (1, "times")] {
         if rows.first().zip(rows.last()).is_some_and(|(a, b)| b[axis] < a[axis] && b[axis] < 0.0) {
             rows.iter_mut().for_each(|r| r[axis] = -r[axis]);
-            notes.push(format!("checkshots: the {what} are negative and were turned positive down").into());
+            report.note(format!("checkshots: the {what} are negative and were turned positive down"));
         }
     }
     match depth_column {
@@ -68,16 +74,14 @@ pub fn parse_checkshot(
             let before = rows.len();
             rows.retain(|r| r[0].is_finite());
             if rows.len() < before {
-                notes
-                    .push(format!("checkshots: {} of {before} lie beyond the well's path", before - rows.len()).into());
+                report.note(format!("checkshots: {} of {before} lie beyond the well's path", before - rows.len()));
             }
         }
         _ => {}
     }
     rows.dedup();
-    let unit = match table.units[time_at] {
-        Some(ZUnit::Seconds) => 1000.0,
-        Some(_) => 1.0,
+    let unit = match table.time_unit(time_at) {
+        Some(unit) => unit.in_survey(),
         None => {
             let (Some(a), Some(b)) = (rows.first(), rows.last()) else {
                 return Err(WellFileError::Empty { file: file.to_owned(), what: "checkshots" });
@@ -96,13 +100,10 @@ pub fn parse_checkshot(
                     });
                 }
             };
-            notes.push(
-                format!(
-                    "checkshots: times are in {word}: only so the mean velocity, {:.0} m/s, is that of rock",
-                    if unit == 1.0 { 1000.0 * slope } else { slope }
-                )
-                .into(),
-            );
+            report.note(format!(
+                "checkshots: times are in {word}: only so the mean velocity, {:.0} m/s, is that of rock",
+                if unit == 1.0 { 1000.0 * slope } else { slope }
+            ));
             unit
         }
     };

@@ -37,6 +37,16 @@ pub enum WellFileError {
         /// An example of a header that suffices.
         example: &'static str,
     },
+    /// Nothing names the columns, and the numbers do not tell.
+    #[error("{file}: no line names the columns, of which each row has {width}")]
+    UnnamedColumns {
+        /// The file.
+        file: PathBuf,
+        /// Columns.
+        width: usize,
+        /// A list of columns as an option gives it.
+        example: &'static str,
+    },
     /// There are no rows.
     #[error("{file} holds no {what}; check that it is the file meant")]
     Empty {
@@ -77,7 +87,7 @@ pub enum WellFileError {
         header: &'static str,
     },
     /// A LAS file of a version that is not read.
-    #[error("{file} is LAS {version}; LAS 1.2 and 2.0 are read: export it as LAS 2.0")]
+    #[error("{file} is LAS {version}; LAS 1.2, 2.0 and 3.0 are read: export it as LAS 2.0")]
     LasVersion {
         /// The file.
         file: PathBuf,
@@ -113,6 +123,7 @@ impl WellFileError {
     pub fn remedy(&self) -> Option<Remedy> {
         Some(match self {
             Self::NoHead { .. } => Setting::Head.stated(),
+            Self::UnnamedColumns { example, .. } => Setting::Columns.stated_as(example),
             Self::NoSuchWell { .. } => Setting::WellInFile.stated(),
             Self::Well(error) => return error.remedy(),
             Self::LasIndex { needs_checkshot: true, .. } => Setting::Checkshot.stated(),

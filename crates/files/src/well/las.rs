@@ -6,6 +6,7 @@
 //! LAS 3.0 is another format and refused.
 
 use super::error::WellFileError;
+use crate::number::{self, NumberStyle};
 use crate::text::{self, Line, excerpt};
 use std::path::Path;
 
@@ -61,14 +62,6 @@ fn item(text: &str) -> Option<LasItem> {
     })
 }
 
-/// A value of the data section: words for nothing are NaN.
-fn value(token: &str) -> Option<f64> {
-    text::number(token).or_else(|| {
-        let word = token.trim_matches(['(', ')', '"']).to_ascii_lowercase();
-        matches!(word.as_str(), "nan" | "null" | "none" | "n/a" | "na" | "-").then_some(f64::NAN)
-    })
-}
-
 impl Las {
     /// A line of section W by its mnemonic.
     pub(crate) fn well_item(&self, mnemonic: &str) -> Option<&LasItem> {
@@ -79,7 +72,7 @@ impl Las {
     pub fn number(&self, mnemonic: &str) -> Option<(f64, &str)> {
         let items = self.well.iter().chain(&self.parameters);
         let found = items.filter(|i| i.mnemonic.eq_ignore_ascii_case(mnemonic));
-        found.filter_map(|i| Some((text::number(i.value.split_whitespace().next()?)?, i.unit.as_str()))).next()
+        found.filter_map(|i| Some((number::plain(i.value.split_whitespace().next()?)?, i.unit.as_str()))).next()
     }
 
     /// The well's name in the header.
@@ -127,7 +120,7 @@ pub fn parse_las(file: &Path, text: &str) -> Result<Las, WellFileError> {
                 match item.mnemonic.to_ascii_uppercase().as_str() {
                     "VERS" => {
                         seen_version = true;
-                        las.version = item.value.split_whitespace().next().and_then(text::number).unwrap_or(f64::NAN);
+                        las.version = item.value.split_whitespace().next().and_then(number::plain).unwrap_or(f64::NAN);
                         if !(las.version >= 1.0 && las.version < 3.0) {
                             return Err(WellFileError::LasVersion { file: file.to_owned(), version: item.value });
                         }
@@ -156,7 +149,7 @@ pub fn parse_las(file: &Path, text: &str) -> Result<Las, WellFileError> {
     if !seen_data || rows.is_empty() {
         return Err(bad("there is no section ~A with data".into()));
     }
-    las.null = las.well_item("NULL").and_then(|i| text::number(&i.value));
+    las.null = las.well_item("NULL").and_then(|i| number::plain(&i.value));
     las.data = data(file, &rows, &las)?;
     Ok(las)
 }
@@ -164,7 +157,6 @@ pub fn parse_las(file: &Path, text: &str) -> Result<Las, WellFileError> {
 fn data(file: &Path, rows: &[Line<'_>], las: &Las) -> Result<Vec<Vec<f64>>, WellFileError> {
     let count = las.curves.len();
     let mut data = vec![Vec::new(); count];
-    let is_null = |v: f64| las.null.is_some_and(|n| (v - n).abs() <= 1e-6 * n.abs().max(1e-6));
     let syntax = |line: &Line<'_>, expected: String| WellFileError::Syntax {
         file: file.to_owned(),
         line: line.number,
@@ -176,12 +168,12 @@ fn data(file: &Path, rows: &[Line<'_>], las: &Las) -> Result<Vec<Vec<f64>>, Well
         let tokens = line.text.split([' ', '\t', ',', ';']).filter(|t| !t.is_empty());
         let before = filled;
         for token in tokens {
-            let value = value(token).ok_or_else(|| syntax(line, "a number".into()))?;
+            let value = number::or_missing(token, NumberStyle::Point).ok_or_else(|| syntax(line, "a number".into()))?;
             if filled == count {
                 return Err(syntax(line, format!("{count} values, one a curve")));
             }
             // The index may hold any number.
-            data[filled].push(if filled > 0 && is_null(value) { f64::NAN } else { value });
+            data[filled].push(if filled > 0 && number::is_null(value, las.null) { f64::NAN } else { value });
             filled += 1;
         }
         if !las.wrapped && filled < count {

@@ -5,6 +5,7 @@
 //! stated by the user in [`WellOptions`], or assumed and reported.
 
 mod checkshot;
+mod collar;
 mod columns;
 mod describe;
 mod deviation;
@@ -12,16 +13,19 @@ mod error;
 mod las;
 mod options;
 mod read;
+mod report;
 mod table;
 #[cfg(test)]
 mod tests;
 mod tops;
 
 pub use checkshot::parse_checkshot;
+pub use columns::WellColumn;
 pub use describe::{WellColumnDescription, WellFileDescription, WellFileKind, describe};
 pub use deviation::{Deviation, parse_deviation};
 pub use error::WellFileError;
 pub use las::{Las, LasItem, parse_las};
 pub use options::WellOptions;
-pub use read::{WellFiles, WellReport, read_well};
+pub use read::{WellFiles, read_well};
+pub use report::WellReport;
 pub use tops::{TopRow, parse_tops};

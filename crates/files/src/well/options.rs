@@ -1,5 +1,6 @@
 //! What the user states about a well: its name, its head, its datum and the unit of lengths along it.
 
+use super::columns::WellColumn;
 use crate::unit::ZUnit;
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +16,12 @@ pub struct WellOptions {
     pub head: Option<[f64; 2]>,
     /// Height of the datum above mean sea level, m; `None` = as the file says, else 0, with a warning.
     pub datum_m: Option<f64>,
-    /// Unit of lengths along the well if columns do not state one; `None` = metres, reported.
+    /// Unit of lengths along the well if columns do not state one; `None` = as the file says, else metres, reported.
     pub md_unit: Option<ZUnit>,
+    /// Unit of X and Y if columns do not state one; `None` = as the file says, else metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub xy_unit: Option<ZUnit>,
+    /// The columns of the deviation, in order, instead of what its header says.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub columns: Option<Vec<WellColumn>>,
 }

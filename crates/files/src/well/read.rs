@@ -1,15 +1,17 @@
 //! A well from its files: deviation, tops, checkshots, logs.
 
 use super::checkshot::parse_checkshot;
-use super::deviation::parse_deviation;
+use super::collar::parse_collar;
+use super::deviation::deviation_of;
 use super::error::WellFileError;
 use super::las::{Las, parse_las};
 use super::options::WellOptions;
-use super::table::FOOT_M;
+use super::report::WellReport;
 use super::tops::{on_path, parse_tops};
+use crate::unit::ZUnit;
+use crate::unit::words;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use survey::remedy::Note;
 use survey::well::{Checkshot, Curve, LogSet, Well, WellPath};
 
 /// The files of a well.
@@ -18,6 +20,9 @@ use survey::well::{Checkshot, Curve, LogSet, Well, WellPath};
 pub struct WellFiles {
     /// The deviation, which gives the path.
     pub deviation: PathBuf,
+    /// Collars of holes, where the deviation is a survey of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub collar: Option<PathBuf>,
     /// Tops.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tops: Option<PathBuf>,
@@ -27,15 +32,6 @@ pub struct WellFiles {
     /// Time–depth table.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub checkshot: Option<PathBuf>,
-}
-
-/// What was read and assumed.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct WellReport {
-    /// Facts, one sentence each.
-    pub notes: Vec<Note>,
-    /// What the user should check, one sentence each.
-    pub warnings: Vec<Note>,
 }
 
 fn text_of(file: &Path) -> Result<String, WellFileError> {
@@ -50,14 +46,20 @@ fn text_of(file: &Path) -> Result<String, WellFileError> {
 /// [`WellFileError`]; the text says what to do.
 pub fn read_well(files: &WellFiles, options: &WellOptions) -> Result<(Well, WellReport), WellFileError> {
     let text = text_of(&files.deviation)?;
-    let deviation = parse_deviation(&files.deviation, &text, options)?;
-    let mut report = WellReport { notes: deviation.notes, warnings: deviation.warnings };
+    let mut of_collar = WellReport::default();
+    let collar = match &files.collar {
+        Some(file) => Some(parse_collar(file, &text_of(file)?, options, &mut of_collar)?),
+        None => None,
+    };
+    let deviation = deviation_of(&files.deviation, &text, collar.as_ref(), options)?;
+    let mut report = deviation.report;
+    of_collar.assumptions.into_iter().for_each(|note| report.assume(note));
     let stem = || files.deviation.file_stem().map_or_else(|| "well".into(), |s| s.to_string_lossy().into_owned());
     let name = options.name.clone().or(deviation.name).unwrap_or_else(stem);
     let mut well = Well::new(name.clone(), deviation.path);
     let options = WellOptions { name: Some(name), ..options.clone() };
     if let Some(file) = &files.checkshot {
-        let checkshot = parse_checkshot(file, &text_of(file)?, &well.path, &options, &mut report.notes)?;
+        let checkshot = parse_checkshot(file, &text_of(file)?, &well.path, &options, &mut report)?;
         let [low, high] = checkshot.velocity_range_m_s();
         let line = format!("{} checkshots, interval velocities {low:.0} to {high:.0} m/s", checkshot.points().len());
         if low < 300.0 || high > 10_000.0 {
@@ -68,8 +70,8 @@ pub fn read_well(files: &WellFiles, options: &WellOptions) -> Result<(Well, Well
         well.checkshot = Some(checkshot);
     }
     if let Some(file) = &files.tops {
-        let rows = parse_tops(file, &text_of(file)?, &well.path, &options, &mut report.notes)?;
-        well.tops = on_path(rows, &well.path, &mut report.warnings);
+        let rows = parse_tops(file, &text_of(file)?, &well.path, &options, &mut report)?;
+        well.tops = on_path(rows, &well.path, &mut report);
         report.notes.push(format!("{} tops", well.tops.len()).into());
     }
     for file in &files.las {
@@ -77,7 +79,7 @@ pub fn read_well(files: &WellFiles, options: &WellOptions) -> Result<(Well, Well
         if let Some(inside) = las.well_name()
             && !same_name(inside, &well.name)
         {
-            report.warnings.push(format!("{} says that it is of well '{inside}'", file.display()).into());
+            report.warn_once(format!("{} says that it is of well '{inside}'", file.display()));
         }
         let set = log_set(file, &las, &well.path, well.checkshot.as_ref(), &mut report)?;
         let names: Vec<&str> = set.curves.iter().map(|c| c.name.as_str()).collect();
@@ -179,19 +181,10 @@ fn index_md(
     };
     let word = index.mnemonic.to_ascii_uppercase();
     let vertical = ["TVD", "TVDSS"].iter().any(|w| word == *w);
-    let unit = index.unit.to_ascii_uppercase();
-    let to_m = match unit.as_str() {
-        "M" | "METER" | "METERS" | "METRE" | "METRES" => Some(1.0),
-        "F" | "FT" | "FEET" | "FOOT" => Some(FOOT_M),
-        ".1IN" | "0.1IN" => Some(0.00254),
-        "CM" => Some(0.01),
-        _ => None,
-    };
-    let to_ms = match unit.as_str() {
-        "MS" | "MSEC" => Some(1.0),
-        "S" | "SEC" => Some(1000.0),
-        _ => None,
-    };
+    let unit = words::multiple_of(&index.unit);
+    let of =
+        |is_time: bool| unit.filter(|(_, unit)| unit.is_time() == is_time).map(|(n, unit)| n * ZUnit::in_survey(unit));
+    let (to_m, to_ms) = (of(false), of(true));
     let axis = &las.data[0];
     Ok(if let Some(to_m) = to_m {
         let lengths = axis.iter().map(|v| v * to_m);
@@ -224,7 +217,7 @@ fn check_limits(file: &Path, las: &Las, report: &mut WellReport) {
         if let (Some((said, _)), Some(found)) = (las.number(mnemonic), found)
             && (said - found).abs() > 1e-3 * (1.0 + said.abs())
         {
-            report.warnings.push(format!("{}: {mnemonic} says {said} but the data has {found}", file.display()).into());
+            report.warn_once(format!("{}: {mnemonic} says {said} but the data has {found}", file.display()));
         }
     }
 }

@@ -6,14 +6,14 @@
 
 use super::columns::{self, WellColumn};
 use super::error::WellFileError;
+use super::report::WellReport;
+use crate::number::{self, NumberStyle};
 use crate::table::{LineCut, is_comment};
 use crate::text::{self, Field, Line, excerpt};
 use crate::unit::ZUnit;
+use crate::unit::words::{self, HeaderUnits, Quantity};
 use std::path::{Path, PathBuf};
 use survey::remedy::{Note, Setting};
-
-/// Metres in an international foot.
-pub(super) const FOOT_M: f64 = 0.3048;
 
 /// A row and its line number.
 pub(super) struct Row<'a> {
@@ -33,6 +33,10 @@ pub(super) struct Table<'a> {
     /// The unit each column's name states.
     pub units: Vec<Option<ZUnit>>,
     pub rows: Vec<Row<'a>>,
+    /// What the header states about units.
+    header: HeaderUnits,
+    /// A name alone on the line before the rows.
+    pub title: Option<&'a str>,
     cut: LineCut,
 }
 
@@ -47,7 +51,7 @@ fn fact(line: &str) -> Option<(String, String)> {
 }
 
 fn names_of(words: &str) -> Vec<String> {
-    let cut = LineCut::of(words);
+    let cut = LineCut::of_line(words);
     // "MD (ft)" is one name although blanks cut it.
     let mut names: Vec<String> = Vec::new();
     for field in cut.fields(words) {
@@ -77,7 +81,9 @@ impl<'a> Table<'a> {
             columns: Vec::new(),
             units: Vec::new(),
             rows: Vec::new(),
-            cut: LineCut { delimiter: None, decimal_comma: false },
+            header: HeaderUnits::default(),
+            title: None,
+            cut: LineCut { delimiter: None, style: NumberStyle::Point },
         };
         let begin = lines.iter().position(|l| l.text == "BEGIN HEADER");
         let end = lines.iter().position(|l| l.text == "END HEADER");
@@ -87,6 +93,7 @@ impl<'a> Table<'a> {
             && begin < end
         {
             names = lines[begin + 1..end].iter().map(|l| l.text.to_string()).collect();
+            table.header = HeaderUnits::of(lines[..begin].iter().map(|l| l.text));
             table.facts = lines[..begin].iter().filter_map(|l| fact(l.text)).collect();
             body = &lines[end + 1..];
         }
@@ -99,14 +106,14 @@ impl<'a> Table<'a> {
             }
             if data.is_empty() && begin.is_none() {
                 let found = names_of(words);
-                let numbers = found.iter().filter(|w| text::number(w).is_some()).count();
+                let numbers = found.iter().filter(|w| number::plain(w).is_some()).count();
                 let is_header = found.len() >= 2 && numbers == 0 && known(&found) >= 2;
                 if is_header {
                     names = found;
                     continue;
                 }
                 if let Some(fact) = fact(line.text)
-                    && (comment || numbers == 0 || text::number(&fact.1).is_some())
+                    && (comment || numbers == 0 || number::of(&fact.1).is_some())
                 {
                     table.facts.push(fact);
                     continue;
@@ -116,8 +123,19 @@ impl<'a> Table<'a> {
                 data.push(*line);
             }
         }
-        let first = data.first().map_or("", |l| l.text);
-        table.cut = LineCut::of(first);
+        if begin.is_none() {
+            let before = data.first().map_or(usize::MAX, |first| first.number);
+            table.header = HeaderUnits::of(
+                body.iter().take_while(|l| l.number < before).map(|l| l.text).filter(|l| is_comment(l)),
+            );
+        }
+        table.cut = LineCut::of(&data);
+        // Wells of ResInsight and Eclipse begin with their name.
+        let fields = |n: usize| data.get(n).map_or(0, |line: &Line<'_>| table.cut.fields(line.text).len());
+        if names.is_empty() && fields(0) == 1 && fields(1) >= 3 {
+            table.cut = LineCut::of(&data[1..]);
+            table.title = Some(data.remove(0).text.trim_matches(['\'', '"']));
+        }
         let cut = table.cut;
         table.rows = data.into_iter().map(|line| Row { line, fields: cut.fields(line.text) }).collect();
         for name in &names {
@@ -129,6 +147,16 @@ impl<'a> Table<'a> {
         }
         table.names = names;
         table
+    }
+
+    /// Takes the columns that the user states; a line that names them is no row.
+    pub(super) fn state(&mut self, columns: &[WellColumn]) {
+        self.names.clear();
+        self.assume(columns);
+        let cut = self.cut;
+        let is_row = |row: &Row<'_>| row.fields.iter().any(|field| cut.number(field.text).is_some());
+        let first = self.rows.iter().position(is_row).unwrap_or(0);
+        self.rows.drain(..first);
     }
 
     /// Names the columns of a table without names.
@@ -148,12 +176,11 @@ impl<'a> Table<'a> {
         found.map(|(_, value)| value.as_str())
     }
 
-    /// A length among the facts, in m; `(ft)` or `ft` after the number converts.
+    /// A length among the facts, in m: the number in its unit, metres if it has none.
     pub(super) fn length_fact(&self, words: &[&str]) -> Option<f64> {
         let value = self.fact(words)?;
-        let number = text::number(value.split([' ', '\t', '(', ',', ';']).find(|w| !w.is_empty())?)?;
-        let feet = value.to_ascii_lowercase().split(|c: char| !c.is_alphabetic()).any(|w| w == "ft" || w == "feet");
-        Some(if feet { number * FOOT_M } else { number })
+        let stated = words::statements(value).into_iter().find_map(|said| Some(said.number? * said.unit.in_survey()));
+        stated.or_else(|| number::of(value.split([' ', '\t', '(', ';']).find(|w| !w.is_empty())?.trim_end_matches(',')))
     }
 
     /// The text of a field.
@@ -169,11 +196,17 @@ impl<'a> Table<'a> {
         number.ok_or_else(|| self.syntax(row, &format!("a number for column {}", at + 1)))
     }
 
-    /// The number in a field; None where it is empty or a null of Petrel's or LAS' kind.
+    /// The number in a field; NaN where it is missing.
+    pub(super) fn value(&self, row: &Row<'a>, at: usize) -> Result<f64, WellFileError> {
+        let text = row.fields.get(at).map_or("", |field| field.text);
+        let value = self.cut.value(text).filter(|v| v.is_nan() || v.abs() < 1e12);
+        value.ok_or_else(|| self.syntax(row, &format!("a number for column {}", at + 1)))
+    }
+
+    /// The number in a field; None where it is missing or a usual null.
     pub(super) fn optional(&self, row: &Row<'a>, at: usize) -> Option<f64> {
         let number = self.cut.number(row.fields.get(at)?.text)?;
-        (number.is_finite() && number.abs() < 1e12 && ![-999.0, -999.25, -9999.0, -99999.0].contains(&number))
-            .then_some(number)
+        (number.is_finite() && number.abs() < 1e12 && !number::is_usual_null(number)).then_some(number)
     }
 
     /// An error at a row.
@@ -186,32 +219,60 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Metres in one unit of a length column: as its name states, otherwise as the user states, otherwise metres,
-    /// reported in `notes`.
+    /// Metres in one unit of a length column: as its name states, otherwise as the user states, otherwise as the header
+    /// says, otherwise metres, reported among what is assumed.
     pub(super) fn length_to_m(
         &self,
         at: usize,
         told: Option<ZUnit>,
-        notes: &mut Vec<Note>,
+        report: &mut WellReport,
     ) -> Result<f64, WellFileError> {
-        let unit = self.units[at].or(told);
-        if unit.is_none() {
-            let fact = format!("{}: lengths are taken as metres", self.stem());
-            let note = Note::unless(fact, Setting::MdUnit.stated_as("ft"));
-            if !notes.contains(&note) {
-                notes.push(note);
+        let is_place = matches!(self.columns[at], WellColumn::X | WellColumn::Y);
+        let quantities: &[Quantity] = match self.columns[at] {
+            WellColumn::X | WellColumn::Y => &[Quantity::Horizontal],
+            WellColumn::Dx | WellColumn::Dy => &[Quantity::Offset],
+            _ => &[Quantity::Depth, Quantity::Vertical],
+        };
+        let said = self.header.find(quantities).filter(|(said, _)| !said.unit.is_time());
+        let unit = self.units[at].or(told).or(said.map(|(said, _)| said.unit));
+        if let Some((first, other)) = said {
+            let against = [Some(first), other].into_iter().flatten().find(|said| Some(said.unit) != unit);
+            if let (Some(against), Some(unit), None) = (against, unit, told) {
+                let name = self.names.get(at).map_or("its column", |name| name.trim());
+                report.warn_once(Note::unless(
+                    format!(
+                        "{}: the unit of {name} is given twice: {} and {} ('{}'); {} is taken",
+                        self.stem(),
+                        unit.symbol(),
+                        against.unit.symbol(),
+                        against.quote,
+                        unit.symbol()
+                    ),
+                    if is_place { Setting::XyUnit } else { Setting::MdUnit }.stated_as(against.unit.symbol()),
+                ));
             }
         }
-        match unit {
-            None | Some(ZUnit::Metres) => Ok(1.0),
-            Some(ZUnit::Feet) => Ok(FOOT_M),
-            Some(ZUnit::Milliseconds | ZUnit::Seconds) => Err(WellFileError::UnclearUnit {
+        if unit.is_none() {
+            // X and Y are in the survey's metres unless something says otherwise.
+            let (what, setting) = if is_place { ("X and Y", Setting::XyUnit) } else { ("lengths", Setting::MdUnit) };
+            report
+                .assume(Note::unless(format!("{}: {what} are taken as metres", self.stem()), setting.stated_as("ft")));
+        }
+        match unit.unwrap_or(ZUnit::Metres) {
+            unit if unit.is_time() => Err(WellFileError::UnclearUnit {
                 file: self.file.clone(),
                 what: "a depth column named as a time".into(),
                 candidates: "m or ft",
                 header: "md_m",
             }),
+            unit => Ok(unit.in_survey()),
         }
+    }
+
+    /// The unit of a column of times: as its name states, otherwise as the header says.
+    pub(super) fn time_unit(&self, at: usize) -> Option<ZUnit> {
+        let said = || self.header.find(&[Quantity::Time]).map(|(said, _)| said.unit);
+        self.units[at].or_else(said).filter(|unit| unit.is_time())
     }
 
     fn stem(&self) -> String {

@@ -1,15 +1,15 @@
 //! Tops: the name of a surface and the depth at which the well penetrates it, as MD, TVD, TVDSS or Z.
 //!
 //! CSV or blanks with a header, Petrel well tops (`BEGIN HEADER` … `END HEADER`), or two columns without a header,
-//! depth and name (taken as measured depth). Vertical depths are placed on the path where it first crosses that depth.
+//! depth and name (taken as measured depth), or intervals of rocks (from, to). Vertical depths are placed on the path where it first crosses that depth.
 
 use super::columns::WellColumn;
 use super::error::WellFileError;
 use super::options::WellOptions;
+use super::report::WellReport;
 use super::table::Table;
-use crate::text;
+use crate::number;
 use std::path::Path;
-use survey::remedy::Note;
 use survey::well::{Top, WellPath};
 
 /// A top as in the file.
@@ -32,21 +32,21 @@ pub fn parse_tops(
     text: &str,
     path: &WellPath,
     options: &WellOptions,
-    notes: &mut Vec<Note>,
+    report: &mut WellReport,
 ) -> Result<Vec<TopRow>, WellFileError> {
     let mut table = Table::parse(file, text);
     if table.rows.is_empty() {
         return Err(WellFileError::Empty { file: file.to_owned(), what: "tops" });
     }
     if table.columns.is_empty() {
-        let number_first = table.rows[0].fields.first().is_some_and(|f| text::number(f.text).is_some());
+        let number_first = table.rows[0].fields.first().is_some_and(|f| number::plain(f.text).is_some());
         let columns = [WellColumn::Md, WellColumn::Surface];
         table.assume(&if number_first { columns } else { [columns[1], columns[0]] });
-        notes.push("tops: no header; columns taken as measured depth and name".into());
+        report.note("tops: no header; columns taken as measured depth and name");
     }
     let names: Vec<&str> = options.name.as_deref().into_iter().collect();
     table.keep_well(&options.well_in_file, &names)?;
-    let depth = [WellColumn::Md, WellColumn::Tvdss, WellColumn::Z, WellColumn::Tvd]
+    let depth = [WellColumn::Md, WellColumn::From, WellColumn::Tvdss, WellColumn::Z, WellColumn::Tvd]
         .into_iter()
         .filter_map(|c| Some((c, table.position(c)?)))
         .collect::<Vec<_>>();
@@ -58,16 +58,24 @@ pub fn parse_tops(
         });
     };
     let to_m: Vec<f64> =
-        depth.iter().map(|(_, at)| table.length_to_m(*at, options.md_unit, notes)).collect::<Result<_, _>>()?;
-    let mut tops = Vec::with_capacity(table.rows.len());
-    let (mut twice, mut negative) = (Vec::new(), 0usize);
+        depth.iter().map(|(_, at)| table.length_to_m(*at, options.md_unit, report)).collect::<Result<_, _>>()?;
+    let is_interval = table.position(WellColumn::From).is_some() && table.position(WellColumn::Md).is_none();
+    let mut tops: Vec<TopRow> = Vec::with_capacity(table.rows.len());
+    let (mut twice, mut negative, mut missing) = (Vec::new(), 0usize, 0usize);
     for row in &table.rows {
         let name = table.text(row, name_at)?.to_string();
+        // Of intervals, from and to, the top of each run of one rock is a top.
+        if is_interval && tops.last().is_some_and(|top: &TopRow| top.name == name) {
+            continue;
+        }
         // Petrel leaves MD empty where only a place was picked: the first depth that is given counts.
         let known = depth.iter().zip(&to_m).find_map(|((c, at), f)| Some((*c, table.optional(row, *at)? * f)));
         let md_m = match known {
-            None => return Err(table.syntax(row, "a depth")),
-            Some((WellColumn::Md, md)) => Some(md),
+            None => {
+                missing += 1;
+                continue;
+            }
+            Some((WellColumn::Md | WellColumn::From, md)) => Some(md),
             Some((column, depth)) => {
                 let tvdss = match column {
                     WellColumn::Tvd => depth - path.datum_m(),
@@ -86,20 +94,23 @@ pub fn parse_tops(
         };
         tops.push(TopRow { name, md_m, line: row.line.number });
     }
+    if missing > 0 {
+        report.warn_once(format!("tops: {missing} have no depth and were left out"));
+    }
     if negative > 0 {
-        notes.push(format!("tops: {negative} negative depths were turned positive down (elevations)").into());
+        report.note(format!("tops: {negative} negative depths were turned positive down (elevations)"));
     }
     if !twice.is_empty() {
-        notes.push(
-            format!("tops: the hole crosses the depth of {} more than once; the first is taken", twice.join(", "))
-                .into(),
-        );
+        report.note(format!(
+            "tops: the hole crosses the depth of {} more than once; the first is taken",
+            twice.join(", ")
+        ));
     }
     Ok(tops)
 }
 
 /// The tops on the path, in order; notes name those that are not on it.
-pub(super) fn on_path(rows: Vec<TopRow>, path: &WellPath, warnings: &mut Vec<Note>) -> Vec<Top> {
+pub(super) fn on_path(rows: Vec<TopRow>, path: &WellPath, report: &mut WellReport) -> Vec<Top> {
     let [first, last] = path.md_range_m();
     let mut tops = Vec::with_capacity(rows.len());
     let mut off = Vec::new();
@@ -113,14 +124,11 @@ pub(super) fn on_path(rows: Vec<TopRow>, path: &WellPath, warnings: &mut Vec<Not
         }
     }
     if !off.is_empty() {
-        warnings.push(
-            format!(
-                "{} tops lie beyond the path, which runs from MD {first:.1} to {last:.1} m, and were left out: {}",
-                off.len(),
-                off.join(", ")
-            )
-            .into(),
-        );
+        report.warn_once(format!(
+            "{} tops lie beyond the path, which runs from MD {first:.1} to {last:.1} m, and were left out: {}",
+            off.len(),
+            off.join(", ")
+        ));
     }
     tops.sort_by(|a, b| a.md_m.total_cmp(&b.md_m));
     tops

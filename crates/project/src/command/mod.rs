@@ -277,9 +277,9 @@ impl Effect {
     pub fn notes_mut(&mut self) -> Vec<&mut Note> {
         match self {
             Self::VolumeImported(done) => done.evidence.iter_mut().chain(&mut done.assumptions).collect(),
-            Self::HorizonAdded(done) => done.report.warnings.iter_mut().collect(),
-            Self::FaultAdded(done) => done.report.warnings.iter_mut().collect(),
-            Self::WellAdded(done) => done.report.notes.iter_mut().chain(&mut done.report.warnings).collect(),
+            Self::HorizonAdded(done) => done.report.notes_mut().collect(),
+            Self::FaultAdded(done) => done.report.notes_mut().collect(),
+            Self::WellAdded(done) => done.report.notes_mut().collect(),
             Self::Created
             | Self::AttributeComputed(_)
             | Self::TimeComputed(_)

@@ -188,6 +188,7 @@ impl fmt::Display for WellAdded {
                 writeln!(f, "  curve       {} {}: no values", curve.name, curve.unit)?;
             }
         }
+        self.report.assumptions.iter().try_for_each(|note| writeln!(f, "  assumed     {note}"))?;
         self.report.notes.iter().try_for_each(|note| writeln!(f, "  note        {note}"))?;
         self.report.warnings.iter().try_for_each(|warning| writeln!(f, "  warning     {warning}"))
     }

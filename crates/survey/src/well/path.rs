@@ -153,6 +153,33 @@ impl WellPath {
         Self::of_stations(datum_m, stations)
     }
 
+    /// The same stations with directions, in arcs between them; and how far the directions alone, from the first station
+    /// on, lead from the others at most, m, and at which measured depth.
+    ///
+    /// # Errors
+    /// [`WellError::Angle`], [`WellError::Dogleg`], [`WellError::TooShort`] where there is not one survey a station.
+    pub fn with_directions(&self, surveys: &[Survey]) -> Result<(Self, f64, f64), WellError> {
+        if surveys.len() != self.stations.len() {
+            return Err(WellError::TooShort { stations: surveys.len() });
+        }
+        // It also checks the angles.
+        Self::minimum_curvature(self.head(), self.datum_m, surveys)?;
+        let mut path = self.clone();
+        let (mut reached, mut worst, mut at) = (self.stations[0].position, 0.0, self.stations[0].md_m);
+        for n in 0..surveys.len() {
+            path.stations[n].direction = Some(surveys[n].direction());
+            if n > 0 {
+                let length_m = surveys[n].md_m - surveys[n - 1].md_m;
+                reached = arc(reached, surveys[n - 1].direction(), surveys[n].direction(), length_m, 1.0).0;
+                let off = reached.distance(self.stations[n].position);
+                if off > worst {
+                    (worst, at) = (off, surveys[n].md_m);
+                }
+            }
+        }
+        Ok((path, worst, at))
+    }
+
     fn of_stations(datum_m: f64, stations: Vec<Station>) -> Result<Self, WellError> {
         if stations.len() < 2 {
             return Err(WellError::TooShort { stations: stations.len() });
@@ -222,7 +249,8 @@ impl WellPath {
                     } else if f == 1.0 {
                         b.position
                     } else {
-                        place
+                        // Places that were given are reached, though the arc may end a little beside them.
+                        place + f * (b.position - arc(a.position, t0, t1, length_m, 1.0).0)
                     },
                     direction,
                 )

@@ -1,10 +1,11 @@
 //! File headers: byte order, revisions, lengths, the vertical axis.
 
 use super::super::{
-    ByteOrder, FileUnit, LengthUnit, LineSource, NumberType, SampleFormat, SegyOptions, SegyProblem, TextEncoding,
-    TraceWeight, scan,
+    ByteOrder, LengthUnit, LineSource, NumberType, SampleFormat, SegyOptions, SegyProblem, TextEncoding, TraceWeight,
+    scan,
 };
 use super::builder::{Built, SAMPLES, Trace, with_file};
+use crate::unit::ZUnit;
 use survey::progress::Progress;
 use survey::remedy::{Note, Setting};
 
@@ -197,7 +198,7 @@ fn counts_and_intervals_are_unsigned() {
     file.binary(3217, 50_000);
     file.say(1, "DEPTH");
     let info = file.info();
-    assert_eq!((info.samples, info.interval, info.vertical_unit), (many, 50.0, FileUnit::Metres));
+    assert_eq!((info.samples, info.interval, info.vertical_unit), (many, 50.0, ZUnit::Metres));
     assert!(has(&info.warnings, "meant to be signed"), "{:?}", info.warnings);
 }
 
@@ -271,27 +272,27 @@ fn the_domain_is_what_the_text_says() {
         file.binary(3255, measurement);
         file.info()
     };
-    assert_eq!(unit("VERTICAL AXIS IS DEPTH", 5000, 1).vertical_unit, FileUnit::Metres);
-    assert_eq!(unit("DEPTH MIGRATED (PSDM)", 5000, 2).vertical_unit, FileUnit::Feet);
-    assert_eq!(unit("PRESTACK TIME MIGRATION", 4000, 2).vertical_unit, FileUnit::Milliseconds);
-    assert_eq!(unit("WATER DEPTH 300 M", 4000, 1).vertical_unit, FileUnit::Milliseconds);
+    assert_eq!(unit("VERTICAL AXIS IS DEPTH", 5000, 1).vertical_unit, ZUnit::Metres);
+    assert_eq!(unit("DEPTH MIGRATED (PSDM)", 5000, 2).vertical_unit, ZUnit::Feet);
+    assert_eq!(unit("PRESTACK TIME MIGRATION", 4000, 2).vertical_unit, ZUnit::Milliseconds);
+    assert_eq!(unit("WATER DEPTH 300 M", 4000, 1).vertical_unit, ZUnit::Milliseconds);
     assert!(has(&unit("WATER DEPTH 300 M", 4000, 1).assumptions, "two-way time"));
     // A stated interval outweighs words.
-    assert_eq!(unit("TWT 876-1032 MS, NOW 10 FT SAMPLES", 10_000, 2).vertical_unit, FileUnit::Feet);
-    assert_eq!(unit("PSDM STRETCHED TO TIME, SAMPLED AT 4 MS", 4000, 1).vertical_unit, FileUnit::Milliseconds);
+    assert_eq!(unit("TWT 876-1032 MS, NOW 10 FT SAMPLES", 10_000, 2).vertical_unit, ZUnit::Feet);
+    assert_eq!(unit("PSDM STRETCHED TO TIME, SAMPLED AT 4 MS", 4000, 1).vertical_unit, ZUnit::Milliseconds);
     // A template says neither, a name of a file says how somebody called it.
     let named = unit("FILE R2900_PSDM_KIRCH_FULL-T.SGY, TIME MIN 0, TIME MAX 6000", 4000, 1);
-    assert_eq!((named.vertical_unit, named.warnings.len()), (FileUnit::Milliseconds, 0), "{:?}", named.warnings);
+    assert_eq!((named.vertical_unit, named.warnings.len()), (ZUnit::Milliseconds, 0), "{:?}", named.warnings);
     let template = unit("C27 TRACE START TIME/DEPTH", 4000, 1);
     assert!(template.assumptions.iter().any(|note| note.to_string().contains("the file does not say")));
     let torn = unit("PSDM IN TWT", 4000, 1);
-    assert_eq!(torn.vertical_unit, FileUnit::Milliseconds);
+    assert_eq!(torn.vertical_unit, ZUnit::Milliseconds);
     assert!(has(&torn.warnings, "vertical unit"));
     let whole_metres = unit("DEPTH", 5, 1);
     assert_eq!(whole_metres.interval, 5.0);
     assert!(has(&whole_metres.assumptions, "too little"));
-    let stated = SegyOptions { vertical_unit: Some(FileUnit::Feet), ..SegyOptions::default() };
-    assert_eq!(built().scan(&stated).unwrap().vertical_unit, FileUnit::Feet);
+    let stated = SegyOptions { vertical_unit: Some(ZUnit::Feet), ..SegyOptions::default() };
+    assert_eq!(built().scan(&stated).unwrap().vertical_unit, ZUnit::Feet);
 }
 
 #[test]
@@ -350,24 +351,24 @@ fn the_length_of_a_trace_tells_depth_from_time_where_words_do_not() {
     };
     // 25 ms between samples is no survey in time, 25 m is one in depth.
     let silent = of(25_000, 400, "PROJECT NORTH");
-    assert_eq!((silent.vertical_unit, silent.interval), (FileUnit::Metres, 25.0));
+    assert_eq!((silent.vertical_unit, silent.interval), (ZUnit::Metres, 25.0));
     assert!(
         has(&silent.assumptions, "400 samples every 25 ms span 9975 ms would be unlikely"),
         "{:?}",
         silent.assumptions
     );
     let whole_metres = of(10, 400, "PROJECT NORTH");
-    assert_eq!((whole_metres.vertical_unit, whole_metres.interval), (FileUnit::Metres, 10.0));
+    assert_eq!((whole_metres.vertical_unit, whole_metres.interval), (ZUnit::Metres, 10.0));
     // Both are plausible: time, as is usual, and the evidence says so.
     let both = of(4_000, 1500, "PROJECT NORTH");
-    assert_eq!(both.vertical_unit, FileUnit::Milliseconds);
+    assert_eq!(both.vertical_unit, ZUnit::Milliseconds);
     assert!(has(&both.evidence, "span 5996 ms (plausible), or as a depth"), "{:?}", both.evidence);
     // Words that contradict one another are weighed by it, and the contradiction is reported.
     let torn = of(25_000, 400, "PSDM STACK, TIME DOMAIN");
-    assert_eq!(torn.vertical_unit, FileUnit::Metres);
+    assert_eq!(torn.vertical_unit, ZUnit::Metres);
     assert!(has(&torn.warnings, "for which alone the length of a trace is plausible"), "{:?}", torn.warnings);
     // One word alone is followed, and its unlikely length is reported.
     let unlikely = of(25_000, 400, "TWT");
-    assert_eq!(unlikely.vertical_unit, FileUnit::Milliseconds);
+    assert_eq!(unlikely.vertical_unit, ZUnit::Milliseconds);
     assert!(has(&unlikely.warnings, "which is unlikely"), "{:?}", unlikely.warnings);
 }

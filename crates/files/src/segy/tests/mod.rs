@@ -2,6 +2,7 @@
 
 mod broken;
 mod builder;
+mod cases;
 mod detection;
 mod doubts;
 mod headers;

@@ -1,8 +1,9 @@
 //! Real files against the table of what an independent reader finds in them.
 
+use crate::unit::ZUnit;
 use std::path::Path;
 
-use super::super::{FileUnit, SegyFile, SegyOptions, SegyProblem, read, scan};
+use super::super::{SegyFile, SegyOptions, SegyProblem, read, scan};
 use survey::progress::Progress;
 
 /// A row of `segy-expected.tsv`.
@@ -147,12 +148,12 @@ fn domains_units_and_places_of_real_files() {
     let open = |name: &str| SegyFile::open(&dir.join(name), &SegyOptions::default(), &Progress::silent()).unwrap();
 
     let depth = open("volumes/f3_depth_il300-427_xl720-975_int16.sgy");
-    assert_eq!(depth.info().vertical_unit, FileUnit::Metres);
+    assert_eq!(depth.info().vertical_unit, ZUnit::Metres);
     assert!((depth.geometry().unwrap().inline_vector.length() - 25.0).abs() < 0.05);
     assert!(depth.info().geometry.residual_max_bins.unwrap() < 0.05);
 
     let feet = open("segy/penobscot_variants/feet_depth.sgy");
-    assert_eq!((feet.info().vertical_unit, feet.info().interval), (FileUnit::Feet, 10.0));
+    assert_eq!((feet.info().vertical_unit, feet.info().interval), (ZUnit::Feet, 10.0));
     let geometry = feet.geometry().unwrap();
     assert!((geometry.vertical.interval - 3.048).abs() < 1e-12);
     assert!((geometry.vertical.first - 2870.0 * 0.3048).abs() < 1e-9);
@@ -160,7 +161,7 @@ fn domains_units_and_places_of_real_files() {
     assert!((geometry.origin.x - 736_734.0 * 0.3048).abs() < 1.0);
 
     let time = open("volumes/penobscot_il1207-1456_xl1253-1402_t876-1032_int16.sgy");
-    assert_eq!(time.info().vertical_unit, FileUnit::Milliseconds);
+    assert_eq!(time.info().vertical_unit, ZUnit::Milliseconds);
     let geometry = time.geometry().unwrap();
     assert!((geometry.inline_vector.length() - 12.5).abs() < 0.01, "{geometry:?}");
     assert!((geometry.crossline_vector.length() - 25.0).abs() < 0.01);
