@@ -29,7 +29,7 @@ pub(super) fn describe(path: &Path, options: &ImportOptions) -> anyhow::Result<O
             found.surfaces.iter_mut().for_each(|surface| option::name_in(surface.notes_mut()));
             Ok(Some(interpretation(&found)))
         }
-        Err(FormatError::UnknownFormat { .. }) if may_be_segy(path) => Ok(None),
+        Err(FormatError::UnknownFormat { is_named: false, .. }) if may_be_segy(path) => Ok(None),
         Err(error) => Err(error.into()),
     }
 }

@@ -8,6 +8,7 @@ use survey::{Note, Remedy, Setting};
 fn option(setting: Setting) -> (&'static str, &'static str) {
     match setting {
         Setting::SampleFormat => ("--sample-format", ""),
+        Setting::NullAmplitude => ("--null-amplitude", ""),
         Setting::Interval => ("--interval", ""),
         Setting::Start => ("--start", ""),
         Setting::VerticalUnit => ("--vertical-unit", ""),

@@ -5,7 +5,7 @@ use super::interpretation::word;
 use super::request::Usage;
 use files::ZUnit;
 use files::segy::{
-    ByteOrder, KeptDuplicate, LengthUnit, LineSource, NumberType, SampleFormat, SegyOptions, TraceWeight,
+    ByteOrder, KeptDuplicate, LengthUnit, LineSource, NullAmplitude, NumberType, SampleFormat, SegyOptions, TraceWeight,
 };
 
 pub(super) fn segy_options(typed: &SegyArgs) -> Result<SegyOptions, Usage> {
@@ -34,6 +34,7 @@ pub(super) fn segy_options(typed: &SegyArgs) -> Result<SegyOptions, Usage> {
         coordinate_scalar: typed.coordinate_scalar,
         byte_order: one("--byte-order", &typed.byte_order, &orders)?,
         format: one("--sample-format", &typed.sample_format, &formats)?,
+        null: typed.null_amplitude.as_deref().map(null).transpose()?,
         interval: typed.interval,
         start: typed.start,
         vertical_unit: one("--vertical-unit", &typed.vertical_unit, &vertical)?,
@@ -42,6 +43,15 @@ pub(super) fn segy_options(typed: &SegyArgs) -> Result<SegyOptions, Usage> {
         trace_weight: one("--trace-weight", &typed.trace_weight, &weights)?.unwrap_or_default(),
         duplicates: one("--duplicates", &typed.duplicates, &kept)?,
     })
+}
+
+/// A null amplitude, or `none`.
+fn null(text: &str) -> Result<NullAmplitude, Usage> {
+    if text.eq_ignore_ascii_case("none") {
+        return Ok(NullAmplitude::None);
+    }
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+    number.map(NullAmplitude::At).ok_or_else(|| format!("--null-amplitude {text}: expected a number or none"))
 }
 
 /// Parses a word, if one was given.

@@ -33,6 +33,14 @@ pub enum Column {
     Ny,
     /// See [`Column::Nx`].
     Nz,
+    /// Which of several surfaces a point belongs to, as a number.
+    Level,
+    /// Dip from the horizontal, degrees.
+    Dip,
+    /// Direction of the dip, degrees clockwise from north.
+    Azimuth,
+    /// 1 where beds are the right way up, -1 where they are overturned.
+    Polarity,
     /// The origin of the depth, in the words of [`survey::Quality`].
     Quality,
     /// Anything else; not read.
@@ -95,9 +103,14 @@ pub(super) fn of_name(name: &str) -> NamedColumn {
         "depth" | "tvd" | "tvdss" | "tvdmsl" | "z_tvdss" | "z_depth" | "tiefe" | "teufe" | "profondeur"
         | "profundidad" | "profundidade" => (Column::Z, Some(Domain::Depth), None),
         "elevation" | "elev" | "altitude" => (Column::Z, Some(Domain::Depth), Some(ZPositive::Up)),
-        "name" | "horizon" | "surface" | "fault" | "horizon_name" | "fault_name" | "surface_name" => {
-            (Column::Name, None, None)
+        "name" | "horizon" | "surface" | "fault" | "horizon_name" | "fault_name" | "surface_name" | "formation"
+        | "formation_name" | "feature_name" | "interface" => (Column::Name, None, None),
+        "val" | "strati" | "horizon_id" | "surface_id" | "formation_id" | "id" | "surf_id" => {
+            (Column::Level, None, None)
         }
+        "dip" => (Column::Dip, None, None),
+        "azimuth" | "dip_azimuth" | "dip_direction" | "dip_dir" | "dipdir" => (Column::Azimuth, None, None),
+        "polarity" => (Column::Polarity, None, None),
         "stick" | "stick_id" | "stick_number" | "stick_no" | "sticknr" | "segment" | "seg_id" | "stick_index" => {
             (Column::Stick, None, None)
         }
@@ -105,9 +118,9 @@ pub(super) fn of_name(name: &str) -> NamedColumn {
         "node" | "knot" | "node_id" | "node_number" | "knot_number" | "node_no" | "node_index" => {
             (Column::Node, None, None)
         }
-        "nx" | "normal_x" | "normalx" | "norm_x" => (Column::Nx, None, None),
-        "ny" | "normal_y" | "normaly" | "norm_y" => (Column::Ny, None, None),
-        "nz" | "normal_z" | "normalz" | "norm_z" => (Column::Nz, None, None),
+        "nx" | "normal_x" | "normalx" | "norm_x" | "g_x" | "gx" => (Column::Nx, None, None),
+        "ny" | "normal_y" | "normaly" | "norm_y" | "g_y" | "gy" => (Column::Ny, None, None),
+        "nz" | "normal_z" | "normalz" | "norm_z" | "g_z" | "gz" => (Column::Nz, None, None),
         "sheet" | "sheet_index" => (Column::Sheet, None, None),
         "quality" => (Column::Quality, None, None),
         _ => (Column::Other, None, None),

@@ -31,12 +31,11 @@ pub(super) const CODEC: Codec = Codec {
 
 fn detect(source: &SourceFile) -> Option<String> {
     let text = source.text();
-    let rows: Vec<_> = text::lines(&text).filter(|l| !table::is_comment(l.text)).take(3).collect();
+    let rows: Vec<_> = text::lines(&text).filter(|l| !table::is_comment(l.text)).take(6).collect();
     let first = rows.first()?;
-    let second = rows.get(1).unwrap_or(first);
     let cut = LineCut::of(&rows);
-    let numbers = cut.fields(second.text).iter().filter(|f| cut.number(f.text).is_some()).count();
-    if numbers < 3 {
+    let numbers = |line: &Line<'_>| cut.fields(line.text).iter().filter(|f| cut.number(f.text).is_some()).count();
+    if rows.iter().skip(1).chain((rows.len() == 1).then_some(first)).all(|line| numbers(line) < 3) {
         return None;
     }
     Some(if is_header(first.text, cut) { "a table with a header line" } else { "a table of numbers" }.into())

@@ -44,6 +44,8 @@ pub enum FormatError {
         file: PathBuf,
         /// What the file begins with.
         found: String,
+        /// Whether it is known what it is.
+        is_named: bool,
         /// The formats that can be named.
         known: String,
     },

@@ -17,7 +17,7 @@ use super::{Format, FormatError, SurfaceKind};
 use glam::{DVec2, DVec3};
 use std::path::Path;
 use survey::Progress;
-use survey::geometry::SurveyGeometry;
+use survey::geometry::{SurveyGeometry, VerticalUnit};
 use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
 use survey::mesh::TriangleMesh;
 use survey::remedy::{Note, Setting};
@@ -82,6 +82,9 @@ pub(super) fn build(
     }
     if let RawShape::Points(points) = &mut raw.shape {
         points.retain(|p| p.z.is_finite());
+        if geometry.vertical.unit == VerticalUnit::Metres {
+            points.iter_mut().for_each(|point| point.normal = point.normal.or(point.dip.map(normal_of)));
+        }
     }
     let [nu, nv, _] = geometry.size();
     system::memory::check("a map of the survey", &[nu, nv], BYTES_A_TRACE)
@@ -122,6 +125,13 @@ pub(super) fn build(
         off_map: nodes.off_map,
     };
     Ok((Horizon { name, sheets: nodes.sheets, surface: nodes.surface }, report))
+}
+
+/// The normal, in the directions of X, Y and depth, of beds with a dip, its direction and their polarity: towards the
+/// younger ones.
+fn normal_of([dip_deg, azimuth_deg, polarity]: [f64; 3]) -> DVec3 {
+    let ((sin, cos), (east, north)) = (dip_deg.to_radians().sin_cos(), azimuth_deg.to_radians().sin_cos());
+    DVec3::new(sin * east, sin * north, -cos) * if polarity < 0.0 { -1.0 } else { 1.0 }
 }
 
 fn from_grid(

@@ -47,6 +47,8 @@
 //! | Irap binary, PetroMod binary, IJXYZ, IESX, DUG | ✓ | | | |
 //! | EarthVision, Petrel points and well tops | ✓ | points | | |
 //! | Charisma | ✓ | sticks | | |
+//! | Esri ASCII, Surfer (DSAA, DSBB, DSRB) | ✓ | | | |
+//! | GeoJSON | points | traces with a dip, sticks | | |
 //! | ZMAP+ points, RMS points (CSV/XYZ with 999 separators or attributes), polygons with ids | ✓ | outlines, sticks | | |
 //!
 //! To add a format: one file with a `CODEC`, one variant of [`Format`], one line in `CODECS`.
@@ -62,8 +64,10 @@ mod dug;
 mod dxf;
 mod earthvision;
 mod error;
+mod esri;
 mod export;
 mod fault;
+mod geojson;
 mod horizon;
 mod iesx;
 mod ijxyz;
@@ -90,6 +94,7 @@ pub mod segy;
 mod sheets;
 mod sticks;
 mod surface_kind;
+mod surfer;
 mod table;
 mod text;
 mod tsurf;
@@ -170,6 +175,12 @@ pub enum Format {
     ZmapPoints,
     /// DXF drawings.
     Dxf,
+    /// Esri ASCII grid.
+    Esri,
+    /// Surfer grids: ASCII, binary 6 and 7.
+    Surfer,
+    /// GeoJSON lines and points.
+    GeoJson,
 }
 
 /// The kind of surface that a file holds, or that is to be read from it.
@@ -247,6 +258,9 @@ const CODECS: &[Codec] = &[
     tsurf::CODEC,
     irap_binary::CODEC,
     petromod::CODEC,
+    surfer::CODEC,
+    esri::CODEC,
+    geojson::CODEC,
     irap::CODEC,
     cps3::CODEC,
     zmap::CODEC,
@@ -334,7 +348,8 @@ fn read_source(
                     first.map_or_else(|| "it is empty".into(), |l| format!("it begins with {}", text::excerpt(l.text)))
                 };
                 let found = known.map_or_else(begins, str::to_owned);
-                FormatError::UnknownFormat { file: path.to_path_buf(), found, known: names(|_| true) }
+                let (file, is_named) = (path.to_path_buf(), known.is_some());
+                FormatError::UnknownFormat { file, found, is_named, known: names(|_| true) }
             })?;
             Settled { value, source: Provenance::File(evidence) }
         }
@@ -369,16 +384,43 @@ fn header_lines(source: &SourceFile) -> Vec<String> {
 const HEADER_BYTES: usize = 1 << 16;
 
 /// What a file is that is known but not read, and what to export instead.
-fn known_by_name(bytes: &[u8]) -> Option<&'static str> {
-    const KNOWN: [(&[u8], &str); 6] = [
+pub(crate) fn known_by_name(bytes: &[u8]) -> Option<&'static str> {
+    const KNOWN: [(&[u8], &str); 17] = [
         (b"\x93NUMPY", "it is a NumPy array, which has values but no places: write x, y, z as csv"),
         (b"AutoCAD Binary DXF", "it is a binary DXF drawing: save it as ASCII DXF"),
         (b"#GeoProbe", "it is a GeoProbe surface, which is not read: export it as GOCAD TSurf or as x, y, z"),
         (b"GOCAD ", "of GOCAD's objects TSurf, VSet and PLine are read: export it as one of these"),
-        (b"SQLite format 3", "it is a database such as a GeoPackage: export the layer as csv with x, y, z"),
-        (b"PK\x03\x04", "it is a ZIP archive: unpack it first"),
+        (
+            b"SQLite format 3",
+            "it is a database such as a GeoPackage: export the layer as GeoJSON or as csv with x, y, z",
+        ),
+        (
+            b"PK\x03\x04",
+            "it is a ZIP archive, or an Office file, RESQML or a Petrel export: unpack it, or export tables as csv",
+        ),
+        (b"\x1f\x8b", "it is a gzip archive: unpack it first"),
+        (b"BZh", "it is a bzip2 archive: unpack it first"),
+        (b"\xfd7zXZ", "it is an xz archive: unpack it first"),
+        (b"7z\xbc\xaf", "it is a 7-Zip archive: unpack it first"),
+        (b"\xd0\xcf\x11\xe0", "it is a file of Microsoft Office: save the sheet as csv"),
+        (b"\x89HDF", "it is HDF5, as NetCDF-4, RESQML and OMF 2 are: export the surface as csv, Irap or Esri ASCII"),
+        (b"CDF\x01", "it is a NetCDF grid: export it as Esri ASCII (gdal_translate -of AAIGrid) or x, y, z (grd2xyz)"),
+        (b"CDF\x02", "it is a NetCDF grid: export it as Esri ASCII (gdal_translate -of AAIGrid) or x, y, z (grd2xyz)"),
+        (b"II*\0", "it is a TIFF or GeoTIFF: export it as Esri ASCII (gdal_translate -of AAIGrid)"),
+        (b"MM\0*", "it is a TIFF or GeoTIFF: export it as Esri ASCII (gdal_translate -of AAIGrid)"),
+        (b"\0\0\x27\x0a", "it is a shapefile: export the layer as GeoJSON (ogr2ogr)"),
     ];
-    KNOWN.iter().find(|(start, _)| bytes.starts_with(start)).map(|(_, what)| *what)
+    const WORDS: [(&str, &str); 5] = [
+        ("SPECGRID", "it is an Eclipse grid (GRDECL): export its horizons as surfaces"),
+        ("ZCORN", "it is an Eclipse grid (GRDECL): export its horizons as surfaces"),
+        ("<?xml", "it is XML, such as RESQML or LandXML: export the surface as GOCAD TSurf or x, y, z"),
+        ("#GTYPE", "it is a GXF grid: export it as Esri ASCII (gdal_translate -of AAIGrid)"),
+        ("%PDF", "it is a PDF: digitise what it shows, or ask for its data"),
+    ];
+    let by_bytes = KNOWN.iter().find(|(start, _)| bytes.starts_with(start)).map(|(_, what)| *what);
+    let start = String::from_utf8_lossy(&bytes[..bytes.len().min(2000)]);
+    let begins = |word: &str| text::lines(&start).any(|line| line.text.starts_with(word));
+    by_bytes.or_else(|| WORDS.iter().find(|(word, _)| begins(word)).map(|(_, what)| *what))
 }
 
 /// The surfaces to import: those of the selected name; of several, the one of the given name; otherwise all.
@@ -388,12 +430,21 @@ fn selected(
     options: &ImportOptions,
     kind: SurfaceKind,
 ) -> Result<Vec<RawSurface>, FormatError> {
+    let numbered = |surface: &RawSurface| surface.name.as_deref().is_none_or(|name| name.trim().is_empty());
+    if let Some(number) = options.select.as_ref().and_then(|wanted| wanted.parse::<usize>().ok())
+        && surfaces.len() > 1
+        && surfaces.iter().all(numbered)
+        && (1..=surfaces.len()).contains(&number)
+    {
+        return Ok(surfaces.into_iter().skip(number - 1).take(1).collect());
+    }
     let wanted = match (&options.select, &options.name) {
         (Some(name), _) => name,
         (None, Some(name)) if surfaces.len() > 1 => name,
         _ => return Ok(surfaces),
     };
-    let available = surfaces.iter().map(|s| s.name.clone().unwrap_or_else(|| "(no name)".into())).collect::<Vec<_>>();
+    let name = |(n, surface): (usize, &RawSurface)| surface.name.clone().unwrap_or_else(|| format!("{}", n + 1));
+    let available = surfaces.iter().enumerate().map(name).collect::<Vec<_>>();
     let found: Vec<_> = surfaces.into_iter().filter(|s| s.name.as_deref() == Some(wanted)).collect();
     if found.is_empty() {
         return Err(FormatError::NoSuchName {

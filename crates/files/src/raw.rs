@@ -44,6 +44,8 @@ pub(super) struct RawPoint {
     pub sheet: Option<f64>,
     /// The normal of the surface there, in the directions of X, Y and Z.
     pub normal: Option<DVec3>,
+    /// Dip from the horizontal, its direction clockwise from north, degrees, and 1, or -1 where beds are overturned.
+    pub dip: Option<[f64; 3]>,
     /// The origin of its depth, if the file states it.
     pub quality: Option<Quality>,
 }

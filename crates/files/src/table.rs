@@ -115,6 +115,7 @@ pub(super) fn surfaces(
         let polygons = layout.columns.iter_mut().filter(|column| **column == Column::Polygon);
         polygons.for_each(|column| *column = Column::Other);
     }
+    settle_levels(rows, cut, &mut layout);
     if !layout.is_complete() {
         return Err(FormatError::Columns {
             file: source.path.clone(),
@@ -122,7 +123,7 @@ pub(super) fn surfaces(
                 "the columns {} hold no Z with X, Y or inline, crossline",
                 layout.columns.iter().map(|c| format!("{c:?}").to_lowercase()).collect::<Vec<_>>().join(", ")
             ),
-            example: "x,y,z".into(),
+            example: example_of(&layout.columns),
         });
     }
     let last = layout.columns.iter().rposition(|&c| c != Column::Other).unwrap_or(0);
@@ -130,11 +131,23 @@ pub(super) fn surfaces(
     let mut separators = 0usize;
     let mut breaks = 0.0;
     let mut polygons = HashMap::new();
+    let mut misplaced = 0_usize;
     for line in rows {
-        let fields = cut.fields(line.text);
+        let mut fields = cut.fields(line.text);
         if is_separator(&fields, cut) {
             separators += 1;
             breaks += 1.0;
+            continue;
+        }
+        if let Some(delimiter) = cut.delimiter.filter(|delimiter| line.text.ends_with(*delimiter)) {
+            // Cells at the end of a line are empty.
+            let cells = 1 + line.text.matches(delimiter).count();
+            fields.resize(cells.max(fields.len()), Field { text: "", quoted: false });
+        }
+        let is_place = |c: &Column| matches!(c, Column::X | Column::Y | Column::Inline | Column::Crossline);
+        let lacks_place = fields.iter().zip(&layout.columns).any(|(f, c)| is_place(c) && number::is_missing(f.text));
+        if fields.len() > last && lacks_place {
+            misplaced += 1;
             continue;
         }
         if fields.len() <= last {
@@ -151,6 +164,9 @@ pub(super) fn surfaces(
         // Points before the first separator belong to the first part.
         by_name.values_mut().flatten().for_each(|p| p.stick = p.stick.or(Some(0.0)));
     }
+    if misplaced > 0 {
+        layout.notes.push(format!("{misplaced} rows have no place and were left out"));
+    }
     let vertical = VerticalFacts { unit: layout.unit, domain: layout.domain, positive: layout.positive };
     Ok(by_name
         .into_iter()
@@ -161,6 +177,51 @@ pub(super) fn surfaces(
             ..RawSurface::new(name, RawShape::Points(points))
         })
         .collect())
+}
+
+/// Most surfaces that numbers in a column tell apart, and fewest points of each on average.
+const MOST_LEVELS: usize = 64;
+const POINTS_OF_LEVEL: usize = 3;
+
+/// Whether a column of numbers tells surfaces apart: few numbers, each of many rows. Where rows have names, the numbers
+/// are levels of them, unless there is one alone for each name.
+fn settle_levels(rows: &[Line<'_>], cut: LineCut, layout: &mut ColumnLayout) {
+    let Some(at) = layout.columns.iter().position(|column| *column == Column::Level) else { return };
+    let named = layout.columns.iter().position(|column| *column == Column::Name);
+    let mut levels: HashMap<&str, usize> = HashMap::new();
+    let mut pairs: HashMap<(&str, &str), usize> = HashMap::new();
+    for line in rows {
+        let fields = cut.fields(line.text);
+        let text = |at: usize| fields.get(at).map_or("", |field| field.text);
+        *levels.entry(text(at)).or_default() += 1;
+        *pairs.entry((named.map_or("", text), text(at))).or_default() += 1;
+        if pairs.len() > MOST_LEVELS {
+            break;
+        }
+    }
+    let names: std::collections::HashSet<&str> = pairs.keys().map(|(name, _)| *name).collect();
+    let tells = pairs.len() > names.len() && pairs.len() <= MOST_LEVELS && rows.len() >= POINTS_OF_LEVEL * pairs.len();
+    if !tells {
+        layout.columns[at] = Column::Other;
+    } else if named.is_none() {
+        layout.notes.push(format!("a column of {} numbers tells its surfaces apart", levels.len()));
+    }
+}
+
+/// A list of columns that reads the file: its own, with the last one that is not known as Z.
+fn example_of(columns: &[Column]) -> String {
+    let mut words: Vec<String> = columns
+        .iter()
+        .map(|c| if *c == Column::Other { "-".to_owned() } else { format!("{c:?}").to_lowercase() })
+        .collect();
+    let has = |c| columns.contains(&c);
+    if !has(Column::Z)
+        && let Some(last) = columns.iter().rposition(|c| *c == Column::Other)
+    {
+        words[last] = "z".to_owned();
+    }
+    let placed = (has(Column::X) && has(Column::Y)) || (has(Column::Inline) && has(Column::Crossline));
+    if placed && words.contains(&"z".to_owned()) { words.join(",") } else { "x,y,z".to_owned() }
 }
 
 /// RMS ends each part of a points file with a row of three 999.0.
@@ -181,12 +242,17 @@ fn point_of(
     let (mut inline, mut crossline, mut x, mut y) = (None, None, None, None);
     let (mut name, mut polygon) = (None, None);
     let mut normal = DVec3::NAN;
+    let (mut level, mut dip) = (None, [f64::NAN, f64::NAN, 1.0]);
     let mut point = RawPoint { z: f64::NAN, ..RawPoint::default() };
     for (field, column) in fields.iter().zip(columns) {
         let finite = |what: &str| {
             cut.number(field.text)
                 .filter(|v| v.is_finite())
                 .ok_or_else(|| source.syntax(line.number, format!("a number for the {what}"), field.text))
+        };
+        let measured = |what: &str| {
+            let value = cut.value(field.text);
+            value.ok_or_else(|| source.syntax(line.number, format!("a number for the {what}"), field.text))
         };
         match column {
             Column::Inline => inline = Some(finite("inline")?),
@@ -207,9 +273,13 @@ fn point_of(
             }
             Column::Node => point.node = Some(finite("node")?),
             Column::Sheet => point.sheet = Some(finite("sheet")?),
-            Column::Nx => normal.x = finite("normal")?,
-            Column::Ny => normal.y = finite("normal")?,
-            Column::Nz => normal.z = finite("normal")?,
+            Column::Nx => normal.x = measured("normal")?,
+            Column::Ny => normal.y = measured("normal")?,
+            Column::Nz => normal.z = measured("normal")?,
+            Column::Level => level = cut.number(field.text).filter(|v| v.is_finite()).map(|v| v.to_string()),
+            Column::Dip => dip[0] = measured("dip")?,
+            Column::Azimuth => dip[1] = measured("azimuth")?,
+            Column::Polarity => dip[2] = measured("polarity")?,
             Column::Quality => point.quality = columns::quality_of(field.text),
             Column::Other => {}
         }
@@ -220,8 +290,13 @@ fn point_of(
         return Err(source.syntax(line.number, "a coordinate below 1e12", &far.to_string()));
     }
     point.normal = normal.is_finite().then_some(normal);
+    point.dip = dip.iter().all(|v| v.is_finite()).then_some(dip);
     point.xy = x.zip(y).map(|(a, b)| DVec2::new(a, b));
-    Ok((name.or(polygon), point))
+    let named = match (name, level) {
+        (Some(name), Some(level)) => Some(format!("{name} {level}")),
+        (name, level) => name.or(level),
+    };
+    Ok((named.or(polygon), point))
 }
 
 /// The columns the user gave, the header's, or those that fit the survey.

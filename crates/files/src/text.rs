@@ -54,7 +54,8 @@ impl SourceFile {
 
     /// A value of a grid; NaN where it is missing.
     pub(crate) fn grid_value(&self, line: usize, token: &str) -> Result<f64, FormatError> {
-        let value = number::or_missing(token, NumberStyle::Point);
+        let value =
+            [NumberStyle::Point, NumberStyle::Comma].into_iter().find_map(|style| number::or_missing(token, style));
         value.ok_or_else(|| self.syntax(line, "a grid value", token))
     }
 

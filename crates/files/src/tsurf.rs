@@ -9,6 +9,7 @@
 //!
 //! Written with ZPOSITIVE Depth, one TFACE for each sheet, and CNXYZ at each vertex, which strict readers require.
 
+use super::column::{self, Column};
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Line, SourceFile};
 use super::unit::{Domain, ZPositive, ZUnit};
@@ -61,6 +62,9 @@ struct GocadObject {
     kind: ObjectKind,
     /// The line of each vertex, of a PLine.
     lines: Vec<f64>,
+    /// Names of the properties of a vertex, and of each vertex that which tells surfaces apart.
+    properties: Vec<String>,
+    levels: Vec<Option<f64>>,
     line: f64,
     name: Option<String>,
     mesh: TriangleMesh,
@@ -71,6 +75,32 @@ struct GocadObject {
 }
 
 impl GocadObject {
+    /// Its surfaces: one, or those that a property of its points tells apart.
+    fn surfaces(self) -> Vec<RawSurface> {
+        let mut levels: Vec<f64> = self.levels.iter().copied().flatten().collect();
+        levels.sort_by(f64::total_cmp);
+        levels.dedup();
+        let count = self.lines.len();
+        let tells = self.kind == ObjectKind::Points
+            && (2..=64).contains(&levels.len())
+            && self.levels.len() == count
+            && self.levels.iter().all(Option::is_some)
+            && count >= 3 * levels.len();
+        if !tells {
+            return vec![self.surface()];
+        }
+        let of_points = self.levels.clone();
+        let whole = self.surface();
+        let RawShape::Points(points) = &whole.shape else { return vec![whole] };
+        let of = |level: &f64| {
+            let own = points.iter().zip(&of_points).filter(|(_, own)| **own == Some(*level)).map(|(point, _)| *point);
+            let name = whole.name.as_deref().map_or_else(|| level.to_string(), |name| format!("{name} {level}"));
+            let shape = RawShape::Points(own.collect());
+            RawSurface { vertical: whole.vertical.clone(), ..RawSurface::new(Some(name), shape) }
+        };
+        levels.iter().map(of).collect()
+    }
+
     fn surface(self) -> RawSurface {
         let shape = if self.kind == ObjectKind::Surface {
             RawShape::Mesh(self.mesh)
@@ -130,7 +160,10 @@ impl GocadObject {
         let (Some(id), Some(x), Some(y), Some(z)) = (id, coordinate(), coordinate(), coordinate()) else {
             return Err(source.syntax(line.number, "VRTX id x y z", line.text));
         };
+        let level = self.properties.iter().position(|name| column::of_name(name).column == Column::Level);
+        let level = level.and_then(|at| words.nth(at)).and_then(number::plain);
         self.add(id, DVec3::new(x, y, z));
+        self.levels.push(level.filter(|v| v.is_finite()));
         Ok(())
     }
 
@@ -138,6 +171,8 @@ impl GocadObject {
         self.index.insert(id, self.mesh.vertices.len() as u32);
         self.mesh.vertices.push(position);
         self.lines.push(self.line);
+        // Atoms have none of their own.
+        self.levels.resize(self.lines.len() - 1, None);
     }
 
     fn read_triangle(&mut self, source: &SourceFile, line: Line<'_>, rest: &str) -> Result<(), FormatError> {
@@ -165,7 +200,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         let (keyword, rest) = line.text.split_once(char::is_whitespace).unwrap_or((line.text, ""));
         if keyword == "GOCAD" {
             // A file may end an object with the next one instead of END.
-            surfaces.extend(object.take().map(GocadObject::surface));
+            surfaces.extend(object.take().into_iter().flat_map(GocadObject::surfaces));
             if let Some(word) = rest.split_whitespace().next() {
                 match ObjectKind::of(word) {
                     Some(kind) => object = Some(GocadObject { kind, ..GocadObject::default() }),
@@ -176,7 +211,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         }
         let Some(o) = &mut object else { continue };
         match keyword {
-            "END" => surfaces.extend(object.take().map(GocadObject::surface)),
+            "END" => surfaces.extend(object.take().into_iter().flat_map(GocadObject::surfaces)),
             "GOCAD_ORIGINAL_COORDINATE_SYSTEM" => o.in_coordinates = true,
             "END_ORIGINAL_COORDINATE_SYSTEM" => o.in_coordinates = false,
             _ if o.in_coordinates => o.read_coordinates(keyword, rest),
@@ -192,12 +227,13 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
                 })?;
                 o.add(id, vertex);
             }
+            "PROPERTIES" => o.properties = rest.split_whitespace().map(str::to_owned).collect(),
             "ILINE" => o.line += 1.0,
             "TRGL" => o.read_triangle(source, line, rest)?,
             _ => o.read_name(line.text),
         }
     }
-    surfaces.extend(object.take().map(GocadObject::surface));
+    surfaces.extend(object.take().into_iter().flat_map(GocadObject::surfaces));
     let empty = |why: String| source.empty(context.kind, why);
     if surfaces.is_empty() {
         return Err(empty(other.map_or_else(

@@ -164,7 +164,8 @@ impl VerticalRule {
         }
         let likely = [1000.0, -1.0, -1000.0, FOOT_M, -FOOT_M, 1.0 / FOOT_M, -1.0 / FOOT_M, 0.001, -0.001, 2.0, 0.5];
         // A surface that was drawn beyond the survey lies in it for the greater part when its sign is changed.
-        let turned_up = fit(-1.0) * 2 > values.len();
+        // Where nearly as much of it lies there as it is, that is no reason.
+        let turned_up = fit(-1.0) * 2 > values.len() && fit(-1.0) > 2 * fit(1.0);
         let is_enough = |factor: f64| fit(factor) * 10 > values.len() * 9 || (turned_up && factor == -1.0);
         let best = likely
             .iter()

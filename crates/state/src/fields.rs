@@ -35,6 +35,7 @@ pub fn field(setting: Setting) -> Option<&'static str> {
         Setting::WellInFile => "Name in the files",
         Setting::Checkshot => "Checkshots",
         Setting::SampleFormat
+        | Setting::NullAmplitude
         | Setting::CoordinateType
         | Setting::LineType
         | Setting::ScalarByte

@@ -12,6 +12,8 @@ use std::fmt;
 pub enum Setting {
     /// Format of a SEG-Y file's samples.
     SampleFormat,
+    /// Amplitude that stands for no data.
+    NullAmplitude,
     /// Sample interval.
     Interval,
     /// Value of the first sample.
@@ -83,6 +85,7 @@ impl Setting {
     pub fn name(self) -> &'static str {
         match self {
             Self::SampleFormat => "sample format",
+            Self::NullAmplitude => "null amplitude",
             Self::Interval => "sample interval",
             Self::Start => "first sample",
             Self::VerticalUnit => "vertical unit",

@@ -61,6 +61,7 @@ pub use scalar::{ScalarInterval, ScalarTtf};
 pub use shade::{FlatFootprint, LayerPoint, ShadePoint, blend_raw, shade};
 pub use sheet::{TileBeside, contact_sheet, contact_sheet_beside};
 pub use stretch::Stretch;
+pub use svg::MOST_REACH;
 pub use tables::{BlockExtent, FINER, LayerExtent, TtfGlobals, TtfTables};
 pub use texture::Texture;
 pub use vision::{Confusion, Restyling, Vision, confusions};

@@ -7,6 +7,7 @@
 //! Tiles may come from anyone, with a project: only ordinary files are read, SVG opens nothing else and is bounded
 //! in cost (see [`crate::svg`]), and PNG and JPEG are decoded within [`MAX_DECODING_BYTES`].
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -108,6 +109,7 @@ fn decode(path: &Path, content: &[u8]) -> Result<(Texture, f32), TtfError> {
     let bad_size =
         |width, height| TtfError::BadSize { name: path.display().to_string(), width, height, limit: MAX_IMAGE_SIDE_PX };
     let format = image::guess_format(content).map_err(bad_image)?;
+    let content = &*if format == image::ImageFormat::Png { without_extras(content) } else { Cow::Borrowed(content) };
     let reader = || {
         let mut reader = image::ImageReader::with_format(std::io::Cursor::new(content), format);
         let mut limits = image::Limits::default();
@@ -134,6 +136,25 @@ fn decode(path: &Path, content: &[u8]) -> Result<(Texture, f32), TtfError> {
     let square = resample_rows(turned.chunks_exact(height as usize), height as usize, side);
     let square = transpose(&square, side);
     Ok((Texture::from_premultiplied(square), height as f32 / width as f32))
+}
+
+/// A PNG without what may inflate and is no pixel: colour profiles, texts, and all that its readers may ignore.
+fn without_extras(content: &[u8]) -> Cow<'_, [u8]> {
+    const SIGNATURE: usize = 8;
+    const NEEDED: [&[u8]; 2] = [b"tRNS", b"PLTE"];
+    let Some((signature, mut rest)) = content.split_at_checked(SIGNATURE) else { return Cow::Borrowed(content) };
+    let mut kept = signature.to_vec();
+    while let Some((head, _)) = rest.split_first_chunk::<8>() {
+        let length = u32::from_be_bytes([head[0], head[1], head[2], head[3]]) as usize;
+        // Length, name, content, checksum. What is cut off is left to the decoder to refuse.
+        let chunk = &rest[..length.saturating_add(12).min(rest.len())];
+        let is_ancillary = head[4] & 0x20 != 0;
+        if !is_ancillary || NEEDED.contains(&&head[4..8]) {
+            kept.extend_from_slice(chunk);
+        }
+        rest = &rest[chunk.len()..];
+    }
+    Cow::Owned(kept)
 }
 
 /// Resamples every row from `from` to `to` texels, wrapping around. Rows are asked for one after the other.
@@ -185,6 +206,28 @@ fn transpose(texels: &[[f32; 4]], width: usize) -> Vec<[f32; 4]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_inflates_in_a_png_and_is_no_pixel_is_not_decoded() {
+        let mut png = Vec::new();
+        let pixels = image::RgbaImage::from_pixel(4, 4, image::Rgba([255, 0, 0, 128]));
+        pixels.write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png).unwrap();
+        // A profile that is no zlib stream at all, with a wrong checksum, behind the header.
+        let profile: Vec<u8> = [&1000_u32.to_be_bytes()[..], b"iCCP", &[7; 1000], &[0; 4]].concat();
+        let with: Vec<u8> = [&png[..33], &profile, &png[33..]].concat();
+        assert_eq!(&*without_extras(&with), &*without_extras(&png));
+        let path = Path::new("a.png");
+        assert_eq!(decode(path, &with).unwrap().0, decode(path, &png).unwrap().0);
+        assert!(decode(path, &with[..60]).is_err());
+        let Some(folder) = testdata::folder() else { return };
+        let Ok(content) = std::fs::read(folder.join("cases/attack-png-iccp/iccp.png")) else {
+            eprintln!("skipped: the case attack-png-iccp is not there");
+            return;
+        };
+        let begun = std::time::Instant::now();
+        drop(decode(path, &content));
+        assert!(begun.elapsed().as_secs() < 5, "{:?}", begun.elapsed());
+    }
     use crate::TextureLibrary;
 
     fn folder() -> tempfile::TempDir {

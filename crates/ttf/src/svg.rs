@@ -41,6 +41,9 @@ const MAX_SEGMENTS: usize = 100_000;
 /// Most dashes of one path.
 const MAX_DASHES: f32 = 20_000.0;
 
+/// How far a path may reach beyond the tile, in tiles.
+pub const MOST_REACH: f32 = 4.0;
+
 /// Elements that read other files, or whose cost multiplies from one to the next.
 const REFUSED_ELEMENTS: [&str; 6] = ["image", "feImage", "filter", "marker", "mask", "pattern"];
 
@@ -59,7 +62,8 @@ pub(crate) fn parse(name: &str, svg: &[u8]) -> Result<usvg::Tree, TtfError> {
     let nothing = ImageHrefResolver { resolve_data: Box::new(|_, _, _| None), resolve_string: Box::new(|_, _| None) };
     let options = usvg::Options { image_href_resolver: nothing, ..usvg::Options::default() };
     let tree = usvg::Tree::from_xmltree(&document, &options).map_err(bad)?;
-    check_group(tree.root()).map_err(refused)?;
+    let size = [tree.size().width(), tree.size().height()];
+    check_group(tree.root(), size).map_err(refused)?;
     Ok(tree)
 }
 
@@ -196,14 +200,16 @@ fn clip_share<'a, 'input>(
 }
 
 /// What only the converted drawing tells: styles are resolved, and paths are in their final form.
-fn check_group(group: &usvg::Group) -> Result<(), String> {
+fn check_group(group: &usvg::Group, size: [f32; 2]) -> Result<(), String> {
     if !group.filters().is_empty() {
         return Err("it uses a filter".to_owned());
     }
+    let clip = group.clip_path().map(usvg::ClipPath::root);
+    clip.map_or(Ok(()), |clip| check_group(clip, size))?;
     for node in group.children() {
         match node {
-            usvg::Node::Group(inner) => check_group(inner)?,
-            usvg::Node::Path(path) => check_path(path)?,
+            usvg::Node::Group(inner) => check_group(inner, size)?,
+            usvg::Node::Path(path) => check_path(path, size)?,
             usvg::Node::Image(_) => return Err("it holds an image".to_owned()),
             usvg::Node::Text(_) => {}
         }
@@ -211,8 +217,9 @@ fn check_group(group: &usvg::Group) -> Result<(), String> {
     Ok(())
 }
 
-fn check_path(path: &usvg::Path) -> Result<(), String> {
+fn check_path(path: &usvg::Path, size: [f32; 2]) -> Result<(), String> {
     let data = path.data();
+    check_reach(path, size)?;
     if data.len() > MAX_SEGMENTS {
         return Err(format!("a path has {} lines and curves, more than the limit of {MAX_SEGMENTS}", data.len()));
     }
@@ -222,6 +229,24 @@ fn check_path(path: &usvg::Path) -> Result<(), String> {
     let count = length / period * dashes.len() as f32;
     // A count that is not a number stands for a length that is none.
     if count <= MAX_DASHES { Ok(()) } else { Err(format!("a path has more than {MAX_DASHES} dashes")) }
+}
+
+/// Refuses what reaches far beyond the tile: the rasteriser's work, and the copies of a pattern, grow with it.
+fn check_reach(path: &usvg::Path, size: [f32; 2]) -> Result<(), String> {
+    let transform = path.abs_transform();
+    let width = path.stroke().map_or(0.0, |stroke| stroke.width().get());
+    let scale =
+        [transform.sx, transform.kx, transform.ky, transform.sy].iter().fold(0.0, |most: f32, v| most.max(v.abs()));
+    let mut places = path.data().points().to_vec();
+    transform.map_points(&mut places);
+    let reach = |p: &resvg::tiny_skia::Point| {
+        let around = |at: f32, side: f32| ((at / side - 0.5).abs() + width * scale / side) - 0.5;
+        around(p.x, size[0]).max(around(p.y, size[1]))
+    };
+    match places.iter().map(reach).find(|reach| !(..=MOST_REACH).contains(reach)) {
+        Some(far) => Err(format!("a path reaches {far:.0} tiles beyond the tile, more than the limit of {MOST_REACH}")),
+        None => Ok(()),
+    }
 }
 
 #[cfg(test)]
@@ -270,7 +295,16 @@ mod tests {
             (r#"<use href="other.svg#a"/>"#, "another file"),
             (r##"<g id="a"><use href="#a"/></g>"##, "deeper"),
             (r##"<clipPath id="a" clip-path="url(#b)"><rect width="1" height="1"/></clipPath>"##, "clipped"),
-            (r#"<path d="M0 0L10000 0" stroke="red" stroke-dasharray="0.01"/>"#, "dashes"),
+            (r#"<path d="M0 0L40 0" stroke="red" stroke-dasharray="0.001"/>"#, "dashes"),
+            (r#"<path d="M-1e5 -1e5 L 1e5 1e5 L 1e5 0 Z"/>"#, "beyond the tile"),
+            (r#"<path d="M-1e9 -1e9 L 1e9 1e9 L 1e9 0 Z"/>"#, "beyond the tile"),
+            (r#"<path d="M-1e38 -1e38 L 1e38 1e38 L 1e38 0 Z"/>"#, "beyond the tile"),
+            (r#"<g transform="scale(1e6)"><path d="M0 0 L 5 5 L 5 0 Z"/></g>"#, "beyond the tile"),
+            (r#"<path d="M0 0L9 9" stroke="red" stroke-width="1e6"/>"#, "beyond the tile"),
+            (
+                r##"<clipPath id="c"><rect x="-1e7" width="2e7" height="5"/></clipPath><g clip-path="url(#c)"><path d="M0 0h9v9z"/></g>"##,
+                "beyond the tile",
+            ),
         ] {
             let fact = refusal(&drawing(inside));
             assert!(fact.contains(word), "{fact} for {inside}");

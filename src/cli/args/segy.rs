@@ -42,6 +42,9 @@ pub(in crate::cli) struct SegyArgs {
     /// uint8, ...
     #[arg(long, value_name = "FORMAT")]
     pub(in crate::cli) sample_format: Option<String>,
+    /// Amplitude that stands for no data, or none [default: found by evidence]
+    #[arg(long, value_name = "V|none", allow_hyphen_values = true)]
+    pub(in crate::cli) null_amplitude: Option<String>,
     /// Sample interval, in the vertical unit
     #[arg(long, value_name = "STEP", allow_hyphen_values = true)]
     pub(in crate::cli) interval: Option<f64>,

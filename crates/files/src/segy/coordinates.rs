@@ -293,6 +293,14 @@ pub(super) fn locate<'a>(
             break;
         }
     }
+    if options.coordinate_type.is_none() && best.as_ref().is_none_or(|(_, rank)| *rank < SURE) {
+        // The bits of an IBM float are a number as IEEE float and as integer too: the size of bins tells.
+        let ibm = homes(options, columns.layout()).into_iter().filter(|(_, number_type)| number_type.is_none());
+        let sure = ibm.filter_map(|(bytes, _)| of((bytes, Some(NumberType::Ibm32))));
+        if let Some(found) = sure.into_iter().find(|found| rank(&found.0, &found.1, lattice) == SURE) {
+            return Some(found);
+        }
+    }
     if is_open(options) && best.as_ref().is_none_or(|(_, rank)| *rank < SURE) {
         let anywhere = coordinate_pairs(columns).into_iter().filter_map(|bytes| of((bytes, options.coordinate_type)));
         let is_sure = |found: &(Coordinates<'_>, FittedPlace)| {
@@ -544,10 +552,14 @@ fn note_fit(
     if is_float && is_found {
         let why = match coordinates.number_type {
             NumberType::F32 => ": as the integers that the standard has, they are no places on Earth",
+            NumberType::Ibm32 => ": as integers or IEEE floats they make no bins of a survey",
             _ => ", in the trace header extension of revision 2",
         };
         findings.assumption(Note::unless(
-            format!("X and Y are IEEE floats without a scalar{why}"),
+            format!(
+                "X and Y are {} floats without a scalar{why}",
+                if coordinates.number_type == NumberType::Ibm32 { "IBM" } else { "IEEE" }
+            ),
             Setting::CoordinateType.stated_as("i32, f32, f64 or ibm32"),
         ));
     } else if !is_float && low != high {

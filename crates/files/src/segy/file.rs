@@ -11,10 +11,11 @@ use super::detect::{Detected, detect, fields};
 use super::error::{SegyError, SegyProblem};
 use super::field_sweep::Sweep;
 use super::frame::FileLayout;
-use super::header::{Field, at};
+use super::header::{Field, Traces, at};
 use super::info::{BytePositions, Findings, SegyInfo, corners};
 use super::lines::{Flaw, LineLattice, NO_TRACE};
-use super::options::{KeptDuplicate, SegyOptions, TraceWeight};
+use super::null;
+use super::options::{KeptDuplicate, NullAmplitude, SegyOptions, TraceWeight};
 use super::text_bytes::NamedBytes;
 use super::vertical::{Vertical, coordinate_unit, note_coordinate_unit};
 use survey::geometry::{DEFAULT_VELOCITY_M_S, SurveyGeometry};
@@ -38,6 +39,8 @@ pub struct SegyFile {
     lattice: LineLattice,
     dead: Vec<bool>,
     shifts: Option<Vec<u32>>,
+    /// The amplitude that stands for no data.
+    null: Option<f32>,
     /// Trace weighting factors N that apply, by 2^(`factor_2`·N).
     weights: Option<HeaderColumn>,
     factor_2: i32,
@@ -153,6 +156,19 @@ impl SegyFile {
         Ok(non_finite)
     }
 
+    /// The same, with NaN where a null amplitude is.
+    pub(super) fn read_known(&self, x: usize, y: usize, out: &mut [f32]) -> Result<usize, SegyError> {
+        let Some(trace) = self.trace_at(x, y) else {
+            out.fill(0.0);
+            return Ok(0);
+        };
+        let mut non_finite = 0;
+        self.read_in_order(&mut [(trace, out)], &mut Vec::new(), |trace, bytes, out| {
+            non_finite = self.decode_with(trace, bytes, out, f32::NAN);
+        })?;
+        Ok(non_finite)
+    }
+
     /// Hands the encoded samples of traces to `take`, with the number of the trace in the file and what belongs
     /// to it. `traces` are in the order of the file; neighbours are read at once, by way of `room`.
     pub(super) fn read_in_order<T>(
@@ -178,13 +194,23 @@ impl SegyFile {
 
     /// Decodes the samples of a trace; returns how many were NaN or infinite and became 0.
     pub(super) fn decode(&self, trace: usize, bytes: &[u8], out: &mut [f32]) -> usize {
+        self.decode_with(trace, bytes, out, 0.0)
+    }
+
+    /// The same, where null amplitudes become `nothing`.
+    pub(super) fn decode_with(&self, trace: usize, bytes: &[u8], out: &mut [f32], nothing: f32) -> usize {
         let shift = self.shifts.as_ref().map_or(0, |shifts| shifts[trace] as usize).min(out.len());
         let (before, rest) = out.split_at_mut(shift);
         let recorded = rest.len().min(self.frame.samples);
         let (values, after) = rest.split_at_mut(recorded);
         before.fill(0.0);
         after.fill(0.0);
-        self.frame.format.decode(self.frame.order, bytes, values);
+        self.frame.format.decode(self.frame.sample_order, bytes, values);
+        let is_nothing = |value: f32| self.null.is_some_and(|null| null::is_null(value, null));
+        let nulls: Vec<usize> = match self.null {
+            Some(_) => (0..values.len()).filter(|&n| is_nothing(values[n])).collect(),
+            None => Vec::new(),
+        };
         if let Some(weights) = &self.weights
             && (1..=MAX_WEIGHT).contains(&weights.at(trace).abs())
         {
@@ -193,14 +219,14 @@ impl SegyFile {
         }
         // Without a branch, so that it becomes vector instructions; counting is for the few traces that have
         // any.
-        if !values.iter().fold(false, |found, value| found | !value.is_finite()) {
-            return 0;
-        }
         let mut non_finite = 0;
-        for value in values.iter_mut().filter(|value| !value.is_finite()) {
-            *value = 0.0;
-            non_finite += 1;
+        if values.iter().fold(false, |found, value| found | !value.is_finite()) {
+            for value in values.iter_mut().filter(|value| !value.is_finite()) {
+                *value = 0.0;
+                non_finite += 1;
+            }
         }
+        nulls.into_iter().for_each(|n| values[n] = nothing);
         non_finite
     }
 }
@@ -216,7 +242,8 @@ fn understand(path: &Path, bytes: Bytes, options: &SegyOptions, progress: &Progr
     let columns = Columns::read(&traces, &wanted, None, named, progress)?;
     let count = traces.count;
 
-    let dead = dead_traces(&columns, count, &mut findings);
+    let mut dead = dead_traces(&columns, count, &mut findings);
+    let null = null_amplitude(&frame, &traces, options, &mut dead, &mut findings)?;
     let every_field = |sweep: Sweep| Columns::read(&traces, &wanted, Some(sweep), named, progress);
     let mut detected = if count == 1 {
         single_trace(&columns, options)?
@@ -298,6 +325,7 @@ fn understand(path: &Path, bytes: Bytes, options: &SegyOptions, progress: &Progr
         lattice,
         dead,
         shifts: vertical.shifts,
+        null,
         weights,
         factor_2,
     })
@@ -370,6 +398,44 @@ fn dead_traces(columns: &Columns, count: usize, findings: &mut Findings) -> Vec<
         findings.evidence(format!("{number} of {count} traces are flagged dead (byte 29 is 2): they are not live"));
     }
     dead
+}
+
+/// The amplitude that stands for no data, stated or found; traces of nothing else become dead.
+fn null_amplitude(
+    frame: &FileLayout,
+    traces: &Traces<'_>,
+    options: &SegyOptions,
+    dead: &mut [bool],
+    findings: &mut Findings,
+) -> Result<Option<f32>, SegyProblem> {
+    let found = match options.null {
+        Some(NullAmplitude::None) => return Ok(None),
+        Some(NullAmplitude::At(_)) => None,
+        None => null::find(traces, frame.format, frame.sample_order)?,
+    };
+    let stated = match options.null {
+        Some(NullAmplitude::At(value)) => Some(value as f32),
+        _ => None,
+    };
+    let Some(value) = stated.or(found.as_ref().map(|found| found.value)) else { return Ok(None) };
+    let empty = null::empty_traces(traces, frame.format, frame.sample_order, value)?;
+    let number = empty.iter().filter(|&&empty| empty).count();
+    if number < dead.len() {
+        dead.iter_mut().zip(&empty).for_each(|(dead, empty)| *dead |= empty);
+    }
+    let left_out = format!("they are left out, as 0, and {number} traces of nothing else are not live");
+    match found {
+        None => findings.evidence(format!("amplitudes of {value:e} stand for no data, as stated: {left_out}")),
+        Some(found) => findings.assumption(Note::unless(
+            format!(
+                "amplitudes of {value:e} stand for no data: {} of {} samples that were looked at, in runs of up to {}; \
+                 {left_out}",
+                found.count, found.samples, found.longest_run
+            ),
+            Setting::NullAmplitude.stated_as("none"),
+        )),
+    }
+    Ok(Some(value))
 }
 
 /// A file of one trace has no lattice; its line numbers are those of the standard, or as stated.

@@ -6,13 +6,21 @@
 use super::SegyOptions;
 use super::bytes::Bytes;
 use super::error::SegyProblem;
+use super::evidence;
 use super::header::{BinaryHeader, FILE_HEADER_BYTES, Field, ORDER_CONSTANT, TRACE_HEADER_BYTES, Traces, at};
 use super::info::Findings;
 use super::sample::{ByteOrder, SampleFormat};
-use super::text::{TEXT_BYTES, TextEncoding, decode_lines, ends_text, is_text};
+use super::text::{TEXT_BYTES, TextEncoding, decode_lines, decode_texts, ends_text, is_text};
+use survey::remedy::{Note, Setting};
 
 /// Bytes of extended text that are read at most: 300 headers. The standard's stanzas take a few.
 const MOST_EXTENDED_TEXT: usize = 300 * TEXT_BYTES;
+
+/// Traces whose headers must say the same sample count.
+const PROBES: usize = 16;
+
+/// Sample counts that a field of 2 bytes may have folded: this many times 65536.
+const MOST_FOLDS: usize = 16;
 
 /// Extended text headers that are read at once.
 const HEADERS_TOGETHER: usize = 80;
@@ -22,6 +30,8 @@ const HEADERS_TOGETHER: usize = 80;
 pub(super) struct FileLayout {
     pub order: ByteOrder,
     pub format: SampleFormat,
+    /// The order of the samples' bytes, which may be another one.
+    pub sample_order: ByteOrder,
     pub encoding: TextEncoding,
     /// Lines of the textual header.
     pub text: Vec<String>,
@@ -52,15 +62,36 @@ impl FileLayout {
         findings.evidence(format!("text header: {}", encoding.name()));
         let (order, format) = order_and_format(file, &head, options, findings)?;
         let binary = BinaryHeader::parse(&head, order);
-        let shape = LayoutReading::find(file, &binary, order, format, encoding, findings)?;
+        let (shape, width) = LayoutReading::find(file, &binary, order, format, encoding, options, findings)?;
         let extended = (shape.start.saturating_sub(FILE_HEADER_BYTES as u64) as usize).min(MOST_EXTENDED_TEXT);
         let extended_text = match file.get(FILE_HEADER_BYTES as u64, extended, None)? {
-            Some(bytes) => decode_lines(&bytes, encoding),
+            Some(bytes) => decode_texts(&bytes, encoding),
             None => Vec::new(),
         };
+        let traces = shape.traces(file, order, width);
+        let coded =
+            if width == format.bytes() { format } else { evidence::of_width(&traces, width)?.unwrap_or(format) };
+        let (settled, sample_order) = match options.format {
+            Some(_) => (format, order),
+            None => evidence::settle(&traces, coded, order, findings)?,
+        };
+        if width != format.bytes() {
+            findings.warning(Note::unless(
+                format!(
+                    "the format code says {}, of {} bytes a sample, but the trace headers follow one another at samples of \
+                     {width}: they are read as {}",
+                    format.name(),
+                    format.bytes(),
+                    settled.name()
+                ),
+                Setting::SampleFormat.stated(),
+            ));
+        }
+        let format = settled;
         Ok(Self {
             order,
             format,
+            sample_order,
             encoding,
             text,
             extended_text,
@@ -228,14 +259,21 @@ impl LayoutReading {
         self.header_bytes + self.samples * format.bytes()
     }
 
+    fn traces<'a>(&self, bytes: &'a Bytes, order: ByteOrder, width: usize) -> Traces<'a> {
+        let (start, count, header_bytes) = (self.start, self.traces, self.header_bytes);
+        Traces { bytes, start, count, order, stride: header_bytes + self.samples * width, header_bytes }
+    }
+
+    /// The first reading with a whole number of traces, and the bytes of its samples.
     fn find(
         file: &Bytes,
         binary: &BinaryHeader,
         order: ByteOrder,
         format: SampleFormat,
         encoding: TextEncoding,
+        options: &SegyOptions,
         findings: &mut Findings,
-    ) -> Result<Self, SegyProblem> {
+    ) -> Result<(Self, usize), SegyProblem> {
         let starts = starts(file, binary, encoding, findings)?;
         let trailer_bytes = match binary.trailers {
             n @ 1.. if binary.has_revision_2() => (TEXT_BYTES as u64).saturating_mul(u64::from(n.unsigned_abs())),
@@ -263,8 +301,15 @@ impl LayoutReading {
                     let is_preferred = shape == preferred;
                     shape.traces = (bytes / stride) as usize;
                     if is_preferred {
+                        // Where headers are elsewhere than at this length, or in between, another one is theirs.
+                        let other =
+                            if in_trace == 0 { None } else { shape.other(file, end, order, format, options)? };
+                        if let Some((other, width)) = other {
+                            note_other(&other, samples, findings);
+                            return Ok((other, width));
+                        }
                         shape.check_announced(binary, findings)?;
-                    } else if !shape.headers_agree(file, order, format)? {
+                    } else if !shape.headers_agree(file, order, format.bytes())? {
                         continue;
                     } else {
                         findings.warning(format!(
@@ -282,7 +327,7 @@ impl LayoutReading {
                             counts[0], shape.samples
                         ));
                     }
-                    return Ok(shape);
+                    return Ok((shape, format.bytes()));
                 }
             }
         }
@@ -296,14 +341,51 @@ impl LayoutReading {
         if end <= preferred.start {
             return Err(SegyProblem::NoTraces { bytes: file.len() });
         }
+        if let Some((other, width)) = preferred.other(file, end, order, format, options)? {
+            note_other(&other, preferred.samples, findings);
+            return Ok((other, width));
+        }
         Err(preferred.diagnose(file, end, order, format)?)
     }
 
-    /// Whether the traces of a reading that is not the preferred one say its sample count themselves.
-    fn headers_agree(&self, file: &Bytes, order: ByteOrder, format: SampleFormat) -> Result<bool, SegyProblem> {
-        for trace in [0, self.traces / 2, self.traces - 1] {
-            let byte = self.start + (trace * self.stride(format)) as u64;
-            if samples_in_header(file, byte, trace, order)? != Some(self.samples) {
+    /// Another size of samples, or count of them beyond what the header's 2 bytes hold, that divides the file into traces
+    /// whose headers say their count: the shortest length, of which the others are multiples.
+    fn other(
+        &self,
+        file: &Bytes,
+        end: u64,
+        order: ByteOrder,
+        format: SampleFormat,
+        options: &SegyOptions,
+    ) -> Result<Option<(Self, usize)>, SegyProblem> {
+        let widths = [1, 2, 3, 4, 8].into_iter().filter(|width| *width != format.bytes() && options.format.is_none());
+        let more = (1..=MOST_FOLDS).map(|fold| (format.bytes(), self.samples + (fold << 16)));
+        let own = [(format.bytes(), self.samples)].into_iter();
+        let mut found: Vec<(Self, usize, u64)> = Vec::new();
+        for (width, samples) in own.chain(widths.map(|width| (width, self.samples))).chain(more) {
+            let mut shape = Self { samples, ..*self };
+            let stride = (shape.header_bytes + samples * width) as u64;
+            let bytes = end.saturating_sub(shape.start);
+            shape.traces = (bytes / stride) as usize;
+            let is_whole = bytes.is_multiple_of(stride) && shape.traces > 1;
+            if is_whole && shape.headers_agree(file, order, width)? {
+                found.push((shape, width, stride));
+            }
+        }
+        let Some(&(shape, width, least)) = found.iter().min_by_key(|(_, _, stride)| *stride) else { return Ok(None) };
+        let is_own = width == format.bytes() && shape.samples == self.samples;
+        let is_sole = found.iter().all(|(_, _, stride)| stride.is_multiple_of(least));
+        Ok((is_sole && !is_own).then_some((shape, width)))
+    }
+
+    /// Whether traces spread over the file say the sample count themselves, as far as 2 bytes hold it.
+    fn headers_agree(&self, file: &Bytes, order: ByteOrder, width: usize) -> Result<bool, SegyProblem> {
+        let traces = self.traces(file, order, width);
+        let probes = PROBES.min(self.traces);
+        for probe in 0..probes {
+            let trace = probe * (self.traces - 1) / (probes - 1).max(1);
+            let byte = self.start + trace as u64 * traces.stride as u64;
+            if samples_in_header(file, byte, trace, order)? != Some(self.samples & 0xffff) {
                 return Ok(false);
             }
         }
@@ -364,6 +446,17 @@ impl LayoutReading {
     }
 }
 
+/// Says that the traces are of another length than the headers announce.
+fn note_other(found: &LayoutReading, announced: usize, findings: &mut Findings) {
+    if found.samples != announced {
+        findings.warning(format!(
+            "the headers hold {announced} samples a trace, which is all that 2 bytes hold of {}: the trace headers follow \
+             one another at that length",
+            found.samples
+        ));
+    }
+}
+
 /// Bytes at which traces may begin, the likeliest first.
 fn starts(
     file: &Bytes,
@@ -413,7 +506,9 @@ fn texts(file: &Bytes, encoding: TextEncoding) -> Result<u64, SegyProblem> {
     let (mut count, mut from) = (0, FILE_HEADER_BYTES as u64);
     while count < (MOST_EXTENDED_TEXT / TEXT_BYTES) as u64 {
         match file.get(from, TEXT_BYTES, None)? {
-            Some(block) if is_text(&block, encoding) => (count, from) = (count + 1, from + TEXT_BYTES as u64),
+            Some(block) if is_text(&block, encoding.of_block(&block)) => {
+                (count, from) = (count + 1, from + TEXT_BYTES as u64)
+            }
             _ => break,
         }
     }
@@ -427,7 +522,7 @@ fn find_end_of_text(file: &Bytes, encoding: TextEncoding) -> Result<Option<u64>,
         let to = (from + (TEXT_BYTES * HEADERS_TOGETHER) as u64).min(file.len());
         for block in file.read(from..to, &mut room, None)?.chunks_exact(TEXT_BYTES) {
             number += 1;
-            if ends_text(block, encoding) {
+            if ends_text(block, encoding.of_block(block)) {
                 return Ok(Some(number));
             }
         }

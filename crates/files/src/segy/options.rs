@@ -35,6 +35,16 @@ pub enum LineSource {
     CoordinatesSwapped,
 }
 
+/// The amplitude that stands for no data.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum NullAmplitude {
+    /// None does.
+    None,
+    /// This one.
+    At(f64),
+}
+
 /// Which of several traces at one place is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -84,6 +94,9 @@ pub struct SegyOptions {
     pub byte_order: Option<ByteOrder>,
     /// Sample format in place of the code at byte 3225.
     pub format: Option<SampleFormat>,
+    /// Amplitude that stands for no data. Default: found by evidence.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub null: Option<NullAmplitude>,
     /// Sample interval in the vertical unit.
     pub interval: Option<f64>,
     /// Value of the first sample in the vertical unit.

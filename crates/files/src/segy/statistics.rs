@@ -77,9 +77,9 @@ impl SegyFile {
             .par_chunks_mut(samples.max(1))
             .zip(&chosen)
             .map(|(trace, &place)| {
-                let non_finite = self.read_trace(place / crosslines, place % crosslines, trace)?;
+                let non_finite = self.read_known(place / crosslines, place % crosslines, trace)?;
                 progress.step(1).map_err(|cancelled| SegyProblem::from(cancelled).in_file(&self.path))?;
-                Ok((non_finite, trace.iter().all(|&value| value == 0.0)))
+                Ok((non_finite, trace.iter().all(|&value| value == 0.0 || value.is_nan())))
             })
             .collect::<Result<_, SegyError>>()?;
         let mut statistics = describe(values);
@@ -92,14 +92,17 @@ impl SegyFile {
 }
 
 fn describe(mut values: Vec<f32>) -> Statistics {
+    // Null amplitudes are NaN here.
+    values.retain(|value| !value.is_nan());
     let count = values.len();
     let sum = |of: fn(f64) -> f64| values.iter().map(|&v| of(f64::from(v))).sum::<f64>() / count.max(1) as f64;
     let (mean, rms) = (sum(|v| v), sum(|v| v * v).sqrt());
     let zero = values.iter().filter(|&&v| v == 0.0).count() as u64;
     values.sort_unstable_by(f32::total_cmp);
     let (min, max) = (values.first().copied().unwrap_or(0.0), values.last().copied().unwrap_or(0.0));
-    let at_limits =
-        values.iter().take_while(|&&v| v == min).count() + values.iter().rev().take_while(|&&v| v == max).count();
+    let at = |limit: f32| values.iter().filter(|&&v| v == limit).count();
+    // One value is no limit that data are clipped at.
+    let at_limits = if min == max { 0 } else { at(min) + at(max) };
     let at = |percent: f64| values.get((percent / 100.0 * count as f64) as usize).map_or(0.0, |&v| f64::from(v));
     let (low, high) = match [at(PERCENT[0]), at(PERCENT[PERCENT.len() - 1])] {
         [low, high] if low < 0.0 && high > 0.0 => (-high.max(-low), high.max(-low)),
@@ -149,7 +152,7 @@ mod tests {
     #[test]
     fn one_value_and_no_value_are_described_too() {
         let one = describe(vec![7.0; 9]);
-        assert_eq!((one.at_limits, one.histogram.counts[COLUMNS / 2]), (18, 9));
+        assert_eq!((one.at_limits, one.histogram.counts[COLUMNS / 2]), (0, 9));
         assert_eq!(describe(Vec::new()).samples, 0);
     }
 }

@@ -58,6 +58,12 @@ impl TextEncoding {
         if ascii > ebcdic { Self::Ascii } else { Self::Ebcdic }
     }
 
+    /// The encoding of an extended text header, which may be another one than that of the first.
+    pub(super) fn of_block(self, block: &[u8]) -> Self {
+        let other = if self == Self::Ebcdic { Self::Ascii } else { Self::Ebcdic };
+        if !is_text(block, self) && is_text(block, other) { other } else { self }
+    }
+
     fn decode(self, byte: u8) -> char {
         let latin_1 = match self {
             Self::Ebcdic => LATIN_1_FROM_EBCDIC[usize::from(byte)],
@@ -74,6 +80,11 @@ pub(super) fn decode_lines(bytes: &[u8], encoding: TextEncoding) -> Vec<String> 
         .chunks(LINE_CHARACTERS)
         .map(|line| line.iter().map(|&b| encoding.decode(b)).collect::<String>().trim_end().to_owned())
         .collect()
+}
+
+/// Lines of extended textual headers, each in its own encoding.
+pub(super) fn decode_texts(bytes: &[u8], encoding: TextEncoding) -> Vec<String> {
+    bytes.chunks(TEXT_BYTES).flat_map(|block| decode_lines(block, encoding.of_block(block))).collect()
 }
 
 /// Whether a block is text: nearly all of it are letters, digits, signs and blanks, some of them letters or digits. Trace

@@ -5,6 +5,7 @@ mod cases;
 mod drawings;
 mod faults;
 mod foreign;
+mod grids;
 mod penobscot;
 mod polygons;
 mod random;

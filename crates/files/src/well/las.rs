@@ -32,6 +32,8 @@ pub struct Las {
     pub wrapped: bool,
     /// The null value.
     pub null: Option<f64>,
+    /// Values that are missing for another reason: stars, words, `1.#QNAN`.
+    pub missing: usize,
     /// Section W.
     pub well: Vec<LasItem>,
     /// Section P.
@@ -150,11 +152,12 @@ pub fn parse_las(file: &Path, text: &str) -> Result<Las, WellFileError> {
         return Err(bad("there is no section ~A with data".into()));
     }
     las.null = las.well_item("NULL").and_then(|i| number::plain(&i.value));
-    las.data = data(file, &rows, &las)?;
+    (las.data, las.missing) = data(file, &rows, &las)?;
     Ok(las)
 }
 
-fn data(file: &Path, rows: &[Line<'_>], las: &Las) -> Result<Vec<Vec<f64>>, WellFileError> {
+/// The values, `[curve][row]`, and how many are missing but for the null.
+fn data(file: &Path, rows: &[Line<'_>], las: &Las) -> Result<(Vec<Vec<f64>>, usize), WellFileError> {
     let count = las.curves.len();
     let mut data = vec![Vec::new(); count];
     let syntax = |line: &Line<'_>, expected: String| WellFileError::Syntax {
@@ -163,7 +166,7 @@ fn data(file: &Path, rows: &[Line<'_>], las: &Las) -> Result<Vec<Vec<f64>>, Well
         expected,
         found: excerpt(line.text),
     };
-    let mut filled = 0;
+    let (mut filled, mut missing) = (0, 0);
     for line in rows {
         let tokens = line.text.split([' ', '\t', ',', ';']).filter(|t| !t.is_empty());
         let before = filled;
@@ -172,6 +175,7 @@ fn data(file: &Path, rows: &[Line<'_>], las: &Las) -> Result<Vec<Vec<f64>>, Well
             if filled == count {
                 return Err(syntax(line, format!("{count} values, one a curve")));
             }
+            missing += usize::from(value.is_nan());
             // The index may hold any number.
             data[filled].push(if filled > 0 && number::is_null(value, las.null) { f64::NAN } else { value });
             filled += 1;
@@ -189,5 +193,5 @@ fn data(file: &Path, rows: &[Line<'_>], las: &Las) -> Result<Vec<Vec<f64>>, Well
         let why = format!("the last depth has {filled} values of {count}");
         return Err(WellFileError::Las { file: file.to_owned(), why });
     }
-    Ok(data)
+    Ok((data, missing))
 }

@@ -14,6 +14,7 @@ mod las;
 mod options;
 mod read;
 mod report;
+mod rms;
 mod table;
 #[cfg(test)]
 mod tests;

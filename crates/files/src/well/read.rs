@@ -7,6 +7,7 @@ use super::error::WellFileError;
 use super::las::{Las, parse_las};
 use super::options::WellOptions;
 use super::report::WellReport;
+use super::rms;
 use super::tops::{on_path, parse_tops};
 use crate::unit::ZUnit;
 use crate::unit::words;
@@ -51,12 +52,16 @@ pub fn read_well(files: &WellFiles, options: &WellOptions) -> Result<(Well, Well
         Some(file) => Some(parse_collar(file, &text_of(file)?, options, &mut of_collar)?),
         None => None,
     };
-    let deviation = deviation_of(&files.deviation, &text, collar.as_ref(), options)?;
-    let mut report = deviation.report;
-    of_collar.assumptions.into_iter().for_each(|note| report.assume(note));
     let stem = || files.deviation.file_stem().map_or_else(|| "well".into(), |s| s.to_string_lossy().into_owned());
-    let name = options.name.clone().or(deviation.name).unwrap_or_else(stem);
-    let mut well = Well::new(name.clone(), deviation.path);
+    let (mut well, mut report) = if rms::is_rms(&text) {
+        rms::parse(&files.deviation, &text, options)?
+    } else {
+        let deviation = deviation_of(&files.deviation, &text, collar.as_ref(), options)?;
+        (Well::new(deviation.name.unwrap_or_else(stem), deviation.path), deviation.report)
+    };
+    of_collar.assumptions.into_iter().for_each(|note| report.assume(note));
+    let name = options.name.clone().unwrap_or_else(|| well.name.clone());
+    well.name.clone_from(&name);
     let options = WellOptions { name: Some(name), ..options.clone() };
     if let Some(file) = &files.checkshot {
         let checkshot = parse_checkshot(file, &text_of(file)?, &well.path, &options, &mut report)?;
@@ -80,6 +85,10 @@ pub fn read_well(files: &WellFiles, options: &WellOptions) -> Result<(Well, Well
             && !same_name(inside, &well.name)
         {
             report.warn_once(format!("{} says that it is of well '{inside}'", file.display()));
+        }
+        if las.missing > 0 {
+            let n = las.missing;
+            report.warn_once(format!("{}: {n} values are no numbers (stars, words) and are missing", file.display()));
         }
         let set = log_set(file, &las, &well.path, well.checkshot.as_ref(), &mut report)?;
         let names: Vec<&str> = set.curves.iter().map(|c| c.name.as_str()).collect();

@@ -24,6 +24,8 @@ const CELL: f64 = 1.0;
 const MOST_CELLS: f64 = 1024.0;
 /// A cell over which the pattern changes by more tiles is left out: the map folds there.
 const MOST_TILES: f64 = 64.0;
+/// Copies of a shape are looked for so far from it, tiles: no drawing reaches farther.
+const REACH: f64 = ttf::MOST_REACH as f64;
 /// Newton's method stops this close, tile units.
 const CLOSE: f64 = 2e-4;
 /// A place that is off by less is found, tile units.
@@ -337,9 +339,11 @@ impl MappedCells<'_> {
                 continue;
             }
             for (shape, [least, most]) in bounds.iter().enumerate() {
+                // No shape brings more copies into a cell than one that reaches as far as a tile's may.
                 let range = |axis: usize| {
-                    let first = (low[axis] - most[axis]).ceil() as i64;
-                    first..=(high[axis] - least[axis]).floor() as i64
+                    let (least, most) = (least[axis].max(-REACH), most[axis].min(1.0 + REACH));
+                    let first = (low[axis] - most).ceil() as i64;
+                    first..=(high[axis] - least).floor() as i64
                 };
                 for m in range(0) {
                     for n in range(1) {

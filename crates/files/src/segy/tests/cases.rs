@@ -1,6 +1,6 @@
 //! The small volumes that once failed, and others of their kinds.
 
-use super::super::{LengthUnit, SegyFile, SegyOptions};
+use super::super::{LengthUnit, NullAmplitude, SampleFormat, SegyFile, SegyOptions, ibm_from_f32};
 use super::builder::Built;
 use crate::unit::ZUnit;
 use std::path::PathBuf;
@@ -75,4 +75,164 @@ fn the_feet_of_x_and_y_are_those_of_the_text_header() {
     let info = said(1, "COORDINATES IN FEET");
     assert_eq!(info.coordinate_unit, LengthUnit::Metres);
     assert!(info.warnings.iter().any(|w| w.fact.contains("COORDINATES IN FEET")), "{:?}", info.warnings);
+}
+
+/// A volume with one value of a wave per sample, `words(value)` bytes each.
+fn volume(code: u16, samples: usize, encode: impl Fn(f32, usize) -> Vec<u8>) -> Built {
+    let lines: Vec<i32> = (1..=12).collect();
+    let mut built = Built::grid(&lines, &lines);
+    built.binary(3221, samples as u16);
+    built.binary(3225, code);
+    let count = samples as u16;
+    built.each(|index, trace| {
+        trace.i16(115, count.cast_signed());
+        trace.samples = (0..samples).flat_map(|n| encode(wave(index, n), n)).collect();
+    })
+}
+
+/// Amplitudes of both signs over three powers of ten.
+fn wave(trace: usize, n: usize) -> f32 {
+    let phase = 0.37 * n as f32 + 0.11 * trace as f32;
+    phase.sin() * 10_f32.powf(1.5 + 1.5 * (0.031 * n as f32 + 0.2 * trace as f32).cos())
+}
+
+fn bytes_of(file: &Built) -> (SegyFile, Vec<f32>) {
+    let path = std::path::Path::new("built.sgy");
+    let file = SegyFile::from_bytes(path, file.bytes(), &SegyOptions::default(), &Progress::silent());
+    let file = file.unwrap_or_else(|e| panic!("{e}"));
+    let mut out = vec![0.0; file.size()[2]];
+    file.read_trace(1, 2, &mut out).unwrap();
+    (file, out)
+}
+
+#[test]
+fn floats_of_another_kind_than_the_code_says_are_read_as_what_they_are() {
+    let ieee = |v: f32, _: usize| v.to_be_bytes().to_vec();
+    let ibm = |v: f32, _: usize| ibm_from_f32(v).to_be_bytes().to_vec();
+    let swapped = |v: f32, _: usize| v.to_le_bytes().to_vec();
+    let integer = |v: f32, _: usize| (v as i32).to_be_bytes().to_vec();
+    let expect = |n: usize| wave(14, n);
+    for (name, built, format, exact) in [
+        ("IEEE under 1", volume(1, 100, ieee), SampleFormat::Ieee32, 0.0),
+        ("IBM under 5", volume(5, 100, ibm), SampleFormat::Ibm32, 1e-6),
+        ("IEEE under 2", volume(2, 100, ieee), SampleFormat::Ieee32, 0.0),
+        ("IBM under 2", volume(2, 100, ibm), SampleFormat::Ibm32, 1e-6),
+        ("IEEE of the other order", volume(5, 100, swapped), SampleFormat::Ieee32, 0.0),
+        ("integers under 1", volume(1, 100, integer), SampleFormat::Int32, 1.0),
+    ] {
+        let (file, out) = bytes_of(&built);
+        assert_eq!(file.info().sample_format, format, "{name}: {:?}", file.info().warnings);
+        assert!(!file.info().warnings.is_empty(), "{name}");
+        for (n, value) in out.iter().enumerate() {
+            assert!((value - expect(n)).abs() <= exact * expect(n).abs().max(1.0), "{name}: {value} for {}", expect(n));
+        }
+    }
+    // What is as it says is not doubted; what is stated is believed.
+    for built in [volume(1, 100, ibm), volume(5, 100, ieee), volume(2, 100, integer)] {
+        let (file, _) = bytes_of(&built);
+        assert!(file.info().warnings.is_empty(), "{:?}", file.info().warnings);
+    }
+    let stated = SegyOptions { format: Some(SampleFormat::Ibm32), ..SegyOptions::default() };
+    assert_eq!(volume(1, 100, ieee).scan(&stated).unwrap().sample_format, SampleFormat::Ibm32);
+    let Some(file) = opened("32-ieee-called-ibm/rev0.sgy", &SegyOptions::default()) else { return };
+    let statistics = file.statistics(&Progress::silent()).unwrap();
+    assert!((statistics.min + 3214.0).abs() < 2.0 && (statistics.max - 2937.0).abs() < 2.0, "{statistics:?}");
+}
+
+#[test]
+fn samples_of_another_width_than_the_code_says_are_seen_by_the_trace_headers() {
+    let byte = |v: f32, _: usize| vec![(v / 10.0) as i8 as u8];
+    let unsigned = |v: f32, _: usize| vec![(128.0 + v / 10.0) as u8];
+    let short = |v: f32, _: usize| (v as i16).to_be_bytes().to_vec();
+    let double = |v: f32, _: usize| f64::from(v).to_be_bytes().to_vec();
+    let float = |v: f32, _: usize| v.to_be_bytes().to_vec();
+    for (name, built, format) in [
+        ("bytes under 6", volume(6, 120, byte), SampleFormat::Int8),
+        ("bytes under 3", volume(3, 100, byte), SampleFormat::Int8),
+        ("unsigned bytes under 1", volume(1, 120, unsigned), SampleFormat::Uint8),
+        ("shorts under 5", volume(5, 120, short), SampleFormat::Int16),
+        ("doubles under 5", volume(5, 120, double), SampleFormat::Ieee64),
+        ("floats under 3", volume(3, 120, float), SampleFormat::Ieee32),
+    ] {
+        let (file, _) = bytes_of(&built);
+        let info = file.info();
+        assert_eq!((info.sample_format, info.traces), (format, 144), "{name}: {:?}", info.warnings);
+        assert!(info.warnings.iter().any(|w| w.fact.contains("follow one another")), "{name}: {:?}", info.warnings);
+    }
+    let Some(file) = opened("31-8bit-code-6/merged.sgy", &SegyOptions::default()) else { return };
+    assert_eq!((file.info().sample_format, file.info().traces), (SampleFormat::Int8, 720));
+}
+
+#[test]
+fn counts_of_samples_beyond_two_bytes_are_found() {
+    let mut built = Built::grid(&[1, 2, 3], &[1, 2, 3]);
+    built.binary(3221, 4464);
+    let built = built.each(|index, trace| {
+        trace.i16(115, 4464);
+        trace.samples = (0..70_000).flat_map(|n| wave(index, n).to_be_bytes()).collect();
+    });
+    let (file, out) = bytes_of(&built);
+    assert_eq!((file.info().traces, out.len()), (9, 70_000));
+    assert_eq!(out[69_999], wave(5, 69_999));
+    assert!(file.info().warnings.iter().any(|w| w.fact.contains("70000")), "{:?}", file.info().warnings);
+}
+
+#[test]
+fn coordinates_as_ibm_floats_are_found_by_the_bins_they_make() {
+    let built = Built::grid(&[1, 2, 3, 4], &[1, 2, 3, 4]).each(|_, trace| {
+        trace.i16(71, 1);
+        let (x, y) = (457_000.0 + 25.0 * trace.inline as f32, 6_000_000.0 + 25.0 * trace.crossline as f32);
+        trace.i32(181, ibm_from_f32(x).cast_signed());
+        trace.i32(185, ibm_from_f32(y).cast_signed());
+    });
+    let info = built.info();
+    assert_eq!(info.geometry.origin, [457_025.0, 6_000_025.0], "{:?}", info.assumptions);
+    assert!(info.assumptions.iter().any(|a| a.fact.contains("IBM floats")), "{:?}", info.assumptions);
+}
+
+#[test]
+fn null_amplitudes_are_found_said_and_left_out() {
+    let null = |code: u16, null: f32| {
+        volume(code, 100, move |v, n| (if (30..60).contains(&n) { null } else { v }).to_be_bytes().to_vec()).each(
+            |index, trace| {
+                if index < 20 {
+                    trace.samples = null.to_be_bytes().repeat(100)
+                }
+            },
+        )
+    };
+    for value in [1e30, -999.25, -9999.0, 1.701_41e38, -1e10] {
+        let (file, out) = bytes_of(&null(5, value));
+        assert!(
+            out[30..60].iter().all(|v| *v == 0.0) && out[29] == wave(14, 29) || out.iter().all(|v| *v == 0.0),
+            "{value}"
+        );
+        let statistics = file.statistics(&Progress::silent()).unwrap();
+        assert!(statistics.max < 2000.0 && statistics.min > -2000.0, "{value}: {statistics:?}");
+        assert!(file.info().assumptions.iter().any(|a| a.fact.contains("stand for no data")), "{value}");
+        // Twenty traces of nothing else are not live.
+        assert_eq!((file.info().dead_traces, file.is_live(0, 0), file.is_live(5, 5)), (20, false, true), "{value}");
+    }
+    let kept = SegyOptions { null: Some(NullAmplitude::None), ..SegyOptions::default() };
+    assert!(null(5, -999.25).read(&kept).unwrap().volume.samples().contains(&-999.25));
+    let stated = SegyOptions { null: Some(NullAmplitude::At(-123.5)), ..SegyOptions::default() };
+    assert!(!null(5, -123.5).read(&stated).unwrap().volume.samples().contains(&-123.5));
+    for (name, least) in [("40-null-amplitudes/null-1e30.sgy", 1e30), ("40-null-amplitudes/null-999.sgy", -999.25)] {
+        let Some(file) = opened(name, &SegyOptions::default()) else { return };
+        let said = file.info().assumptions.iter().any(|a| a.fact.contains(&format!("{least:e}")));
+        let statistics = file.statistics(&Progress::silent()).unwrap();
+        assert!(said && statistics.max < 1e5 && statistics.min > -1e5, "{name}: {:?}", file.info().assumptions);
+    }
+}
+
+#[test]
+fn extended_text_in_ascii_under_an_ebcdic_header_ends_where_it_says() {
+    let mut built = Built::grid(&[1, 2, 3], &[1, 2, 3]);
+    built.text = super::super::text::encode_ebcdic(&["TWT IN MS".to_owned()]);
+    built.binary(3501, 0x0100);
+    built.binary(3505, 0xffff);
+    let block = |line: &str| format!("{line:<3200}").into_bytes();
+    built.extended = [block("((SEG: Location Data ver 1.0))"), block("((SEG: EndText))")].concat();
+    let info = built.info();
+    assert_eq!((info.traces, info.extended_text[0].as_str()), (9, "((SEG: Location Data ver 1.0))"));
 }
