@@ -39,6 +39,12 @@ pub const WELL_FILES: &[(&str, &str)] = &[
     ("tops", "Well Surface MD\nA-1 \"Top Chalk\" 812.5\nA-1 Base 1204\n"),
     ("tops", "surface,tvdss_m\nTop A,700\nTop B,900.5\n"),
     ("checkshot", "TVDSS TWT\n0 0\n500 480\n1500 1210\n"),
+    ("deviation", "# DEPTHS IN ft-UNITS\nhole_id,depth,dip,azimuth\nA,0,-60,90\nA,100,********,90\nA,200,-55,95\n"),
+    ("deviation", "P-1H\n500 700 -25 0\n500 700 75 100\n500 790 110 200\n"),
+    (
+        "rms",
+        "1.0\nUNDEFINED\nA 1 500 700 25\n2\nMDepth UNK lin\nZone DISC 0 a 1 b\n500 700 -25 0 0\n500 700 75 100 1\n",
+    ),
     ("checkshot", "MD(m),OWT(s)\n25,0\n1000,0.41\n"),
     (
         "las",
@@ -49,6 +55,13 @@ pub const WELL_FILES: &[(&str, &str)] = &[
 
 /// Format and content.
 pub const HAND_WRITTEN: &[(&str, &str)] = &[
+    ("esri", "ncols 3\nnrows 2\nxllcorner 0\nyllcenter 0\ncellsize 25\nNODATA_value -9999\n40 41 42\n-9999 44 45\n"),
+    ("surfer", "DSAA\n3 2\n0 50\n0 25\n40 45\n40 41 42\n1.70141e+38 44 45\n"),
+    (
+        "geojson",
+        "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":{\"name\":\"F\",\"dip\":60,\
+         \"strike\":10},\"geometry\":{\"type\":\"LineString\",\"coordinates\":[[100,100],[125,175,40]]}}]}",
+    ),
     ("csv", "inline,crossline,x,y,twt_ms\n1,1,0,0,40\n1,2,0,25,44\n2,1,25,0,48\n2,2,25,25,52\n"),
     ("irap", "-996 2 25 25\n0 50 0 25\n3 0 0 0\n0 0 0 0 0 0 0\n40 41 42 43 9999900.0 44\n"),
     ("opendtect", "\"F\"\t0\t0\t40\t0\t0\n\"F\"\t5\t0\t80\t0\t1\n\"F\"\t0\t25\t40\t1\t0\n\"F\"\t5\t25\t80\t1\t1\n"),

@@ -16,7 +16,8 @@ use std::path::{Path, PathBuf};
 
 use files::ZUnit;
 use files::segy::{
-    ByteOrder, KeptDuplicate, LengthUnit, LineSource, NumberType, SampleFormat, SegyFile, SegyOptions, TraceWeight,
+    ByteOrder, KeptDuplicate, LengthUnit, LineSource, NullAmplitude, NumberType, SampleFormat, SegyFile, SegyOptions,
+    TraceWeight,
 };
 use survey::{Progress, SurveyGeometry, VerticalUnit};
 
@@ -116,6 +117,7 @@ pub fn segy_options(bytes: &[u8; 12]) -> SegyOptions {
         y_byte: given(y),
         byte_order: [None, Some(ByteOrder::Big), Some(ByteOrder::Little)][usize::from(order % 3)],
         format: (format > 0).then(|| SampleFormat::from_code(u16::from(format % 17)).ok().flatten()).flatten(),
+        null: [None, Some(NullAmplitude::None), Some(NullAmplitude::At(-999.25))][usize::from(start % 3)],
         interval: number(interval),
         start: number(start),
         vertical_unit: [None, Some(ZUnit::Milliseconds), Some(ZUnit::Metres), Some(ZUnit::SurveyFeet)]

@@ -1,11 +1,13 @@
-//! A file of a well. The environment names its kind (`FUZZ_FORMAT`): `deviation`, `tops`, `checkshot` or `las`.
+//! A file of a well. The environment names its kind (`FUZZ_FORMAT`): `deviation`, `tops`, `checkshot`, `las` or `rms`.
 
 #![no_main]
 
 use std::path::Path;
 use std::sync::LazyLock;
 
-use files::well::{WellOptions, WellReport, describe, parse_checkshot, parse_deviation, parse_las, parse_tops};
+use files::well::{
+    WellOptions, WellReport, describe, parse_checkshot, parse_deviation, parse_las, parse_rms, parse_tops,
+};
 use survey::well::WellPath;
 
 static KIND: LazyLock<String> = LazyLock::new(|| std::env::var("FUZZ_FORMAT").unwrap_or_default());
@@ -19,6 +21,7 @@ libfuzzer_sys::fuzz_target!(|data: &[u8]| {
         "deviation" => drop(parse_deviation(file, &text, &options)),
         "tops" => drop(parse_tops(file, &text, &PATH, &options, &mut notes)),
         "checkshot" => drop(parse_checkshot(file, &text, &PATH, &options, &mut notes)),
+        "rms" => drop(parse_rms(file, &text, &options)),
         "las" => drop(parse_las(file, &text)),
         other => panic!("FUZZ_FORMAT {other} is no kind of well file"),
     }

@@ -29,4 +29,5 @@ pub use las::{Las, LasItem, parse_las};
 pub use options::WellOptions;
 pub use read::{WellFiles, read_well};
 pub use report::WellReport;
+pub use rms::parse_rms;
 pub use tops::{TopRow, parse_tops};

@@ -54,7 +54,7 @@ pub fn read_well(files: &WellFiles, options: &WellOptions) -> Result<(Well, Well
     };
     let stem = || files.deviation.file_stem().map_or_else(|| "well".into(), |s| s.to_string_lossy().into_owned());
     let (mut well, mut report) = if rms::is_rms(&text) {
-        rms::parse(&files.deviation, &text, options)?
+        rms::parse_rms(&files.deviation, &text, options)?
     } else {
         let deviation = deviation_of(&files.deviation, &text, collar.as_ref(), options)?;
         (Well::new(deviation.name.unwrap_or_else(stem), deviation.path), deviation.report)

@@ -77,7 +77,7 @@ fn log_of(line: &str) -> Log {
 ///
 /// # Errors
 /// [`WellFileError`] with the line.
-pub(super) fn parse(file: &Path, text: &str, options: &WellOptions) -> Result<(Well, WellReport), WellFileError> {
+pub fn parse_rms(file: &Path, text: &str, options: &WellOptions) -> Result<(Well, WellReport), WellFileError> {
     let mut lines = text::lines(text).skip(2);
     let empty = |what| WellFileError::Empty { file: file.to_owned(), what };
     let head = lines.next().map(|line| line.text).ok_or_else(|| empty("head of a well"))?;
