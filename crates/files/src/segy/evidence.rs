@@ -14,20 +14,25 @@ use survey::remedy::{Note, Setting};
 /// Traces that are looked at, and words of all of them at most.
 const TRACES: usize = 48;
 const WORDS: usize = 1 << 16;
+/// Bytes of a trace that are looked at, at most: whole samples of any width.
+const LONGEST: usize = 24 << 15;
 /// Fewer words than this prove nothing.
 const FEWEST: usize = 500;
 /// Exponents that amplitudes have at most, of 128; and those that bytes in another order have at least.
 const FEW_EXPONENTS: usize = 24;
 const MANY_EXPONENTS: usize = 96;
 
-/// Encoded samples of traces spread over the file.
+/// Encoded samples of traces spread over the file, of long ones the first.
 pub(super) fn traces_of(traces: &Traces<'_>, count: usize) -> Result<Vec<Vec<u8>>, SegyProblem> {
-    let mut room = Vec::new();
     let step = traces.count.div_ceil(count).max(1);
-    (0..traces.count)
-        .step_by(step)
-        .map(|trace| Ok(traces.run(trace..trace + 1, &mut room)?[traces.header_bytes..].to_vec()))
-        .collect()
+    let length = (traces.stride - traces.header_bytes).min(LONGEST);
+    let of = |trace: usize| {
+        let mut bytes = vec![0; length];
+        let from = traces.start + trace as u64 * traces.stride as u64 + traces.header_bytes as u64;
+        traces.bytes.copy(from, &mut bytes, Some(trace))?;
+        Ok(bytes)
+    };
+    (0..traces.count).step_by(step).map(of).collect()
 }
 
 /// What the words of samples look like in one byte order.

@@ -507,7 +507,7 @@ fn texts(file: &Bytes, encoding: TextEncoding) -> Result<u64, SegyProblem> {
     while count < (MOST_EXTENDED_TEXT / TEXT_BYTES) as u64 {
         match file.get(from, TEXT_BYTES, None)? {
             Some(block) if is_text(&block, encoding.of_block(&block)) => {
-                (count, from) = (count + 1, from + TEXT_BYTES as u64)
+                (count, from) = (count + 1, from + TEXT_BYTES as u64);
             }
             _ => break,
         }

@@ -9,7 +9,7 @@ use super::error::SegyProblem;
 use super::frame::FileLayout;
 use super::header::{Field, at};
 use super::info::{Findings, LengthUnit, axis_in};
-use super::vertical_words::{Said, Words};
+use super::vertical_words::{self, Said, Words};
 use crate::unit::ZUnit;
 use crate::unit::words::{HeaderUnits, Quantity};
 use survey::geometry::{VerticalAxis, VerticalUnit};
@@ -49,7 +49,9 @@ impl Vertical {
             }
             None => interval_field(frame, columns, findings)?,
         };
-        let unit = unit(frame, micro, options, findings);
+        let delay = columns.get(Field::I16(at::DELAY));
+        let start = scaled(delay.constant().unwrap_or(0), columns.get(Field::I16(at::TIME_SCALAR)).at(0));
+        let unit = unit(frame, [micro, start], options, findings);
         let mut interval = micro / 1000.0;
         if options.interval.is_none() && !unit.is_time() && micro < FEWEST_THOUSANDTHS {
             interval = micro;
@@ -259,7 +261,7 @@ fn weighed(
 
 /// The unit of the axis: stated; or written in the text next to the interval; or by what the sentences of the text and
 /// the length of a trace weigh.
-fn unit(frame: &FileLayout, micro: f64, options: &SegyOptions, findings: &mut Findings) -> ZUnit {
+fn unit(frame: &FileLayout, [micro, start]: [f64; 2], options: &SegyOptions, findings: &mut Findings) -> ZUnit {
     if let Some(unit) = options.vertical_unit {
         findings.evidence(format!("vertical axis: {}, as stated", axis_in(unit)));
         return unit;
@@ -268,7 +270,9 @@ fn unit(frame: &FileLayout, micro: f64, options: &SegyOptions, findings: &mut Fi
         2 => ZUnit::Feet,
         _ => ZUnit::Metres,
     };
-    let words = Words::find(frame.text.iter().chain(&frame.extended_text), micro / 1000.0);
+    let lines = || frame.text.iter().chain(&frame.extended_text);
+    let mut words = Words::find(lines(), micro / 1000.0);
+    words.time = words.time.or_else(|| vertical_words::in_seconds(lines(), micro / 1000.0, start));
     if let Some([(unit, quote), (other, against)]) = &words.contradiction {
         findings.warning(Note::unless(
             format!(

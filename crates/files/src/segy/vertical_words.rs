@@ -105,6 +105,26 @@ impl Words {
     }
 }
 
+/// A line that gives the sample interval or the first sample, both as the file holds them in thousandths, without a unit:
+/// in seconds.
+pub(super) fn in_seconds<'a>(lines: impl Iterator<Item = &'a String>, interval: f64, start: f64) -> Option<Said> {
+    let is = |number: f64, of_file: f64| of_file > 0.0 && (number * 1000.0 - of_file).abs() < 1e-6 * of_file;
+    let tells = |line: &&String| {
+        let upper = line.to_ascii_uppercase();
+        let numbers = |from: &str| {
+            let rest = upper.split_once(from)?.1.trim_start_matches(|c: char| !c.is_ascii_digit() && c != '.');
+            let end = rest.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(rest.len());
+            crate::number::plain(&rest[..end])
+        };
+        numbers("FIRST SAMPLE").is_some_and(|number| is(number, start))
+            || ["SAMPLE INTERVAL", "SAMPLE RATE", "Z STEP"]
+                .iter()
+                .any(|words| numbers(words).is_some_and(|number| is(number, interval)))
+    };
+    let mut lines = lines;
+    lines.find(tells).map(|line| Said { weight: Weight::Method, quote: line.clone() })
+}
+
 /// The units that a line gives the axis: of the vertical axis by name, or beside the number that is the sample interval.
 fn units_of_axis(line: &str, interval: f64, is_of_gear: bool) -> Vec<ZUnit> {
     let is_interval = |said: &words::Statement| {
@@ -286,6 +306,24 @@ mod tests {
             ("/DATA/R2900_PSDM_FULL-T.SGY", [None, None]),
         ] {
             assert_eq!(weights(line), expected, "{line}");
+        }
+    }
+
+    #[test]
+    fn a_first_sample_or_an_interval_in_seconds_is_time() {
+        let said = |line: &str| in_seconds([line.to_owned()].iter(), 4.0, 400.0).is_some();
+        for line in [
+            "First sample at: 0.4",
+            "SAMPLE INTERVAL: 0.004",
+            "Z step 0.004; first sample at 0.4",
+            "Sample rate = .004",
+        ] {
+            assert!(said(line), "{line}");
+        }
+        for line in
+            ["First sample at: 400", "SAMPLE INTERVAL: 4", "First trace 0.4", "Sample interval", "FIRST SAMPLE AT: 0.5"]
+        {
+            assert!(!said(line), "{line}");
         }
     }
 

@@ -217,7 +217,8 @@ fn each_formation_of_a_table_is_a_horizon_of_its_own() {
         let found = read_horizons(&path, &survey, &ImportOptions::default()).unwrap();
         let mut given: Vec<&str> = found.iter().map(|(horizon, _)| horizon.name.as_str()).collect();
         let mut names = names;
-        (given.sort_unstable(), names.sort_unstable());
+        given.sort_unstable();
+        names.sort_unstable();
         assert_eq!(given, names, "{name}");
         assert!(found.iter().all(|(_, report)| report.values == 81), "{name}");
     }
@@ -295,4 +296,45 @@ fn one_bad_value_is_one_bad_value() {
     let tops =
         parse_tops(Path::new("t"), "surface,md_m\nA,100\nB,#N/A\n", &path, &WellOptions::default(), &mut said).unwrap();
     assert!(tops.len() == 1 && said.warnings[0].fact.contains("1 have no depth"), "{said:?}");
+}
+
+#[test]
+fn surfaces_without_a_name_are_selected_by_their_number() {
+    let survey = survey_of_cases();
+    let set = |by: f64| {
+        let rows: String = (0..49)
+            .map(|n| (456_200.0 + 400.0 * f64::from(n % 7), 5_999_200.0 + 400.0 * f64::from(n / 7)))
+            .map(|(x, y)| format!("VRTX 1 {x} {y} {}\n", z(x, y) + by))
+            .collect();
+        format!("GOCAD VSet 1\nHEADER {{\n}}\n{rows}END\n")
+    };
+    let (_folder, path) = file("a.vs", &(set(0.0) + &set(300.0)));
+    let select = |word: &str| ImportOptions { select: Some(word.into()), ..ImportOptions::default() };
+    let (horizon, _) = read_horizons(&path, &survey, &select("2")).unwrap().remove(0);
+    assert!(worst(&horizon, |xy| plane_of_cases(xy) + 300.0).0 < 0.01);
+    let error = read_horizons(&path, &survey, &select("7")).unwrap_err().to_string();
+    assert!(error.contains("it has: 1, 2"), "{error}");
+}
+
+#[test]
+fn archives_and_grids_of_other_kinds_are_named_with_what_to_export() {
+    for (start, word) in [
+        (&b"\x89HDF\r\n\x1a\n"[..], "HDF5"),
+        (b"CDF\x01\0\0", "NetCDF"),
+        (b"PK\x03\x04", "ZIP"),
+        (b"\x1f\x8b\x08", "gzip"),
+        (b"\xd0\xcf\x11\xe0", "Office"),
+        (b"-- a grid\nSPECGRID\n 3 3 3 1 F /\n", "GRDECL"),
+        (b"<?xml version=\"1.0\"?>\n<a>", "XML"),
+        (b"II*\0\x08\0\0\0", "GeoTIFF"),
+        (b"\0\0\x27\x0a\0\0", "shapefile"),
+    ] {
+        let content = [start, &vec![0; 5000][..]].concat();
+        let (_folder, path) = bytes("a.dat", &content);
+        let error = describe(&path, &ImportOptions::default()).unwrap_err();
+        assert!(
+            matches!(&error, FormatError::UnknownFormat { is_named: true, .. }) && error.to_string().contains(word),
+            "{error}"
+        );
+    }
 }

@@ -196,7 +196,7 @@ fn null_amplitudes_are_found_said_and_left_out() {
         volume(code, 100, move |v, n| (if (30..60).contains(&n) { null } else { v }).to_be_bytes().to_vec()).each(
             |index, trace| {
                 if index < 20 {
-                    trace.samples = null.to_be_bytes().repeat(100)
+                    trace.samples = null.to_be_bytes().repeat(100);
                 }
             },
         )
