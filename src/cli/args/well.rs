@@ -72,7 +72,7 @@ pub(in crate::cli) struct WellAddArgs {
     /// Tops: names and depths
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) tops: Option<PathBuf>,
-    /// LAS 2.0 file; repeat it for several
+    /// LAS file (1.2, 2.0 or 3.0); repeat it for several
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) las: Vec<PathBuf>,
     /// Time-depth table: TVDSS and TWT

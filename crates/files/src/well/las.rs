@@ -1,9 +1,10 @@
-//! LAS 1.2 and 2.0: curves by depth or time.
+//! LAS 1.2, 2.0 and 3.0: curves by depth or time.
 //!
 //! Sections begin with `~` and a letter: V (version, wrap), W (well: STRT, STOP, STEP, NULL …), C (curves), P
 //! (parameters), O (other), A (data). Lines are `MNEM.UNIT value : description`, cut at the first dot, the
 //! first blank after it and the last colon. In wrapped files the values of a depth run over several lines.
-//! LAS 3.0 is another format and refused.
+//! LAS 3.0 names its sections (`~Log_Definition`, `~Log_Data`) and what separates values (`DLM. COMMA`), so that a value may
+//! be empty; its curves of words are missing values, and its other tables are left out.
 
 use super::error::WellFileError;
 use crate::number::{self, NumberStyle};
@@ -26,8 +27,10 @@ pub struct LasItem {
 /// A LAS file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Las {
-    /// 1.2 or 2.0.
+    /// 1.2, 2.0 or 3.0.
     pub version: f64,
+    /// What separates values, where empty ones are kept.
+    pub delimiter: Option<char>,
     /// Whether the values of a depth run over several lines.
     pub wrapped: bool,
     /// The null value.
@@ -86,6 +89,19 @@ impl Las {
     }
 }
 
+/// The letter of a section by its title; that of LAS 3.0's log is that of LAS 2.0.
+fn section_of(title: &str) -> char {
+    let title = title.trim().to_ascii_lowercase();
+    match title.as_str() {
+        word if word.starts_with("log_def") => 'C',
+        word if word.starts_with("log_data") => 'A',
+        word if word.starts_with("log_par") => 'P',
+        // Tables of its own: cores, tops, perforations, and their second parts.
+        word if word.split(['|', '[']).next().is_some_and(|name| name.contains('_')) => 'O',
+        word => word.chars().next().map_or('\0', |c| c.to_ascii_uppercase()),
+    }
+}
+
 /// Reads a LAS file.
 ///
 /// # Errors
@@ -106,12 +122,8 @@ pub fn parse_las(file: &Path, text: &str) -> Result<Las, WellFileError> {
     let mut rows: Vec<Line<'_>> = Vec::new();
     for line in text::lines(text).filter(|l| !l.text.starts_with('#')) {
         if let Some(title) = line.text.strip_prefix('~') {
-            section = title.chars().next().map_or('\0', |c| c.to_ascii_uppercase());
+            section = section_of(title);
             seen_data |= section == 'A';
-            // LAS 3.0 names its sections ~Log_Definition, ~Log_Data.
-            if title.to_ascii_lowercase().starts_with("log_") {
-                return Err(WellFileError::LasVersion { file: file.to_owned(), version: "3.0".into() });
-            }
             continue;
         }
         match section {
@@ -123,9 +135,14 @@ pub fn parse_las(file: &Path, text: &str) -> Result<Las, WellFileError> {
                     "VERS" => {
                         seen_version = true;
                         las.version = item.value.split_whitespace().next().and_then(number::plain).unwrap_or(f64::NAN);
-                        if !(las.version >= 1.0 && las.version < 3.0) {
+                        if !(las.version >= 1.0 && las.version < 4.0) {
                             return Err(WellFileError::LasVersion { file: file.to_owned(), version: item.value });
                         }
+                    }
+                    "DLM" if las.version >= 3.0 => {
+                        let named = [("COMMA", ','), ("TAB", '\t')].into_iter();
+                        let mut own = named.filter(|(word, _)| item.value.eq_ignore_ascii_case(word));
+                        las.delimiter = own.next().map(|(_, delimiter)| delimiter);
                     }
                     "WRAP" => las.wrapped = item.value.eq_ignore_ascii_case("YES"),
                     _ => {}
@@ -168,10 +185,15 @@ fn data(file: &Path, rows: &[Line<'_>], las: &Las) -> Result<(Vec<Vec<f64>>, usi
     };
     let (mut filled, mut missing) = (0, 0);
     for line in rows {
-        let tokens = line.text.split([' ', '\t', ',', ';']).filter(|t| !t.is_empty());
+        let tokens: Vec<&str> = match las.delimiter {
+            Some(delimiter) => line.text.split(delimiter).collect(),
+            None => line.text.split([' ', '\t', ',', ';']).filter(|t| !t.is_empty()).collect(),
+        };
         let before = filled;
         for token in tokens {
-            let value = number::or_missing(token, NumberStyle::Point).ok_or_else(|| syntax(line, "a number".into()))?;
+            let is_word = las.curves.get(filled).is_some_and(|curve| curve.description.contains("{S"));
+            let value = number::or_missing(token, NumberStyle::Point).or(is_word.then_some(f64::NAN));
+            let value = value.ok_or_else(|| syntax(line, "a number".into()))?;
             if filled == count {
                 return Err(syntax(line, format!("{count} values, one a curve")));
             }

@@ -222,10 +222,23 @@ fn las_wrapped_falling_in_time_and_old() {
 }
 
 #[test]
+fn las_3_with_its_own_sections_and_empty_cells_is_read() {
+    let head = "~VERSION\nVERS. 3.0 :\nWRAP. NO :\nDLM. COMMA :\n~WELL\nNULL. -999.25 :\nWELL. A-1 :\n";
+    for (curves, data) in [("~Log_Definition", "~Log_Data | Log_Definition"), ("~Curve", "~ASCII | Curve")] {
+        let text = format!(
+            "{head}~Tops_Definition\nTOPN. : name {{S}}\n~Tops_Data | Tops_Definition\nChalk,500\n{curves}\nDEPT.M : depth {{F}}\n\
+             GR.GAPI : gamma {{F}}\nLITH. : rock {{S10}}\n{data}\n500,30,chalk\n501,,marl\n502,-999.25,\n"
+        );
+        let las = parse_las(Path::new("a"), &text).unwrap_or_else(|e| panic!("{curves}: {e}"));
+        assert_eq!((las.data[0].len(), las.data[1][0], las.curves.len()), (3, 30.0, 3), "{curves}");
+        assert!(las.data[1][1].is_nan() && las.data[1][2].is_nan(), "{curves}");
+    }
+}
+
+#[test]
 fn las_that_cannot_be_read_says_why() {
     let why = |text: &str| read_las(text).unwrap_err().to_string();
-    assert!(why(&LAS.replace("VERS.   2.0", "VERS.   3.0")).contains("export it as LAS 2.0"));
-    assert!(why("~V\nVERS. 2.0 :\n~Log_Definition\n").contains("3.0"));
+    assert!(why(&LAS.replace("VERS.   2.0", "VERS.   4.0")).contains("export it as LAS 2.0"));
     assert!(why("1 2 3\n").contains("~V"));
     assert!(why(&LAS.replace("60 100", "60")).contains("3 values"));
     assert!(why(&LAS.replace("60 100", "60 abc")).contains("line 19"));
