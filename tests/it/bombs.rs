@@ -55,6 +55,8 @@ fn bad_tiles() -> Vec<(&'static str, String, &'static str)> {
         ("deep", tile(&format!("{}{}", "<g>".repeat(200_000), "</g>".repeat(200_000))), "deeper"),
         ("entities", format!("<!DOCTYPE svg [<!ENTITY e0 \"x\">{entities}]>{}", tile("&e8;")), "entities"),
         ("dashes", tile(r#"<path d="M0 0H1e9" stroke="red" stroke-dasharray="1e-3"/>"#), "dashes"),
+        ("far", tile(r#"<path d="M-1e5 -1e5 L 1e5 1e5 L 1e5 0 Z"/>"#), "beyond the tile"),
+        ("farther", tile(r#"<path d="M-1e38 -1e38 L 1e38 1e38 L 1e38 0 Z"/>"#), "beyond the tile"),
         ("pattern", tile(r#"<pattern id="p" width="1e9" height="1e9"><rect/></pattern>"#), "`pattern`"),
     ]
 }

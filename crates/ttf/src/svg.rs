@@ -219,16 +219,15 @@ fn check_group(group: &usvg::Group, size: [f32; 2]) -> Result<(), String> {
 
 fn check_path(path: &usvg::Path, size: [f32; 2]) -> Result<(), String> {
     let data = path.data();
-    check_reach(path, size)?;
     if data.len() > MAX_SEGMENTS {
         return Err(format!("a path has {} lines and curves, more than the limit of {MAX_SEGMENTS}", data.len()));
     }
-    let Some(dashes) = path.stroke().and_then(usvg::Stroke::dasharray) else { return Ok(()) };
+    let Some(dashes) = path.stroke().and_then(usvg::Stroke::dasharray) else { return check_reach(path, size) };
     let period: f32 = dashes.iter().sum();
     let length: f32 = data.points().windows(2).map(|pair| pair[0].distance(pair[1])).sum();
     let count = length / period * dashes.len() as f32;
     // A count that is not a number stands for a length that is none.
-    if count <= MAX_DASHES { Ok(()) } else { Err(format!("a path has more than {MAX_DASHES} dashes")) }
+    if count <= MAX_DASHES { check_reach(path, size) } else { Err(format!("a path has more than {MAX_DASHES} dashes")) }
 }
 
 /// Refuses what reaches far beyond the tile: the rasteriser's work, and the copies of a pattern, grow with it.
