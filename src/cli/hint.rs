@@ -116,7 +116,13 @@ fn words(error: &ProjectError) -> Option<&'static str> {
             "remove the leaf with `petroglyph pick --remove`, or extract with smaller leaves"
         }
         ProjectError::ShortStick { .. } => "write a stick as --stick IL,XL,Z IL,XL,Z …",
-        ProjectError::NotDrawn { .. } => "choose another --name",
+        ProjectError::NotDrawn { .. } => "choose another --name, or give it sticks with `petroglyph fault sticks`",
+        ProjectError::HasSticks { .. } => "move their points with `petroglyph fault move`",
+        ProjectError::CutBeside { .. } => "give a place on the fault, between its ends",
+        ProjectError::FewFaults => "name them one after the other: `petroglyph fault merge PROJECT F1 F2`",
+        ProjectError::SideBySide { .. } => {
+            "leave them as they are; where one is wrong, cut it with `petroglyph fault cut` and merge the part that goes on"
+        }
         ProjectError::NoGeometry => "import a volume, or create the project with --bounds and --size",
         ProjectError::Style(TtfError::UnknownRock { .. } | TtfError::UnknownAge { .. }) => return error.advice(),
         ProjectError::Style(_) => "`petroglyph patterns OUT.png` draws every pattern with its name",

@@ -14,8 +14,8 @@ use files::{
     ZPositive, ZUnit,
 };
 use project::command::{
-    AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, MoveStickPoint, RemovePick,
-    SetContact, SetFaultExtent, SetTruncation, Spacing, StackHorizons,
+    AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, CutAlong, CutFault, GiveSticks, ImportVolume,
+    MergeFaults, MoveStickPoint, RemovePick, SetContact, SetFaultExtent, SetTruncation, Spacing, StackHorizons,
 };
 use project::document::Polarity;
 use project::error::Noun;
@@ -204,6 +204,18 @@ pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
         }
         FaultAction::Propose(typed) => assembly::fault_propose(&typed)?,
         FaultAction::Accept { project, id, name } => assembly::fault_accept(project, id, name),
+        FaultAction::Cut { project, fault, at, along, name } => {
+            let along = if along == "strike" { CutAlong::Strike } else { CutAlong::Dip };
+            let command = CutFault { fault, at: assembly::place("--at", &at)?, along, name };
+            Request::Change { project, command: Command::CutFault(command) }
+        }
+        FaultAction::Merge { project, faults, name } => {
+            let name = name.unwrap_or_else(|| faults[0].clone());
+            Request::Change { project, command: Command::MergeFaults(MergeFaults { faults, name }) }
+        }
+        FaultAction::Sticks { project, fault } => {
+            Request::Change { project, command: Command::GiveSticks(GiveSticks { fault }) }
+        }
         FaultAction::List { project } => Request::List { project, what: Listing::Faults },
         FaultAction::Truncate { project, name, by } => {
             Request::Change { project, command: Command::SetTruncation(SetTruncation { fault: name, by }) }

@@ -235,7 +235,10 @@ fn faults_come_after_picks() {
         run_in(at, &format!("pick p.petro --at {place} --horizon {name} --highest-valid")).done();
     }
     let sticks = "--stick 140,505,100 150,505,700 --stick 142,560,100 152,560,700";
-    run_in(at, &format!("fault pick p.petro --name Drawn {sticks}")).done();
+    let told = run_in(at, &format!("fault pick p.petro --name Drawn {sticks}")).done().stdout;
+    for name in ["Alpha", "Bravo"] {
+        assert!(told.contains(&format!("horizon \"{name}\" was assembled again: ")), "{told}");
+    }
     let blocks = |path: &str| {
         run_in(at, &format!("parameterize {path} --size 16x16x16 --json")).done().json()["blocks"].as_u64()
     };

@@ -17,6 +17,7 @@ mod cuts;
 mod demo;
 mod drawing;
 mod extraction;
+mod fault_edits;
 mod fault_extent;
 mod figure;
 mod foreign;

@@ -17,7 +17,7 @@ pub(crate) const RULE_INK: Colour = Colour::new(0x8c, 0x86, 0x7e);
 /// Where other sections run: ochre, as rock paintings have it.
 pub(crate) const ACCENT: Colour = Colour::new(0xa4, 0x4a, 0x1c);
 /// Proposed faults.
-pub(crate) const PROPOSAL: Colour = Colour::new(0xb0, 0x1e, 0x1e);
+pub const PROPOSAL: Colour = Colour::new(0xb0, 0x1e, 0x1e);
 /// Where a section has no data.
 pub(crate) const NO_DATA: Colour = Colour::new(0xdc, 0xdc, 0xda);
 

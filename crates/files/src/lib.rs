@@ -111,6 +111,7 @@ pub use column::Column;
 pub use describe::{FileDescription, SurfaceDescription, describe};
 pub use error::{FormatError, HorizontalExtent};
 pub use export::{ExportOptions, ExportReport, WhenRotated};
+pub use mesh_sticks::{axis_along, extent_along, planes_along, stick_along_cut, sticks_on_sections, strike};
 pub use options::{HorizonShape, ImportOptions, PlaceBy, ValueOrder};
 pub use report::{Gridding, ImportReport, Provenance, Settled};
 pub use scatter::grid_points;

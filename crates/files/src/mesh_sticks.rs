@@ -1,7 +1,8 @@
-//! Sticks from a triangulated fault: its intersection lines with vertical planes across its strike.
+//! Sticks from a triangulated fault: its intersection lines with vertical planes across its strike, or with sections.
 
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
+use survey::geometry::SurveyGeometry;
 use survey::mesh::TriangleMesh;
 
 /// Largest number of sticks.
@@ -37,8 +38,81 @@ pub(super) fn cut(mesh: &TriangleMesh, metres: f64) -> Vec<Vec<DVec3>> {
         .collect()
 }
 
-/// The horizontal direction in which the vertices extend furthest.
-fn strike(mesh: &TriangleMesh) -> Option<DVec2> {
+/// Largest number of sticks on sections: so many can be dragged.
+const MOST_ON_SECTIONS: usize = 24;
+/// Distance from a mesh of a line through fewer points, shares of the smaller distance of two traces.
+const OFF: f64 = 0.2;
+
+/// The first and the last voxel index along an axis that a mesh (world, vertical value) reaches.
+pub fn extent_along(mesh: &TriangleMesh, geometry: &SurveyGeometry, axis: usize) -> [f64; 2] {
+    let used = mesh.triangles.iter().flatten().map(|&v| geometry.voxel_from_world(mesh.vertices[v as usize])[axis]);
+    used.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
+}
+
+/// The sections that a mesh crosses: 0 where it runs across inlines, 1 where across crosslines.
+pub fn axis_along(mesh: &TriangleMesh, geometry: &SurveyGeometry) -> usize {
+    let reach = |axis: usize, spacing: f64| {
+        let [low, high] = extent_along(mesh, geometry, axis);
+        (high - low) * spacing
+    };
+    usize::from(reach(1, geometry.crossline_vector.length()) > reach(0, geometry.inline_vector.length()))
+}
+
+/// The voxel indices along an axis at which [`sticks_on_sections`] shows the whole of a mesh: whole lines, two dozen at
+/// most, and the ends of the mesh.
+pub fn planes_along(mesh: &TriangleMesh, geometry: &SurveyGeometry, axis: usize) -> Vec<f64> {
+    let [low, high] = extent_along(mesh, geometry, axis);
+    let inset = 0.001 * (high - low);
+    let step = ((high - low) / (MOST_ON_SECTIONS - 2) as f64).ceil().max(1.0);
+    let inner = (0..).map(|n| (low / step).ceil() * step + f64::from(n) * step).take_while(|at| *at < high);
+    let inner = inner.filter(|at| (at - low).min(high - at) > 0.5 * step);
+    std::iter::once(low + inset).chain(inner).chain(std::iter::once(high - inset)).collect()
+}
+
+/// The sticks (world, vertical value) in which inlines (axis 0) or crosslines (axis 1) at these voxel indices cut a mesh,
+/// top first, of no more points than their bends need; an empty one where there is nothing to cut.
+/// [`crate::fault_of_sticks`] makes nearly the same surface of those at [`planes_along`].
+pub fn sticks_on_sections(
+    mesh: &TriangleMesh,
+    geometry: &SurveyGeometry,
+    axis: usize,
+    planes: &[f64],
+) -> Vec<Vec<DVec3>> {
+    let along: Vec<f64> = mesh.vertices.iter().map(|v| geometry.voxel_from_world(*v)[axis]).collect();
+    let metres = geometry.metres_per_vertical_unit();
+    let off = OFF * geometry.inline_vector.length().min(geometry.crossline_vector.length());
+    let stick = |at: &f64| {
+        let whole = slice(mesh, &along, *at, metres);
+        if whole.len() < 2 { Vec::new() } else { bends(&whole, metres, off) }
+    };
+    planes.iter().map(stick).collect()
+}
+
+/// The points between which a line is straight but for `off` m (Douglas and Peucker's way).
+fn bends(line: &[DVec3], metres: f64, off: f64) -> Vec<DVec3> {
+    let metric = |p: DVec3| p * DVec3::new(1.0, 1.0, metres);
+    let (Some(&first), Some(&last)) = (line.first(), line.last()) else { return Vec::new() };
+    let along = (metric(last) - metric(first)).normalize_or_zero();
+    let beside = |p: DVec3| (metric(p) - metric(first)).reject_from_normalized(along).length();
+    let farthest = (1..line.len().saturating_sub(1)).max_by(|&a, &b| beside(line[a]).total_cmp(&beside(line[b])));
+    match farthest.filter(|&n| along != DVec3::ZERO && beside(line[n]) > off) {
+        Some(n) => {
+            let mut kept = bends(&line[..=n], metres, off);
+            kept.extend(bends(&line[n..], metres, off).into_iter().skip(1));
+            kept
+        }
+        None => vec![first, last],
+    }
+}
+
+/// The line (world, vertical value) in which a mesh is cut where `off`, a value for each vertex, changes its sign; the
+/// longest of several, top first.
+pub fn stick_along_cut(mesh: &TriangleMesh, geometry: &SurveyGeometry, off: &[f64]) -> Vec<DVec3> {
+    slice(mesh, off, 0.0, geometry.metres_per_vertical_unit())
+}
+
+/// The horizontal direction in which the vertices of a mesh (world) extend furthest; `None` where they lie over one point.
+pub fn strike(mesh: &TriangleMesh) -> Option<DVec2> {
     let count = mesh.vertices.len().max(1) as f64;
     let mean = mesh.vertices.iter().map(|v| v.truncate()).sum::<DVec2>() / count;
     let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
@@ -123,5 +197,45 @@ mod tests {
         }
         let middle = &sticks[sticks.len() / 2];
         assert!(middle[0].z < 51.0 && middle.last().unwrap().z > 249.0);
+    }
+
+    /// A bent surface, cut on crosslines: every stick lies on a whole line or at an end, and the surface of the sticks lies
+    /// on the mesh.
+    #[test]
+    fn sticks_on_sections_make_the_surface_again() {
+        let geometry = SurveyGeometry::regular([60, 80, 100], 25.0, 4.0, survey::VerticalUnit::Metres);
+        let place =
+            |y: f64, z: f64| geometry.world_from_voxel(DVec3::new(20.0 + 0.2 * z + 0.004 * (y - 30.0).powi(2), y, z));
+        let mut mesh = TriangleMesh::default();
+        let (rows, columns) = (61_u32, 31_u32);
+        for i in 0..rows {
+            for j in 0..columns {
+                mesh.vertices.push(place(4.3 + f64::from(i), 10.0 + 2.0 * f64::from(j)));
+            }
+        }
+        for (i, j) in (0..rows - 1).flat_map(|i| (0..columns - 1).map(move |j| (i, j))) {
+            let a = i * columns + j;
+            mesh.triangles.extend([[a, a + columns, a + columns + 1], [a, a + columns + 1, a + 1]]);
+        }
+        assert_eq!(axis_along(&mesh, &geometry), 1);
+        let sticks = sticks_on_sections(&mesh, &geometry, 1, &planes_along(&mesh, &geometry, 1));
+        assert!((20..=MOST_ON_SECTIONS).contains(&sticks.len()), "{}", sticks.len());
+        for stick in &sticks[1..sticks.len() - 1] {
+            let line = geometry.voxel_from_world(stick[0]).y;
+            assert!((line - line.round()).abs() < 1e-6 && stick.len() == 2, "{line}, {}", stick.len());
+        }
+        let again = crate::fault_of_sticks("F", &sticks, &geometry).unwrap().mesh;
+        let [before, after] = [&mesh, &again].map(|mesh| extent_along(mesh, &geometry, 1));
+        assert!((before[0] - after[0]).abs() < 0.1 && (before[1] - after[1]).abs() < 0.1, "{before:?} {after:?}");
+        for vertex in &again.vertices {
+            let v = geometry.voxel_from_world(*vertex);
+            assert!((v - geometry.voxel_from_world(place(v.y, v.z))).length() < 0.3, "{v}");
+        }
+        // Cut across: the line of the cut belongs to both parts.
+        let off: Vec<f64> = mesh.vertices.iter().map(|v| geometry.voxel_from_world(*v).y - 30.5).collect();
+        let line = stick_along_cut(&mesh, &geometry, &off);
+        assert!(line.iter().all(|p| (geometry.voxel_from_world(*p).y - 30.5).abs() < 1e-9));
+        let [near, far] = mesh.parted(&off).map(|part| extent_along(&part, &geometry, 1));
+        assert!((near[1] - 30.5).abs() < 1e-9 && (far[0] - 30.5).abs() < 1e-9, "{near:?} {far:?}");
     }
 }

@@ -2,8 +2,9 @@
 //! each fault block.
 //!
 //! A vertex is an extremum of one trace, so a node of a sheet takes its z and nothing is interpolated. Each
-//! vertex belongs to the fault block in which it lies, and edges between blocks are cut. In each block the
-//! mesh is traversed breadth first from the picked triangles; the first vertex to reach a trace takes it. A
+//! vertex belongs to the fault block in which it lies. Edges that a fault crosses are cut where the fault was
+//! interpreted; where it is merely continued, it only says to which block a vertex belongs. The mesh is
+//! traversed breadth first from the picked triangles; in each block, the first vertex to reach a trace takes it. A
 //! vertex whose trace is taken is left for a traversal of its own and becomes part of a further sheet of that
 //! block. So overlaps stay visible, and without interpreted faults the second side of a reverse fault is
 //! preserved. Patches that tracking left beyond a fault, over or under the sheet that belongs there, are
@@ -73,10 +74,11 @@ pub fn reassemble(forest: &Forest, selection: &Selection, seeds: &[u32], blocks:
     let block: Vec<u16> = (0..mesh.vertices.len() as u32).map(|v| blocks.block_at(place(of(v)))).collect();
     let picked = seeds.iter().filter(|&&t| selection.contains(t)).flat_map(|&t| surfaces.triangles[t as usize]);
     let starts = picked.filter_map(|v| mesh.local(v)).chain(0..mesh.vertices.len() as u32);
+    let is_cut = |a: u32, b: u32| block[a as usize] != block[b as usize] && blocks.divides(place(of(a)), place(of(b)));
 
     let trace_of = |v: u32| usize::from(of(v).x) * ny + usize::from(of(v).y);
-    let mut patches = patches(&mesh, &block, starts, trace_of, nx * ny);
-    let overshoot = overshoots(&patches, &mesh, trace_of, nx * ny);
+    let mut patches = patches(&mesh, &block, starts, is_cut, trace_of, nx * ny);
+    let overshoot = overshoots(&patches, &mesh, is_cut, trace_of, nx * ny);
     let mut left_out = 0;
     for (patch, _) in patches.iter_mut().zip(overshoot).filter(|(_, overshoot)| *overshoot) {
         left_out += patch.vertices.len();
@@ -114,46 +116,52 @@ pub fn reassemble(forest: &Forest, selection: &Selection, seeds: &[u32], blocks:
     Reassembled { sheets, overlap, left_out, doubled: over }
 }
 
-/// Connected vertices of one block, at most one a trace.
+/// Vertices of one block that are connected, if need be through other blocks; at most one a trace.
 struct SheetPatch {
     block: u16,
     vertices: Vec<u32>,
 }
 
-/// Traverses the mesh from each start that has not been reached yet, within its block.
+/// Traverses the mesh from each start that has not been reached yet, through every edge that is not cut; a traversal
+/// makes a patch in each block that it reaches.
 fn patches(
     mesh: &SelectedMesh,
     block: &[u16],
     starts: impl Iterator<Item = u32>,
+    is_cut: impl Fn(u32, u32) -> bool,
     trace_of: impl Fn(u32) -> usize,
     traces: usize,
 ) -> Vec<SheetPatch> {
-    let mut patches = Vec::new();
+    let mut patches: Vec<SheetPatch> = Vec::new();
     let mut placed = vec![false; block.len()];
-    // The traversal that took each trace last.
-    let mut taken = vec![NONE; traces];
+    // The traversal that took each trace last, and the block in which it did.
+    let mut taken = vec![(NONE, 0); traces];
     let mut queue = VecDeque::new();
+    let mut walk = 0;
     for start in starts {
         if placed[start as usize] {
             continue;
         }
-        let walk = patches.len() as u32;
-        let mut patch = SheetPatch { block: block[start as usize], vertices: Vec::new() };
         placed[start as usize] = true;
-        taken[trace_of(start)] = walk;
+        taken[trace_of(start)] = (walk, block[start as usize]);
         queue.push_back(start);
+        let first = patches.len();
         while let Some(v) = queue.pop_front() {
-            patch.vertices.push(v);
+            let own = block[v as usize];
+            match patches[first..].iter_mut().find(|patch| patch.block == own) {
+                Some(patch) => patch.vertices.push(v),
+                None => patches.push(SheetPatch { block: own, vertices: vec![v] }),
+            }
             for &next in mesh.neighbours(v) {
-                let trace = trace_of(next);
-                if !placed[next as usize] && block[next as usize] == patch.block && taken[trace] != walk {
+                let (trace, here) = (trace_of(next), (walk, block[next as usize]));
+                if !placed[next as usize] && taken[trace] != here && !is_cut(v, next) {
                     placed[next as usize] = true;
-                    taken[trace] = walk;
+                    taken[trace] = here;
                     queue.push_back(next);
                 }
             }
         }
-        patches.push(patch);
+        walk += 1;
     }
     patches
 }
@@ -167,11 +175,12 @@ const OVERSHOT: f64 = 0.3;
 const FRINGE: u32 = 12;
 
 /// Which patches are overshoots, i.e. were left by tracking beyond a fault. Such a patch continues a larger
-/// patch of another block, and its own block has a larger patch: either the two lie over one another, or the
-/// overshoot is a mere fringe along the fault.
+/// patch of another block, across a fault, and its own block has a larger patch: either the two lie over one
+/// another, or the overshoot is a mere fringe along the fault.
 fn overshoots(
     patches: &[SheetPatch],
     mesh: &SelectedMesh,
+    is_cut: impl Fn(u32, u32) -> bool,
     trace_of: impl Fn(u32) -> usize,
     traces: usize,
 ) -> Vec<bool> {
@@ -181,11 +190,11 @@ fn overshoots(
     }
     left_out(patches, trace_of, traces, |p, under, is_largest| {
         let patch = &patches[p];
-        // Vertices at the fault: next to a larger patch of another block.
+        // Vertices at the fault: next to a larger patch beyond it.
         let at_fault = |v: &u32| {
             mesh.neighbours(*v).iter().any(|&m| {
                 let across = &patches[patch_of[m as usize] as usize];
-                across.block != patch.block && across.vertices.len() > patch.vertices.len()
+                across.vertices.len() > patch.vertices.len() && is_cut(*v, m)
             })
         };
         let fault: Vec<u32> = patch.vertices.iter().copied().filter(at_fault).collect();

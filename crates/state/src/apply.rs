@@ -1,6 +1,8 @@
 //! What each action does to the state.
 
-use super::{Action, Compare, Notice, Panel, PickingTask, Place, Session, Snapshot, State, Task, ViewState, camera};
+use super::{
+    Action, Compare, Notice, Panel, PickingTask, Place, Session, Snapshot, State, Task, Tool, ViewState, camera,
+};
 use project::document::Document;
 use project::pictures::scene;
 
@@ -68,7 +70,11 @@ impl State {
             }
             Action::ProposeFaults => {
                 // The numbers of former proposals mean nothing in the new list.
-                self.look(|view, _| view.picking.dismissed.clear());
+                self.look(|view, _| {
+                    view.picking.dismissed.clear();
+                    view.picking.faults.clear();
+                    view.picking.tool = Tool::Faults;
+                });
                 return self.task_at(Place::Interpret, Task::Picking(PickingTask::ProposeFaults));
             }
             Action::Appear(appearance) => {

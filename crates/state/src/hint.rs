@@ -50,7 +50,13 @@ fn words(error: &ProjectError) -> Option<&'static str> {
             "remove the horizon and pick it again (its picks are listed under its name), or extract with the former settings"
         }
         ProjectError::ShortStick { .. } => "click at least two points before you end a stick",
-        ProjectError::NotDrawn { .. } => "choose another fault",
+        ProjectError::NotDrawn { .. } => "choose another fault, or use Edit beside its name",
+        ProjectError::HasSticks { .. } => "drag their points while sticks are drawn (F)",
+        ProjectError::CutBeside { .. } => "click on the fault, between its ends",
+        ProjectError::FewFaults => "choose two faults: click one, and the other with Shift",
+        ProjectError::SideBySide { .. } => {
+            "leave them as they are; where one is wrong, cut it and merge the part that goes on"
+        }
         ProjectError::NoProposals | ProjectError::OutdatedProposals => "propose faults again",
         ProjectError::UnknownProposal { .. } => "propose faults again",
         ProjectError::NoGeometry => "add a volume first",

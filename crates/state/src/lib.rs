@@ -19,6 +19,7 @@ mod picking_steps;
 mod picking_tests;
 mod session;
 pub mod showing;
+pub mod suggested;
 mod view;
 pub mod volume_rendering;
 
@@ -33,7 +34,7 @@ pub use dialogue::{
 };
 pub use last_session::{Appearance, Remembered};
 pub use notice::{Notice, Place};
-pub use picking::{How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, StickPoint, Tool};
+pub use picking::{ChosenFault, How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, StickPoint, Tool};
 pub use review::ShareKind;
 pub use session::{Session, Snapshot};
 pub use view::{Blended, Compare, Hidden, Layout, Panel, SectionKind, SectionVolumes, StandardView, ViewState};

@@ -1,5 +1,5 @@
-//! The interpretation under way: the horizon that picks go to, the node that is selected but not accepted yet, and the
-//! sticks being drawn.
+//! The interpretation under way: the horizon that picks go to, the node that is selected but not accepted yet, the sticks
+//! being drawn, and the faults that are chosen.
 //!
 //! A click selects a leaf (a [`Pick`] in the making), keys climb and descend its tree, and Enter adds it to the horizon
 //! through the same command as `petroglyph pick`. What is not accepted yet belongs to the view; it is saved with the
@@ -7,12 +7,13 @@
 //! and voxels are converted here.
 
 use super::{SectionKind, Task};
+use crate::suggested;
 use glam::{DVec2, DVec3};
 use interp::ExtractSettings;
 use interp::assembly::Operation;
 use interp::faults::Proposal;
 use interp::refine::TrackSettings;
-use project::command::{Climb, Command, DrawHorizon, PickNode};
+use project::command::{Climb, Command, CutAlong, DrawHorizon, PickNode};
 use project::document::{Document, Drawn, HorizonEntry};
 use project::error::Noun;
 use render::{FaceData, Scene};
@@ -41,6 +42,8 @@ pub enum Tool {
     Draw,
     /// Tracks the reflection from a place.
     Track,
+    /// Chooses faults, proposed ones and those of the project.
+    Faults,
 }
 
 /// How the block is shown.
@@ -66,6 +69,15 @@ pub struct Pick {
     pub up: u32,
     /// Levels from the leaf to the root.
     pub levels: u32,
+}
+
+/// A fault that is chosen.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ChosenFault {
+    /// A proposed one: its number, and the name under which it is accepted.
+    Proposed(u32, String),
+    /// One of the project, by its name.
+    Present(String),
 }
 
 /// The interpretation under way.
@@ -111,6 +123,9 @@ pub struct Picking {
     pub snap: bool,
     /// How far reflections are tracked.
     pub window: TrackSettings,
+    /// The faults that are chosen.
+    #[serde(skip)]
+    pub faults: Vec<ChosenFault>,
     /// The numbers of the proposals that were dismissed.
     pub dismissed: Vec<u32>,
     /// Whether minor proposals are shown too.
@@ -213,6 +228,18 @@ pub enum PickingStep {
     NameFault(String),
     /// Make a fault from the sticks.
     MakeFault,
+    /// Choose a fault: alone, or with those that are chosen; one that is chosen with others is left out.
+    ChooseFault(ChosenFault, bool),
+    /// Take the proposed faults that are chosen into the project.
+    AcceptFaults,
+    /// Dismiss the proposed faults that are chosen, and remove those of the project.
+    DropFaults,
+    /// Make one fault of those that are chosen.
+    MergeFaults,
+    /// Cut a fault at a place, voxel.
+    CutFault(ChosenFault, DVec3, CutAlong),
+    /// Draw more sticks of a fault of the project, or move their points; one without sticks gets some.
+    EditFault(String),
     /// Dismiss a proposal.
     Dismiss(u32),
     /// Show or hide minor proposals.
@@ -262,6 +289,16 @@ pub fn free_name(document: &Document, noun: Noun, word: &str) -> String {
 impl Picking {
     /// Drops references to what the project no longer has, such as a horizon that was renamed or removed.
     pub fn fit(&mut self, before: &Document, now: &Document) {
+        let renamed = before.renamed_in(now);
+        self.faults.iter_mut().for_each(|chosen| {
+            if let ChosenFault::Present(name) = chosen {
+                renamed.follow(Noun::Fault, name);
+            }
+        });
+        // One that is being taken in is not there yet.
+        let was = |name: &String| before.faults.iter().any(|entry| entry.name == *name);
+        let is = |name: &String| now.faults.iter().any(|entry| entry.name == *name);
+        self.faults.retain(|chosen| !matches!(chosen, ChosenFault::Present(name) if was(name) && !is(name)));
         let has = |document: &Document, name: &String| document.horizons.iter().any(|entry| entry.name == *name);
         let Some(name) = &mut self.horizon else { return };
         let had = has(before, name);
@@ -313,6 +350,19 @@ impl Picking {
         }
         self.added.clone_from(&points);
         Some(self.draw(Drawn::Line { points, snap: self.snap }, document))
+    }
+
+    /// The stick that those drawn suggest for the section in view, `slices` being the voxel positions of the sections: none
+    /// while a stick is begun, or where one was drawn.
+    pub fn suggestion(&self, document: &Document, slices: [f64; 3]) -> Option<suggested::Stick> {
+        let geometry = document.geometry.as_ref()?;
+        if self.tool != Tool::Sticks || !self.stick.is_empty() {
+            return None;
+        }
+        let made = document.sticks.iter().filter(|drawn| drawn.fault == self.fault).flat_map(|drawn| &drawn.sticks);
+        let voxels = |stick: &Vec<[f64; 3]>| stick.iter().map(|place| voxel_of(geometry, *place)).collect();
+        let known: Vec<Vec<DVec3>> = made.chain(&self.sticks).map(voxels).collect();
+        suggested::stick(&known, slices, geometry.size())
     }
 
     pub(super) fn end_stick(&mut self) {

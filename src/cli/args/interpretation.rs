@@ -295,6 +295,49 @@ pub(in crate::cli) enum FaultAction {
         #[arg(long)]
         name: String,
     },
+    /// Cut a fault in two: from top to bottom through a place, or along its strike at a level
+    ///
+    /// The larger part keeps the name and what ends at it.
+    #[command(after_help = "Examples:\n  petroglyph fault cut north.petro F1 --at 1260,1311,980\
+                      \n  petroglyph fault cut north.petro F1 --at 1260,1311,980 --along strike --name \"F1 deep\"")]
+    Cut {
+        /// Project folder
+        project: PathBuf,
+        /// Fault
+        fault: String,
+        /// Inline, crossline, time or depth
+        #[arg(long, value_name = "INLINE,CROSSLINE,Z", allow_hyphen_values = true)]
+        at: String,
+        /// Which way the cut runs
+        #[arg(long, value_name = "dip|strike", default_value = "dip", value_parser = ["dip", "strike"])]
+        along: String,
+        /// Name of the smaller part [default: the fault's, with a number]
+        #[arg(long)]
+        name: Option<String>,
+    },
+    /// Make one fault of several that continue one another
+    ///
+    /// Its surface is made from their sticks, or from lines on every so many sections, and closes the gaps between them.
+    /// Faults that run side by side are two, and are refused.
+    #[command(after_help = "Example:\n  petroglyph fault merge north.petro F1 F2 --name F1")]
+    Merge {
+        /// Project folder
+        project: PathBuf,
+        /// The faults
+        #[arg(required = true, num_args = 2..)]
+        faults: Vec<String>,
+        /// Name of the new one [default: that of the first]
+        #[arg(long)]
+        name: Option<String>,
+    },
+    /// Give a proposed or imported fault sticks, so that their points can be moved
+    #[command(after_help = "Example:\n  petroglyph fault sticks north.petro F1")]
+    Sticks {
+        /// Project folder
+        project: PathBuf,
+        /// Fault
+        fault: String,
+    },
     /// List the faults
     #[command(after_help = "Example:\n  petroglyph fault list north.petro")]
     List {

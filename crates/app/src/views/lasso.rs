@@ -55,7 +55,7 @@ pub(crate) fn is_held(ui: &Ui, session: &Session) -> bool {
 
 /// How a click picks, and where in the window; `None` where it does not pick.
 pub(crate) fn pick_at(ui: &Ui, response: &Response, session: &Session) -> Option<(How, Pos2)> {
-    let picks = response.clicked() && !matches!(session.view.picking.tool, Tool::Sticks | Tool::Draw);
+    let picks = response.clicked() && !matches!(session.view.picking.tool, Tool::Sticks | Tool::Draw | Tool::Faults);
     picks.then(|| response.interact_pointer_pos().map(|at| (how(ui), at))).flatten()
 }
 
@@ -83,6 +83,8 @@ pub(crate) fn click(ui: &Ui, response: &Response, session: &Session, voxel: DVec
     if response.clicked() {
         let how = how(ui);
         actions.push(Action::Picking(match session.view.picking.tool {
+            // Faults are chosen where their lines are.
+            Tool::Faults => return,
             Tool::Sticks => PickingStep::Stick(voxel),
             Tool::Draw => PickingStep::Line(vec![voxel]),
             Tool::Pick | Tool::Lasso | Tool::Time | Tool::Track => PickingStep::At(voxel, how),

@@ -6,16 +6,18 @@
 
 use super::surfaces;
 use crate::state::picking::voxel_of;
-use crate::state::{Hidden, Look, Panel, Session, StickPoint, Tool, camera};
+use crate::state::{ChosenFault, Hidden, Look, Panel, Session, StickPoint, Tool, camera};
 use crate::widgets::canvas;
 use crate::work::{Interpreted, ShownPick, sheet};
 use eframe::egui::{Painter, Pos2, Rect, Ui};
 use figure::SectionKind;
-use figure::draw::overlay::{OverlayLines, SeenOn, stick};
+use figure::draw::overlay::{NamedLines, OverlayLines, SeenOn, stick, suggested};
 use figure::draw::surfaces::{Cells, OPACITY, fault_opacity, of_fault};
 use figure::interpretation::{DrawnInterpretation, DrawnSelection, Stick};
+use figure::style::PROPOSAL;
 use files::SurfaceKind;
 use glam::DVec2;
+use interp::faults::Proposal;
 use project::document::FaultEntry;
 use project::pictures::figures::InterpreterView;
 use render::Faces;
@@ -39,11 +41,14 @@ pub struct Overlay {
     selection: usize,
     cells: Arc<Vec<(Colour, Vec<Cells>)>>,
     fault_cells: Arc<Vec<(Cells, Colour)>>,
+    proposal_cells: Arc<Vec<Cells>>,
     selected_cells: Arc<Vec<Cells>>,
     lines: HashMap<SectionKind, (Made<u64>, OverlayLines)>,
     fence: Option<(Made<Vec<DVec2>>, OverlayLines)>,
 }
 
+/// How opaque proposed faults are on the block, shares of those of the project.
+const PROPOSED: f32 = 0.7;
 /// Points of sticks within so many lines of a section can be dragged on it.
 const ON_SECTION: f64 = 2.5;
 /// Distance within which the pointer catches a point of a stick, points.
@@ -141,6 +146,9 @@ impl Overlay {
         self.cells = Arc::new(cells.collect());
         let faults = interpreted.faults.iter().map(|fault| of_fault(&fault.mesh(), geometry.size()));
         self.fault_cells = Arc::new(faults.collect());
+        let proposals = interpreted.proposals.iter();
+        let proposals = proposals.map(|(_, fault)| of_fault(&fault.mesh(), geometry.size()).0);
+        self.proposal_cells = Arc::new(proposals.collect());
         self.interpreted = Some(interpreted);
         if session.view.picking.pick.is_none() {
             self.select(session, None);
@@ -173,7 +181,59 @@ impl Overlay {
             self.lines.insert(kind, (made, lines));
         }
         let Some((_, lines)) = self.lines.get(&kind) else { return };
-        draw(painter, session, lines, on, page);
+        draw(painter, session, lines, on, &page);
+        for chosen in &session.view.picking.faults {
+            if let Some(lines) = self.lines_of(kind, chosen) {
+                canvas::paint(painter, &lines.chosen(&page), None);
+            }
+        }
+    }
+
+    /// The lines of a fault on a section as drawn last.
+    fn lines_of(&self, kind: SectionKind, chosen: &ChosenFault) -> Option<&NamedLines> {
+        let (_, lines) = self.lines.get(&kind)?;
+        match chosen {
+            ChosenFault::Present(name) => lines.faults.iter().find(|fault| fault.name == *name),
+            ChosenFault::Proposed(id, _) => {
+                let proposals = &self.interpreted.as_ref()?.proposals;
+                let (proposal, _) = proposals.iter().find(|(proposal, _)| proposal.id == *id)?;
+                lines.proposals.iter().find(|fault| fault.name == proposal.name)
+            }
+        }
+    }
+
+    /// The fault within reach of a place of a section, and what is known of a proposed one.
+    pub(crate) fn fault_at(
+        &self,
+        kind: SectionKind,
+        at: Pos2,
+        page: impl Fn(DVec2) -> DVec2,
+    ) -> Option<(ChosenFault, Option<&Proposal>)> {
+        let (_, lines) = self.lines.get(&kind)?;
+        let place = canvas::page(at);
+        let off = |lines: &NamedLines| Some(lines.distance(place, &page)).filter(|off| *off <= f64::from(CATCH));
+        let present =
+            lines.faults.iter().filter_map(|fault| Some((off(fault)?, ChosenFault::Present(fault.name.clone()), None)));
+        let known = &self.interpreted.as_ref()?.proposals;
+        let proposed = lines.proposals.iter().filter_map(|fault| {
+            let (proposal, _) = known.iter().find(|(proposal, _)| proposal.name == fault.name)?;
+            Some((off(fault)?, ChosenFault::Proposed(proposal.id, proposal.name.clone()), Some(proposal)))
+        });
+        let nearest = present.chain(proposed).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some((nearest.1, nearest.2))
+    }
+
+    /// The line of a fault on a section, as something that is chosen.
+    pub(crate) fn mark(
+        &self,
+        painter: &Painter,
+        kind: SectionKind,
+        fault: &ChosenFault,
+        page: impl Fn(DVec2) -> DVec2,
+    ) {
+        if let Some(lines) = self.lines_of(kind, fault) {
+            canvas::paint(painter, &lines.chosen(page), None);
+        }
     }
 
     /// Draws on a fence with these corners, voxels.
@@ -191,7 +251,7 @@ impl Overlay {
             self.fence = Some((made, lines));
         }
         let Some((_, lines)) = &self.fence else { return };
-        draw(painter, session, lines, on, page);
+        draw(painter, session, lines, on, &page);
     }
 
     fn made<P>(&self, session: &Session, place: P) -> Made<P> {
@@ -236,6 +296,9 @@ impl Overlay {
         let is_clear = picking.look == Look::VolumeRendering;
         let opacity = fault_opacity(if is_clear { Faces::None } else { Faces::All });
         let faults = faults.map(|((cells, colour), _)| (cells, *colour, opacity));
+        let proposals = self.interpreted.iter().flat_map(|shown| &shown.proposals);
+        let proposals = self.proposal_cells.iter().zip(proposals).filter(|(_, (proposal, _))| picking.shows(proposal));
+        let faults = faults.chain(proposals.map(|(cells, _)| (cells, PROPOSAL, PROPOSED * opacity)));
         let own = picking.colour_in(&session.document);
         let picked = self.selected_cells.iter().map(|cells| (cells, own, OPACITY[2]));
         let missing = horizons.chain(picked).filter(|_| !has_horizons);
@@ -259,13 +322,20 @@ impl Overlay {
 }
 
 /// The lines and sticks on a section.
-fn draw(painter: &Painter, session: &Session, lines: &OverlayLines, on: SeenOn, page: impl Fn(DVec2) -> DVec2) {
-    lines.drawn(&page).iter().for_each(|group| canvas::paint(painter, group, None));
+fn draw(painter: &Painter, session: &Session, lines: &OverlayLines, on: SeenOn, page: &impl Fn(DVec2) -> DVec2) {
+    lines.drawn(page).iter().for_each(|group| canvas::paint(painter, group, None));
     let own = DrawnInterpretation { sticks: sticks(session), ..DrawnInterpretation::default() };
-    let near = figure::draw::overlay::sticks(&own, on, &page);
+    let near = figure::draw::overlay::sticks(&own, on, page);
     near.iter().for_each(|group| canvas::paint(painter, group, None));
     if session.view.picking.tool == Tool::Sticks {
-        let beside = figure::draw::overlay::ghosts(&own, on, &page);
+        let beside = figure::draw::overlay::ghosts(&own, on, page);
         beside.iter().for_each(|group| canvas::paint(painter, group, None));
+        let suggestion = session.view.picking.suggestion(&session.document, session.view.slices);
+        if let (Some(suggestion), SeenOn::Section(kind, _)) = (suggestion, on)
+            && kind.axis() == suggestion.axis
+        {
+            let places = suggestion.points.iter().map(|voxel| page(kind.flat(*voxel)));
+            canvas::paint(painter, &suggested(places.collect(), STICKS[1]), None);
+        }
     }
 }

@@ -139,7 +139,12 @@ pub(crate) const INTERPRETING: &[Shortcut] = &[
     plain(Key::ArrowUp, "Up", "Climb", |_| picking(PickingStep::Climb(1))),
     plain(Key::ArrowDown, "Down", "Descend", |_| picking(PickingStep::Climb(-1))),
     plain(Key::H, "H", "Highest valid", |_| picking(PickingStep::HighestValid)),
-    plain(Key::Enter, "Enter", "Add to the horizon; end a stick or a line", |_| picking(PickingStep::Accept)),
+    plain(
+        Key::Enter,
+        "Enter",
+        "Add to the horizon; end a stick or a line, or take the dashed stick; accept faults",
+        |_| picking(PickingStep::Accept),
+    ),
     plain(Key::Escape, "Escape", "Deselect, or drop the stick or the line", |_| picking(PickingStep::GiveUp)),
     plain(Key::Backspace, "Backspace", "Remove the last point of a stick or a line", |session| {
         matches!(session.view.picking.tool, Tool::Sticks | Tool::Draw)
@@ -147,6 +152,13 @@ pub(crate) const INTERPRETING: &[Shortcut] = &[
     }),
     plain(Key::N, "N", "New horizon", |_| picking(PickingStep::Begin)),
     plain(Key::F, "F", "Draw fault sticks, or pick again", |session| turn_to(session, Tool::Sticks)),
+    shifted(Key::F, "Shift F", "Choose faults, or pick again", |session| turn_to(session, Tool::Faults)),
+    plain(Key::Delete, "Delete", "Dismiss or remove the faults that are chosen", |session| {
+        (session.view.picking.tool == Tool::Faults).then_some(Action::Picking(PickingStep::DropFaults))
+    }),
+    shifted(Key::M, "Shift M", "Merge the faults that are chosen", |session| {
+        (session.view.picking.faults.len() > 1).then_some(Action::Picking(PickingStep::MergeFaults))
+    }),
     plain(Key::M, "M", "Draw lines of a horizon by hand, or pick again", |session| turn_to(session, Tool::Draw)),
     plain(Key::U, "U", "Track reflections from a click, or pick again", |session| turn_to(session, Tool::Track)),
     plain(Key::O, "O", "Volume rendering, or the faces of the block", |session| {

@@ -248,6 +248,10 @@ impl Window {
             | Command::SmoothHorizon(_)
             | Command::SetColour(SetColour { noun: Noun::Horizon, .. })
             | Command::PickFault(_)
+            | Command::MoveStickPoint(_)
+            | Command::CutFault(_)
+            | Command::MergeFaults(_)
+            | Command::GiveSticks(_)
             | Command::AcceptFault(_) => Place::Interpret,
             _ if self.is_interpreting() => Place::Interpret,
             _ => Place::Data,

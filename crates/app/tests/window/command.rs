@@ -1,14 +1,15 @@
 //! The panels and commands that the other tests leave out: each is used by its label and checked in the project.
 
 use super::driven::{Driven, click, document, open, state, wait};
-use eframe::egui::Key;
+use super::picking::{picking, press};
+use eframe::egui::{Key, Modifiers, Pos2, Rect, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
 use interp::faults::{Proposal, ProposeSettings};
 use project::Project;
 use project::command::{Command, PickFault, ProposeFaults, SetLayer};
 use project::interpretation::proposals::{self, Proposals};
-use state::{Action, Dialogue, FileContent, Panel, PickingStep};
+use state::{Action, ChosenFault, Dialogue, FileContent, Panel, PickingStep, Tool};
 use survey::{Contact, Progress, TriangleMesh};
 
 pub(crate) fn act(harness: &mut Driven, action: Action) {
@@ -111,6 +112,68 @@ fn proposed_faults_are_accepted_and_dismissed() {
     assert!(state(&harness).session.as_ref().unwrap().view.picking.dismissed.is_empty());
     wait(&mut harness, "it is said that there are none", |harness| !state(harness).notices.is_empty());
     assert!(state(&harness).notices[0].text.contains("no fault is proposed"), "{:?}", state(&harness).notices);
+}
+
+/// A place of the crossline section: inline index and sample of the test survey of 24 by 20 traces and 32 samples.
+fn on_crossline(harness: &Driven, inline: f32, sample: f32) -> Pos2 {
+    let whole = harness.get_by_label("Crossline section").rect();
+    let body = Rect::from_min_max(whole.min + vec2(52.0, 20.0), whole.max - vec2(13.0, 4.0));
+    body.min + vec2(inline / 23.0, sample / 31.0) * body.size()
+}
+
+#[test]
+fn faults_are_chosen_on_sections_accepted_cut_and_merged() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = super::driven::project(folder.path());
+    proposed(&mut Project::open(&root).unwrap());
+    let mut harness = super::driven::driven(folder.path(), Some(root));
+    wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
+    click(&mut harness, "Interpret");
+    wait(&mut harness, "both are listed", |harness| harness.query_all_by_label_contains("Proposal").count() == 2);
+    click(&mut harness, "Sections");
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::F);
+    harness.run_steps(3);
+    assert_eq!(picking(&harness).tool, Tool::Faults);
+    // Both dip by one metre a millisecond; halfway down they are at 212 m and 412 m.
+    let at = on_crossline(&harness, 212.0 / 25.0, 15.5);
+    press(&mut harness, at, Modifiers::NONE);
+    assert_eq!(picking(&harness).faults, [ChosenFault::Proposed(1, "Fault 1".into())]);
+    let at = on_crossline(&harness, 412.0 / 25.0, 15.5);
+    press(&mut harness, at, Modifiers::SHIFT);
+    assert_eq!(picking(&harness).faults.len(), 2);
+    // Two that run side by side are two: they are accepted, and not merged.
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::M);
+    wait(&mut harness, "it is refused", |harness| {
+        state(harness).notices.iter().any(|notice| notice.text.contains("run side by side"))
+    });
+    let named = |harness: &Driven| document(harness).faults.iter().map(|fault| fault.name.clone()).collect::<Vec<_>>();
+    assert_eq!(named(&harness), ["Fault 1", "Fault 2"]);
+    wait(&mut harness, "neither is proposed any more", |harness| {
+        harness.query_all_by_label_contains("Proposal").count() == 0
+    });
+    // Alt and a click cuts; the parts continue one another.
+    let at = on_crossline(&harness, 212.0 / 25.0, 15.5);
+    press(&mut harness, at, Modifiers::ALT);
+    wait(&mut harness, "it is in two", |harness| named(harness).len() == 3);
+    wait(&mut harness, "both are drawn", |harness| {
+        harness.state().as_ref().unwrap().is_settled() && harness.query_by_label("Fault 1 2").is_some()
+    });
+    act(&mut harness, Action::Picking(PickingStep::ChooseFault(ChosenFault::Present("Fault 1".into()), false)));
+    act(&mut harness, Action::Picking(PickingStep::ChooseFault(ChosenFault::Present("Fault 1 2".into()), true)));
+    click(&mut harness, "Merge");
+    wait(&mut harness, "it is one", |harness| named(harness).len() == 2);
+    // What was accepted and changed is no proposal again.
+    wait(&mut harness, "the window is at rest", |harness| harness.state().as_ref().unwrap().is_settled());
+    assert_eq!(harness.query_all_by_label_contains("Proposal").count(), 0);
+    act(&mut harness, Action::Picking(PickingStep::EditFault("Fault 2".into())));
+    wait(&mut harness, "it has sticks", |harness| {
+        document(harness).sticks.iter().any(|drawn| drawn.fault == "Fault 2" && drawn.sticks.len() > 10)
+    });
+    assert_eq!((picking(&harness).tool, picking(&harness).fault.as_str()), (Tool::Sticks, "Fault 2"));
+    act(&mut harness, Action::Picking(PickingStep::Use(Tool::Faults)));
+    act(&mut harness, Action::Picking(PickingStep::ChooseFault(ChosenFault::Present("Fault 2".into()), false)));
+    harness.key_press(Key::Delete);
+    wait(&mut harness, "it is gone", |harness| named(harness) == ["Fault 1"]);
 }
 
 #[test]
@@ -236,7 +299,7 @@ fn a_tile_of_ones_own_is_added_and_a_scene_comes_and_goes() {
     act(&mut harness, Action::Ask(Box::new(Dialogue::Choose(state::Choice::Texture))));
     harness.get_by_label("Path").focus();
     harness.step();
-    harness.key_press_modifiers(eframe::egui::Modifiers::COMMAND, Key::A);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
     harness.get_by_label("Path").type_text(&tile.display().to_string());
     harness.run_steps(2);
     click(&mut harness, "Add");
@@ -248,7 +311,7 @@ fn a_tile_of_ones_own_is_added_and_a_scene_comes_and_goes() {
     click_last(&mut harness, "Save scene");
     wait(&mut harness, "the view is kept", |harness| document(harness).scenes.len() == 1);
     click_last(&mut harness, "Rename");
-    harness.key_press_modifiers(eframe::egui::Modifiers::COMMAND, Key::A);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
     harness.get_by_label("New name").type_text("map");
     harness.run_steps(2);
     harness.key_press(Key::Enter);

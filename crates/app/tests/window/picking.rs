@@ -51,7 +51,7 @@ pub(crate) fn click_in(harness: &mut Driven, label: &str, off: [f32; 2], modifie
     press(harness, at, modifiers);
 }
 
-fn press(harness: &mut Driven, at: Pos2, modifiers: Modifiers) {
+pub(crate) fn press(harness: &mut Driven, at: Pos2, modifiers: Modifiers) {
     harness.event(Event::PointerMoved(at));
     harness.run_steps(2);
     for pressed in [true, false] {
@@ -243,9 +243,22 @@ fn a_fault_is_drawn_with_sticks_by_clicks_and_keys() {
         harness.run_steps(2);
         assert!(picking(&harness).stick.is_empty());
     }
+    // Between two sticks a third is suggested, which Enter takes.
+    harness.state_mut().as_mut().unwrap().act(Action::Slices([12.0, 10.0, 16.0]));
+    harness.run_steps(2);
+    harness.get_by_label("Enter takes the dashed stick.");
+    harness.key_press(Key::Enter);
+    harness.run_steps(2);
+    let sticks = picking(&harness).sticks.clone();
+    assert_eq!(sticks.len(), 3);
+    for n in 0..2 {
+        assert!((sticks[2][n][0] - 0.5 * (sticks[0][n][0] + sticks[1][n][0])).abs() < 0.01, "{sticks:?}");
+        assert!((sticks[2][n][2] - 0.5 * (sticks[0][n][2] + sticks[1][n][2])).abs() < 0.01, "{sticks:?}");
+    }
+    assert!(harness.query_by_label("Enter takes the dashed stick.").is_none());
     click(&mut harness, "Make fault");
     wait(&mut harness, "the fault is there", |harness| document(harness).faults.len() == 1);
-    assert_eq!(document(&harness).sticks[0].sticks.len(), 2);
+    assert_eq!(document(&harness).sticks[0].sticks.len(), 3);
 }
 
 #[test]

@@ -86,7 +86,7 @@ pub struct OverlayLines {
     /// Faults.
     pub faults: Vec<NamedLines>,
     /// Proposed faults.
-    pub proposals: Vec<Line>,
+    pub proposals: Vec<NamedLines>,
     /// The selection.
     pub selected: Option<NamedLines>,
 }
@@ -165,7 +165,11 @@ impl OverlayLines {
             filled: shown.horizons.iter().map(|h| named(h, sheets(h, SheetPart::Filled))).collect(),
             bridges: shown.horizons.iter().map(|horizon| named(horizon, bridges(horizon))).collect(),
             faults: shown.faults.iter().map(fault).collect(),
-            proposals: shown.proposals.iter().flat_map(|fault| on.mesh(fault.triangles)).collect(),
+            proposals: shown
+                .proposals
+                .iter()
+                .map(|proposal| NamedLines { colour: PROPOSAL, ..fault(proposal) })
+                .collect(),
             selected,
         }
     }
@@ -217,7 +221,8 @@ impl OverlayLines {
             groups.push(line(GroupKind::Fault, &fault.name, path(&fault.lines), stroke));
         }
         let stroke = Stroke::new(0.8 * FAULT_PT, PROPOSAL).round();
-        groups.push(line(GroupKind::Fault, "proposals", path(&self.proposals), stroke));
+        let proposals: Vec<Line> = self.proposals.iter().flat_map(|proposal| proposal.lines.iter().cloned()).collect();
+        groups.push(line(GroupKind::Fault, "proposals", path(&proposals), stroke));
         if let Some(selected) = &self.selected {
             let light = Stroke::new(SELECTED_PT[1], Ink::glass(Colour::WHITE, 0.82)).round();
             let bright = Stroke::new(SELECTED_PT[0], selected.colour).round();
@@ -232,6 +237,43 @@ impl OverlayLines {
 
 fn is_empty(item: &page::list::Item) -> bool {
     matches!(item, page::list::Item::Path(path) if path.path.segments.is_empty())
+}
+
+impl NamedLines {
+    /// The lines on a page as something that is chosen: broad, with a light rim.
+    pub fn chosen(&self, page: impl Fn(DVec2) -> DVec2) -> Group {
+        let mut path = Path::default();
+        self.lines.iter().for_each(|line| path.add_line(&line.iter().map(|st| page(*st)).collect::<Vec<_>>()));
+        let rim = Stroke::new(SELECTED_PT[1], Ink::glass(Colour::WHITE, 0.82)).round();
+        let bright = Stroke::new(SELECTED_PT[0], self.colour).round();
+        Group::new(GroupKind::Fault, &self.name)
+            .with([rim, bright].map(|stroke| PathItem::stroked(path.clone(), stroke).into()))
+    }
+
+    /// How far the lines pass from a place of the page, points.
+    pub fn distance(&self, place: DVec2, page: impl Fn(DVec2) -> DVec2) -> f64 {
+        let pieces = self.lines.iter().flat_map(|line| line.windows(2)).map(|pair| [page(pair[0]), page(pair[1])]);
+        let off = |[a, b]: [DVec2; 2]| {
+            let along = b - a;
+            let share = ((place - a).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            (a + along * share).distance(place)
+        };
+        pieces.map(off).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// A stick that is suggested, dashed, with open points.
+pub fn suggested(places: Vec<DVec2>, colour: Colour) -> Group {
+    let mut group = Group::new(GroupKind::Fault, "suggested stick");
+    let light = Stroke::new(HORIZON_PT + RIM_PT, Ink::glass(Colour::WHITE, RIM_OPACITY)).round();
+    group.push(PathItem::stroked(Path::line(&places), light));
+    let [on, off] = FILLED_PT;
+    group.push(PathItem::stroked(Path::line(&places), Stroke::new(HORIZON_PT, colour).dashed(on, off)));
+    for place in places {
+        let dot = PathItem::filled(Path::circle(place, 0.8 * PLACE_PT), Ink::glass(Colour::WHITE, 0.85));
+        group.push(dot.outlined(Stroke::new(0.7 * HORIZON_PT, colour)));
+    }
+    group
 }
 
 /// The sticks that lie near a section or a fence.

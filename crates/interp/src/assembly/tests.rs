@@ -268,6 +268,40 @@ fn a_fringe_along_a_fault_is_left_out() {
     assert!(found.sheets.iter().all(before));
 }
 
+/// A fault drawn far below a reflection runs through it only as a continuation: it cuts nothing there, and takes nothing
+/// away. Where the fault was drawn, it does.
+#[test]
+fn a_fault_that_was_drawn_elsewhere_cuts_nothing() {
+    // The fronts met over a strip: the sheet that was picked comes first and keeps its traces.
+    let upper: Height = &|_, _| Some(8.0);
+    let strip: Height = &|x, y| (x > 12 && y < 4).then_some(13.0);
+    let forest = forest_of(SIZE, &[&[upper], &[strip]], 64);
+    let mut all = Selection::default();
+    all.insert(0..forest.surfaces.triangles.len() as u32);
+    let geometry = SurveyGeometry::regular(SIZE, 25.0, 10.0, VerticalUnit::Metres);
+    let voxel = |x: f64, y: f64, z: f64| geometry.world_from_voxel(glam::DVec3::new(x, y, z));
+    let drawn = |depth: [f64; 2]| {
+        let [top, base] = depth;
+        let vertices =
+            vec![voxel(16.0, 0.0, top), voxel(16.0, 16.0, top), voxel(17.0, 0.0, base), voxel(17.0, 16.0, base)];
+        let mesh = survey::TriangleMesh { vertices, triangles: vec![[0, 1, 2], [1, 3, 2]] };
+        FaultNetwork::build(&geometry, &[survey::Fault::new("F", mesh)], &Progress::silent()).unwrap()
+    };
+    let (below, through) = (drawn([45.0, 60.0]), drawn([0.0, 20.0]));
+    assert_eq!(below.block_count(), 2, "the continuation divides the volume");
+    let ends = [Vec3::new(14.0, 8.0, 8.0), Vec3::new(19.0, 8.0, 8.0)];
+    assert_ne!(below.block_at(ends[0]), below.block_at(ends[1]));
+    let open = reassemble(&forest, &all, &[0], &FaultNetwork::none());
+    let found = reassemble(&forest, &all, &[0], &below);
+    assert_eq!((found.left_out, found.overlap.traces), (0, open.overlap.traces));
+    let picked = |sheets: &[VoxelSheet]| -> usize {
+        let firsts = sheets.chunk_by(|a, b| a.block == b.block).map(|of_block| &of_block[0]);
+        firsts.map(|sheet| sheet.z.iter().filter(|z| **z == 8.0).count()).sum()
+    };
+    assert_eq!(picked(&found.sheets), SIZE[0] * SIZE[1], "every trace of the picked sheet comes first in its block");
+    assert!(through.divides(ends[0] + Vec3::X, ends[1] - Vec3::X) && !below.divides(ends[0], ends[1]));
+}
+
 /// Two sheets that lie over one another in a strip stay what they are, wherever no fault tells them apart.
 #[test]
 fn sheets_that_overlap_come_back_whole() {

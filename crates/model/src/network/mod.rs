@@ -260,6 +260,14 @@ impl FaultNetwork {
             && (!self.in_parts && self.truncation[fault].is_none() || self.existing(self.bits_at(p)) >> fault & 1 == 1)
     }
 
+    /// Whether a fault that was interpreted there runs between two neighbouring voxel positions, and not its continuation
+    /// alone.
+    pub fn divides(&self, a: Vec3, b: Vec3) -> bool {
+        let between = self.bits_at(a) ^ self.bits_at(b);
+        let middle = 0.5 * (a + b);
+        between != 0 && (0..self.surfaces.len()).any(|f| between >> f & 1 == 1 && self.is_real(f, middle))
+    }
+
     /// The block that voxel position `p` lies in.
     pub fn block_at(&self, p: Vec3) -> u16 {
         self.block_of(self.bits_at(p))

@@ -80,7 +80,7 @@ impl MoveStickPoint {
 
 /// Refuses a point far outside the survey. A stick may end a little outside it; a point farther outside is a mistyped
 /// number.
-fn check_near(geometry: &SurveyGeometry, place: [f64; 3]) -> Result<(), ProjectError> {
+pub(super) fn check_near(geometry: &SurveyGeometry, place: [f64; 3]) -> Result<(), ProjectError> {
     let voxel = geometry.voxel_from_lines(place[0], place[1]).extend(geometry.vertical.index_of(place[2]));
     let size = geometry.size();
     let is_near = (0..3).all(|axis| {
@@ -100,20 +100,41 @@ fn check_near(geometry: &SurveyGeometry, place: [f64; 3]) -> Result<(), ProjectE
 
 /// Makes the surface of the fault whose sticks these are; one stick alone has none.
 fn surface(draft: &mut Draft, drawn: usize, progress: &Progress) -> Result<Effect, ProjectError> {
-    let geometry = draft.document.frame()?.clone();
-    let FaultSticks { fault: name, sticks } = draft.document.sticks[drawn].clone();
-    if sticks.len() < 2 {
+    let FaultSticks { fault: name, sticks } = &draft.document.sticks[drawn];
+    let (name, count) = (name.clone(), sticks.len());
+    if count < 2 {
         return Ok(Effect::Changed { summary: format!("fault {name}: one stick; a second one makes its surface") });
     }
-    let world = |place: &[f64; 3]| -> DVec3 {
-        let voxel = geometry.voxel_from_lines(place[0], place[1]).extend(geometry.vertical.index_of(place[2]));
-        geometry.world_from_voxel(voxel)
-    };
-    let lines: Vec<Vec<DVec3>> = sticks.iter().map(|stick| stick.iter().map(world).collect()).collect();
+    let (triangles, told) = of_sticks(draft, drawn, &Origin::Drawn)?;
+    let fitted = rebuild_all(draft, progress)?;
+    let summary = format!("fault {name}: {count} sticks, {triangles} triangles");
+    Ok(Effect::changed(summary, told.into_iter().chain(fitted).collect()))
+}
+
+/// A place of a stick in world coordinates.
+pub(super) fn world_of(geometry: &SurveyGeometry, place: &[f64; 3]) -> DVec3 {
+    let voxel = geometry.voxel_from_lines(place[0], place[1]).extend(geometry.vertical.index_of(place[2]));
+    geometry.world_from_voxel(voxel)
+}
+
+/// Makes the surface of the fault whose two or more sticks these are, or its parts; returns its triangles and what is to be
+/// told of it. What the program proposed remains that.
+pub(super) fn of_sticks(
+    draft: &mut Draft,
+    drawn: usize,
+    origin: &Origin,
+) -> Result<(usize, Option<String>), ProjectError> {
+    let geometry = draft.document.frame()?.clone();
+    let FaultSticks { fault: name, sticks } = draft.document.sticks[drawn].clone();
+    let lines: Vec<Vec<DVec3>> =
+        sticks.iter().map(|stick| stick.iter().map(|place| world_of(&geometry, place)).collect()).collect();
     let (Parts { faults, told }, of_parts) = fault_parts::of_sticks(&draft.document, &geometry, &name, &lines)?;
     let triangles: usize = faults.iter().map(|fault| fault.mesh.triangles.len()).sum();
     for (fault, own) in faults.iter().zip(&of_parts) {
-        put(draft, fault, Origin::Drawn)?;
+        let before = draft.document.faults.iter().find(|entry| entry.name == fault.name);
+        let proposed = before.map(|entry| &entry.origin).filter(|origin| matches!(origin, Origin::Proposed { .. }));
+        let origin = proposed.unwrap_or(origin).clone();
+        put(draft, fault, origin)?;
         let sticks = own.iter().map(|&n| sticks[n].clone()).collect();
         if fault.name != name {
             draft.document.sticks.push(FaultSticks { fault: fault.name.clone(), sticks });
@@ -121,9 +142,7 @@ fn surface(draft: &mut Draft, drawn: usize, progress: &Progress) -> Result<Effec
             draft.document.sticks[drawn].sticks = sticks;
         }
     }
-    let fitted = rebuild_all(draft, progress)?;
-    let summary = format!("fault {name}: {} sticks, {triangles} triangles", sticks.len());
-    Ok(Effect::changed(summary, told.into_iter().chain(fitted).collect()))
+    Ok((triangles, told))
 }
 
 impl AcceptFault {
@@ -143,7 +162,7 @@ impl AcceptFault {
 }
 
 /// Writes a fault and its entry; an existing fault of that name is replaced.
-fn put(draft: &mut Draft, fault: &Fault, origin: Origin) -> Result<(), ProjectError> {
+pub(super) fn put(draft: &mut Draft, fault: &Fault, origin: Origin) -> Result<(), ProjectError> {
     let old = draft.document.faults.iter().position(|entry| entry.name == fault.name);
     let before = old.map(|old| &draft.document.faults[old]);
     let new = || (fault.truncated_by.clone(), fault.grown_m);

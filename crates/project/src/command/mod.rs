@@ -9,6 +9,7 @@ mod contact;
 mod draw;
 mod extract;
 mod fault;
+mod fault_edit;
 mod fault_parts;
 mod fault_pick;
 mod horizon;
@@ -36,6 +37,7 @@ pub use contact::SetContact;
 pub use draw::{DrawHorizon, HorizonDrawn};
 pub use extract::{Extract, ProposeFaults};
 pub use fault::{AddFault, FaultAdded, SetFaultExtent, SetTruncation};
+pub use fault_edit::{CutAlong, CutFault, GiveSticks, MergeFaults};
 pub use fault_pick::{AcceptFault, MoveStickPoint, PickFault};
 pub use horizon::{AddHorizon, Age, HorizonAdded};
 pub use import::{ImportVolume, VolumeImported};
@@ -126,6 +128,12 @@ pub enum Command {
     MoveStickPoint(MoveStickPoint),
     /// Accept a proposed fault.
     AcceptFault(AcceptFault),
+    /// Cut a fault in two.
+    CutFault(CutFault),
+    /// Make one fault of several.
+    MergeFaults(MergeFaults),
+    /// Give a fault sticks that can be moved.
+    GiveSticks(GiveSticks),
     /// Add a fault from a file.
     AddFault(AddFault),
     /// State at which other fault a fault ends.
@@ -242,6 +250,9 @@ impl Command {
             Self::PickFault(change) => change.execute(draft, progress),
             Self::MoveStickPoint(change) => change.execute(draft, progress),
             Self::AcceptFault(change) => change.execute(draft, progress),
+            Self::CutFault(change) => change.execute(draft, progress),
+            Self::MergeFaults(change) => change.execute(draft, progress),
+            Self::GiveSticks(change) => change.execute(draft, progress),
             Self::AddFault(change) => change.execute(draft, progress),
             Self::AddWell(change) => change.execute(draft, progress),
             Self::SetTruncation(change) => change.execute(draft, progress),

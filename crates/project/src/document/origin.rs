@@ -215,7 +215,7 @@ impl Document {
     ///
     /// # Errors
     /// [`ProjectError::NoVolume`].
-    pub(crate) fn amplitudes(&self) -> Result<&VolumeEntry, ProjectError> {
+    pub fn amplitudes(&self) -> Result<&VolumeEntry, ProjectError> {
         let extracted = self.extraction.as_ref().map(|entry| &entry.volume);
         let own = || self.volumes.iter().filter(|entry| entry.geometry.is_none());
         own().find(|entry| extracted == Some(&entry.name)).or_else(|| own().next()).ok_or(ProjectError::NoVolume)

@@ -388,23 +388,26 @@ pub fn conflicts_of(
     Ok(found.into_iter().map(|conflict| in_lines(conflict, geometry)).collect())
 }
 
-/// Assembles all horizons with picks again after the faults have changed, and fits those of scattered points again; says
-/// which were fitted. Horizons whose picks were made on another extraction stay as they are, and a warning says so.
+/// Assembles all horizons with picks again after the faults have changed, and fits those of scattered points again; one
+/// sentence for each that is another now. Horizons whose picks were made on another extraction stay as they are, and a
+/// warning says so.
 pub(crate) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<Vec<String>, ProjectError> {
-    assemble_all(draft, progress)?;
-    scattered::refit_all(draft, progress)
+    let mut told = assemble_all(draft, progress)?;
+    told.extend(scattered::refit_all(draft, progress)?);
+    Ok(told)
 }
 
-/// Assembles all horizons with picks again.
-fn assemble_all(draft: &mut Draft, progress: &Progress) -> Result<(), ProjectError> {
+/// Assembles all horizons with picks again; one sentence for each that is another now.
+fn assemble_all(draft: &mut Draft, progress: &Progress) -> Result<Vec<String>, ProjectError> {
     let logs: Vec<(String, Assembly)> = draft
         .document
         .horizons
         .iter()
         .filter_map(|entry| Some((entry.name.clone(), entry.assembly.clone()?)))
         .collect();
+    let mut told = Vec::new();
     if logs.is_empty() {
-        return Ok(());
+        return Ok(told);
     }
     let candidates = Candidates::for_picks(draft.facts(), &[], progress).ok();
     if candidates.is_none() && logs.iter().any(|(_, log)| !log.picks.is_empty()) {
@@ -412,7 +415,11 @@ fn assemble_all(draft: &mut Draft, progress: &Progress) -> Result<(), ProjectErr
     }
     let blocks = draft.facts().get(&FaultBlocks, progress)?;
     for (name, log) in logs.into_iter().filter(|(_, log)| candidates.is_some() || log.picks.is_empty()) {
+        let before = entry_of(draft, &name)?.clone();
         match rebuild(draft, candidates.as_deref(), &blocks, &name, log, progress) {
+            Ok(report) if entry_of(draft, &name)?.hash != before.hash => {
+                told.push(format!("horizon \"{name}\" was assembled again: {}", changes(draft, &before, &report, progress)?));
+            }
             Ok(_) => {}
             Err(ProjectError::OutdatedPicks { .. }) => progress.warn(format!(
                 "horizon \"{name}\" was left unchanged: its picks were made on another extraction and have to be repeated"
@@ -420,7 +427,60 @@ fn assemble_all(draft: &mut Draft, progress: &Progress) -> Result<(), ProjectErr
             Err(error) => return Err(error),
         }
     }
-    Ok(())
+    Ok(told)
+}
+
+fn entry_of<'a>(draft: &'a Draft, name: &str) -> Result<&'a HorizonEntry, ProjectError> {
+    Ok(&draft.document.horizons[draft.document.position(Noun::Horizon, name)?])
+}
+
+/// How a horizon differs from the one before, and what a report on it warns of.
+fn changes(
+    draft: &Draft,
+    before: &HorizonEntry,
+    report: &AssemblyReport,
+    progress: &Progress,
+) -> Result<String, ProjectError> {
+    let geometry = draft.document.frame()?;
+    let [nx, ny, _] = geometry.size();
+    let old = content::read_horizon(draft.root(), before, progress)?;
+    let new = content::read_horizon(draft.root(), entry_of(draft, &before.name)?, progress)?;
+    let depths = |horizon: &Horizon, trace: usize| -> Vec<u32> {
+        let at = |sheet: &survey::Sheet| {
+            sheet.depth.get(trace).filter(|depth| depth.is_finite()).map(|depth| depth.to_bits())
+        };
+        let mut depths: Vec<u32> = horizon.sheets.iter().filter_map(at).collect();
+        depths.sort_unstable();
+        depths
+    };
+    let moved = (0..nx * ny).filter(|&trace| depths(&old, trace) != depths(&new, trace));
+    let (mut count, mut low, mut high) = (0_usize, [usize::MAX; 2], [0_usize; 2]);
+    for trace in moved {
+        count += 1;
+        for (axis, at) in [trace / ny, trace % ny].into_iter().enumerate() {
+            (low[axis], high[axis]) = (low[axis].min(at), high[axis].max(at));
+        }
+    }
+    let sheets = |count: usize| format!("{count} sheet{}", if count == 1 { "" } else { "s" });
+    let mut text = match (old.sheets.len(), report.sheets) {
+        (old, new) if old == new => sheets(new),
+        (old, new) => format!("{} in place of {old}", sheets(new)),
+    };
+    if count == 0 {
+        text += ", the same places";
+    } else {
+        let line = |[x, y]: [usize; 2]| geometry.lines_from_voxel(glam::DVec2::new(x as f64, y as f64)).round();
+        let (a, b) = (line(low), line(high));
+        let share = 100.0 * count as f64 / (nx * ny) as f64;
+        text += &format!(
+            ", other places at {share:.1} % of the traces, inlines {} to {}, crosslines {} to {}",
+            a.x, b.x, a.y, b.y
+        );
+    }
+    if let Some(overlap) = &report.overlap {
+        text += &format!("; it overlaps itself at {} traces", overlap.traces);
+    }
+    Ok(text)
 }
 
 /// The log of a horizon that was assembled from picks.

@@ -15,6 +15,7 @@ use crate::folder::{history, storage};
 use ::faults::Sheet;
 use ::time::Cut;
 use attribute::{DipSettings, SemblanceSettings, dip, semblance};
+use glam::Vec3;
 use interp::faults::{Evidence, FoundFaults, Proposal, ProposeSettings, Repeat, propose_faults};
 use interp::reassembly::from_horizon;
 use model::FaultNetwork;
@@ -206,10 +207,9 @@ fn in_volume(
     blocks: &FaultNetwork,
     progress: &Progress,
 ) -> Result<Vec<Proposal>, ProjectError> {
-    let drawn = Cut::of_network(blocks, seismic.size());
     let found = faults::find(seismic, geometry, progress)?;
     let mut new = faults::proposals(&found, geometry);
-    new.retain(|proposal| !drawn.iter().any(|cut| is_on(proposal, cut, geometry)));
+    new.retain(|proposal| !is_known(proposal, blocks, geometry));
     Ok(new)
 }
 
@@ -231,6 +231,23 @@ fn measured(
         proposal.is_minor |= !surface.is_some_and(|surface| surface.is_possible());
     }
     Ok(told)
+}
+
+/// Most vertices of a proposal that are compared with the faults of the project.
+const COMPARED: usize = 500;
+
+/// Whether most of a proposal lies within a few traces of what was interpreted of one of the project's faults.
+fn is_known(proposal: &Proposal, blocks: &FaultNetwork, geometry: &SurveyGeometry) -> bool {
+    let trace_m = geometry.inline_vector.length().min(geometry.crossline_vector.length()) as f32;
+    let vertices = &proposal.mesh.vertices;
+    let every = vertices.len().div_ceil(COMPARED).max(1);
+    let places: Vec<Vec3> =
+        vertices.iter().step_by(every).map(|vertex| geometry.voxel_from_world(*vertex).as_vec3()).collect();
+    let is_near = |fault: usize, place: Vec3| {
+        blocks.side(fault, place).abs() <= SAME_FAULT * trace_m && blocks.is_real(fault, place)
+    };
+    (0..blocks.surfaces().len())
+        .any(|fault| 2 * places.iter().filter(|&&place| is_near(fault, place)).count() > places.len())
 }
 
 /// Whether most of a proposal lies within a few traces of a cut.
@@ -356,13 +373,19 @@ pub fn kept(root: &Path, document: &Document) -> Result<Proposals, ProjectError>
     Ok(kept)
 }
 
-/// The proposals for the present horizons without those that were accepted; `None` if there are none, or they were made
-/// for another state.
+/// The proposals for the present horizons without those that the project has as faults, accepted or changed since; none
+/// if they were made for another state.
 pub fn open(root: &Path, document: &Document) -> Vec<Proposal> {
     let Ok(kept) = kept(root, document) else { return Vec::new() };
-    let accepted = |proposal: &Proposal| {
-        let hash = content::hash_fault(&proposal.fault(""));
-        document.faults.iter().any(|entry| entry.hash == hash)
-    };
-    kept.proposals.into_iter().filter(|proposal| !accepted(proposal)).collect()
+    let Ok(geometry) = document.frame() else { return Vec::new() };
+    let hashes: Vec<String> = document.faults.iter().map(|entry| entry.hash.clone()).collect();
+    let is_same = |proposal: &Proposal| hashes.contains(&content::hash_fault(&proposal.fault("")));
+    let mut open: Vec<Proposal> = kept.proposals.into_iter().filter(|proposal| !is_same(proposal)).collect();
+    if !open.is_empty()
+        && !hashes.is_empty()
+        && let Ok(blocks) = Facts::of(root, document).get(&FaultBlocks, &Progress::silent())
+    {
+        open.retain(|proposal| !is_known(proposal, &blocks, geometry));
+    }
+    open
 }

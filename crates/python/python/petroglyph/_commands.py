@@ -374,6 +374,32 @@ class Commands:
         """Takes a proposed fault into the project."""
         return self.apply({"accept-fault": {"id": id, "name": name}})
 
+    def cut_fault(
+        self, fault: str, at: Place, *, along: Literal["dip", "strike"] = "dip", name: str | None = None
+    ) -> Effect:
+        """Cuts a fault in two: from top to bottom through a place, or along its strike at its level.
+
+        Parameters
+        ----------
+        fault : str
+            Name of the fault; the larger part keeps it.
+        at : Place
+            Inline, crossline, vertical value.
+        along : {"dip", "strike"}
+            Which way the cut runs.
+        name : str, optional
+            Name of the smaller part; by default that of the fault with a number.
+        """
+        return self.apply({"cut-fault": _given(fault=fault, at=list(at), along=along, name=name)})
+
+    def merge_faults(self, faults: Sequence[str], name: str) -> Effect:
+        """Makes one fault of several that continue one another; `name` is that of one of them, or a new one."""
+        return self.apply({"merge-faults": {"faults": list(faults), "name": name}})
+
+    def give_sticks(self, fault: str) -> Effect:
+        """Gives a proposed or imported fault sticks, whose points can be moved."""
+        return self.apply({"give-sticks": {"fault": fault}})
+
     def set_truncation(self, fault: str, by: str | None = None) -> Effect:
         """States at which other fault a fault ends; without one, at none."""
         return self.apply({"set-truncation": _given(fault=fault, by=by)})

@@ -10,7 +10,7 @@ pub(super) fn show(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     match session.view.picking.tool {
         Tool::Draw => line(ui, session, actions),
         Tool::Track => window(ui, session, actions),
-        Tool::Pick | Tool::Lasso | Tool::Sticks | Tool::Time => {}
+        Tool::Pick | Tool::Lasso | Tool::Sticks | Tool::Time | Tool::Faults => {}
     }
 }
 

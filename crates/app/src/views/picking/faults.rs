@@ -1,11 +1,11 @@
 //! The panel of faults: drawn from sticks, proposed, accepted.
 
 use super::{go, palette};
-use crate::state::{Action, PickingStep, Session, Tool};
+use crate::state::{Action, ChosenFault, PickingStep, Session, Tool};
 use crate::views::names::colour;
 use crate::widgets::obstacle::{needs, unless};
 use crate::work::{Interpreted, Job, RunningLine};
-use eframe::egui::{Button, Label, TextEdit, Ui};
+use eframe::egui::{Button, Label, RichText, Sense, TextEdit, Ui};
 use interp::faults::Proposal;
 use project::command::{AcceptFault, Command};
 use project::error::Noun;
@@ -73,26 +73,50 @@ impl FaultsPanel {
                 }
             });
         }
+        if is_drawing && picking.suggestion(&session.document, session.view.slices).is_some() {
+            ui.weak("Enter takes the dashed stick.");
+        }
         for entry in &session.document.faults {
             ui.horizontal(|ui| {
                 if let Some(chosen) = palette(ui, entry.ink(), &format!("Colour of fault {}", entry.name)) {
                     actions.push(colour(Noun::Fault, &entry.name, chosen));
                 }
-                ui.add(Label::new(&entry.name).truncate()).on_hover_text(format!("{}: {}", entry.name, entry.origin));
+                let hint = "Draw more sticks of it, or drag their points; one without sticks gets some";
+                let edit = Button::new("Edit").small();
+                if ui.add(edit).on_hover_text(format!("Edit fault {}: {hint}", entry.name)).clicked() {
+                    actions.push(step(PickingStep::EditFault(entry.name.clone())));
+                }
+                let fault = ChosenFault::Present(entry.name.clone());
+                let text = RichText::new(&entry.name);
+                let is_chosen = picking.faults.contains(&fault);
+                let name =
+                    ui.add(Label::new(if is_chosen { text.strong() } else { text }).truncate().sense(Sense::click()));
+                if name.on_hover_text(format!("{}: {}", entry.name, entry.origin)).clicked() {
+                    choose(ui, fault, actions);
+                }
+            });
+        }
+        if picking.faults.len() > 1 {
+            ui.horizontal(|ui| {
+                ui.label(format!("{} faults are chosen", picking.faults.len()));
+                let hint = "Make one fault of those that are chosen, which continue one another (Shift M)";
+                if ui.button("Merge").on_hover_text(hint).clicked() {
+                    actions.push(step(PickingStep::MergeFaults));
+                }
             });
         }
         let is_looking = running.iter().any(|line| line.job == Job::FaultProposals);
-        let can = !session.document.horizons.is_empty() && !is_looking;
+        let has_evidence = session.document.amplitudes().is_ok() || !session.document.horizons.is_empty();
+        let can = has_evidence && !is_looking;
         let hint = "Faults are found in the volume, and where horizons are offset (Q)";
-        let why =
-            if is_looking { "Looking for faults already" } else { "Faults are found from horizons: pick some first" };
+        let why = if is_looking { "Looking for faults already" } else { "Faults are found in a volume: add one first" };
         if unless(ui, needs(can, why), Button::new("Propose faults")).on_hover_text(hint).clicked() {
             actions.push(Action::ProposeFaults);
         }
         let Some(shown) = shown else { return };
         let open = || shown.proposals.iter().map(|(proposal, _)| proposal).filter(|proposal| picking.shows(proposal));
         for proposal in open().filter(|proposal| !proposal.is_minor) {
-            self.proposal(ui, proposal, &shown.unit, geometry, actions);
+            self.proposal(ui, proposal, &shown.unit, geometry, &picking.faults, actions);
         }
         let dismissed = |id: u32| picking.dismissed.contains(&id);
         let minor = shown.proposals.iter().filter(|(proposal, _)| proposal.is_minor && !dismissed(proposal.id)).count();
@@ -106,7 +130,7 @@ impl FaultsPanel {
             }
         }
         for proposal in open().filter(|proposal| proposal.is_minor) {
-            self.proposal(ui, proposal, &shown.unit, geometry, actions);
+            self.proposal(ui, proposal, &shown.unit, geometry, &picking.faults, actions);
         }
     }
 
@@ -116,16 +140,18 @@ impl FaultsPanel {
         proposal: &Proposal,
         unit: &str,
         geometry: &SurveyGeometry,
+        chosen: &[ChosenFault],
         actions: &mut Vec<Action>,
     ) {
-        let kind = if proposal.reverse { "reverse" } else { "normal" };
         ui.separator();
-        ui.label(format!(
-            "Proposal {}: {kind}, throw {:.0} {unit} (up to {:.0}), dips {:.0}°, strikes {:.0}°",
-            proposal.id, proposal.throw[0], proposal.throw[1], proposal.dip_deg, proposal.strike_deg
-        ))
-        .on_hover_text(seen(proposal));
         let name = self.names.entry(proposal.id).or_insert_with(|| proposal.name.clone());
+        let is_chosen = |fault: &ChosenFault| matches!(fault, ChosenFault::Proposed(id, _) if *id == proposal.id);
+        let text = RichText::new(in_words(proposal, unit));
+        let text = if chosen.iter().any(is_chosen) { text.strong() } else { text };
+        let label = ui.add(Label::new(text).wrap().sense(Sense::click())).on_hover_text(seen(proposal));
+        if label.clicked() {
+            choose(ui, ChosenFault::Proposed(proposal.id, name.clone()), actions);
+        }
         ui.horizontal(|ui| {
             let label = format!("Name of proposal {}", proposal.id);
             ui.name_inputs(label, |ui| ui.add(TextEdit::singleline(name).desired_width(76.0)));
@@ -143,6 +169,22 @@ impl FaultsPanel {
             }
         });
     }
+}
+
+/// Chooses a fault in the list, with Shift beside others.
+fn choose(ui: &Ui, fault: ChosenFault, actions: &mut Vec<Action>) {
+    let with_others = ui.input(|input| input.modifiers.shift);
+    actions.push(Action::Picking(PickingStep::Use(Tool::Faults)));
+    actions.push(Action::Picking(PickingStep::ChooseFault(fault, with_others)));
+}
+
+/// A proposal in one sentence.
+pub(in crate::views) fn in_words(proposal: &Proposal, unit: &str) -> String {
+    let kind = if proposal.reverse { "reverse" } else { "normal" };
+    format!(
+        "Proposal {}: {kind}, throw {:.0} {unit} (up to {:.0}), dips {:.0}°, strikes {:.0}°",
+        proposal.id, proposal.throw[0], proposal.throw[1], proposal.dip_deg, proposal.strike_deg
+    )
 }
 
 /// The evidence for a proposal.

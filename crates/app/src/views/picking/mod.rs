@@ -5,6 +5,7 @@ mod faults;
 mod horizons;
 mod palette;
 
+pub(super) use faults::in_words;
 pub(super) use horizons::swatch;
 pub(super) use palette::palette;
 
@@ -111,6 +112,12 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
                 "Click along a reflection on a section, or drag: a line of the horizon, by hand; Enter adds it (M)",
             ),
             (Tool::Track, "Track", "Click a reflection: it is followed from there, also without candidates (U)"),
+            (
+                Tool::Faults,
+                "Faults",
+                "Click a fault on a section, found or drawn: Enter accepts it, Delete dismisses it, Alt and a click cuts it, \
+                 Shift and a click chooses several (Shift F)",
+            ),
         ] {
             let can = tool != Tool::Time || session.document.geologic_time().is_some();
             let label = Button::selectable(picking.tool == tool, name);

@@ -4,6 +4,7 @@
 //! fills its view whatever its shape. Ctrl and the wheel zoom about the pointer, a drag moves, the wheel alone goes to
 //! the next section.
 
+mod faults;
 mod freehand;
 mod lines;
 mod wells;
@@ -180,6 +181,10 @@ impl Sections {
                 fence.push([voxel.x, voxel.y]);
                 actions.push(Action::Fence(fence));
             }
+        } else if is_interpreting && session.view.picking.tool == Tool::Faults {
+            let on_page = canvas::page_rect(image);
+            let page = |st: DVec2| on_page.min + st / extent * on_page.size();
+            faults::touch(ui, &response, session, overlay, (kind, voxel), page, actions);
         } else {
             lasso::click(ui, &response, session, voxel, actions);
         }
