@@ -58,6 +58,29 @@ pub(crate) fn grown(
     None
 }
 
+/// Grows the surface of ridges over those that are free, whatever its two sides tell; returns it with its members.
+pub(crate) fn followed(ridges: &[Ridge], is_free: &[bool], group: Vec<usize>) -> Option<(Sheet, Vec<usize>)> {
+    let mut members: Vec<usize> = group.into_iter().filter(|&n| is_free[n]).collect();
+    let mut before = 0.0;
+    for stage in 0.. {
+        let (frame, found) = spread(ridges, is_free, members)?;
+        let mut sheet = Sheet::through(frame, ridges, &found, CLOSE as i32 + 1);
+        sheet.there = closed(&sheet.there, sheet.cells);
+        sheet.there = largest(&sheet.there, sheet.cells);
+        members = found;
+        members.retain(|&n| {
+            let [u, _] = frame.place(ridges[n].at);
+            sheet.is_there(u, ridges[n].at[2])
+        });
+        let area = sheet.area();
+        if stage == STAGES || (stage > 0 && area < before * (1.0 + SETTLED)) {
+            return Some((sheet, members));
+        }
+        before = area;
+    }
+    None
+}
+
 /// Spreads a surface over ridges for some rounds.
 fn spread(ridges: &[Ridge], is_free: &[bool], mut members: Vec<usize>) -> Option<(Frame, Vec<usize>)> {
     let around = around(ridges, is_free, &members);

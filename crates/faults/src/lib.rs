@@ -11,6 +11,7 @@
 //!
 //! Space: voxels.
 
+mod cuts;
 mod grow;
 mod proposal;
 mod ridges;
@@ -95,9 +96,34 @@ pub fn find(
     geometry: &SurveyGeometry,
     progress: &Progress,
 ) -> Result<Vec<FaultSurface>, AttributeError> {
+    search(volume, geometry, |_, _, _| (), progress).map(|(faults, ())| faults)
+}
+
+/// As [`find`], with the *cuts* beside the faults: surfaces on which beds end, while no throw makes both sides match. They may
+/// be faults of great throw, or boundaries of rock; their evidence is 0.
+///
+/// # Errors
+/// [`AttributeError::Cancelled`].
+pub fn find_with_cuts(
+    volume: &Volume<f32>,
+    geometry: &SurveyGeometry,
+    progress: &Progress,
+) -> Result<[Vec<FaultSurface>; 2], AttributeError> {
+    let cuts =
+        |sides: Sides<'_>, ridges: &[Ridge], faults: &[FaultSurface]| cuts::cuts(sides, ridges, faults, GREATEST_THROW);
+    search(volume, geometry, cuts, progress).map(|(faults, cuts)| [faults, cuts])
+}
+
+/// Finds faults, and what `more` makes of the ridges beside them.
+fn search<T: Default>(
+    volume: &Volume<f32>,
+    geometry: &SurveyGeometry,
+    more: impl Fn(Sides<'_>, &[Ridge], &[FaultSurface]) -> T,
+    progress: &Progress,
+) -> Result<(Vec<FaultSurface>, T), AttributeError> {
     let [nx, ny, nz] = volume.size();
     if nx.min(ny) < 16 || nz < 16 {
-        return Ok(Vec::new());
+        return Ok((Vec::new(), T::default()));
     }
     let slopes = slopes(volume, progress)?;
     let ridges = ridges::ridges(&likelihood(volume, &slopes, geometry, progress)?);
@@ -120,7 +146,8 @@ pub fn find(
         all.push(FaultSurface::new(sheet, offsets, volume.size()[2]));
     }
     all.retain(FaultSurface::is_possible);
-    Ok(all)
+    let more = more(sides, &ridges, &all);
+    Ok((all, more))
 }
 
 /// The throw where a ridge of the fault likelihood has one, samples: positive of normal faults, whose hanging wall lies

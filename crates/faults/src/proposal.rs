@@ -11,10 +11,13 @@ use survey::{SurveyGeometry, TriangleMesh};
 /// Cells between the nodes of a mesh.
 const MESH: usize = 2;
 
-/// Proposals of the surfaces that are faults or may be, by their evidence; what only may be one is minor and comes last.
-pub fn proposals(found: &[FaultSurface], geometry: &SurveyGeometry) -> Vec<Proposal> {
+/// Proposals of the surfaces that are faults or may be, by their evidence; what only may be one is minor and comes last, and
+/// so do cuts ([`crate::find_with_cuts`]).
+pub fn proposals(found: &[FaultSurface], cuts: &[FaultSurface], geometry: &SurveyGeometry) -> Vec<Proposal> {
     let offered = found.iter().filter(|fault| fault.is_possible());
-    let mut all: Vec<Proposal> = offered.map(|fault| proposal(fault, geometry)).collect();
+    let cut =
+        |cut: &FaultSurface| Proposal { is_cut: true, throw: [0.0; 2], reverse: false, ..proposal(cut, geometry) };
+    let mut all: Vec<Proposal> = offered.map(|fault| proposal(fault, geometry)).chain(cuts.iter().map(cut)).collect();
     all.sort_by(|a, b| a.is_minor.cmp(&b.is_minor).then(b.area_m2.total_cmp(&a.area_m2)));
     all
 }
@@ -107,6 +110,7 @@ fn proposal(fault: &FaultSurface, geometry: &SurveyGeometry) -> Proposal {
         area_m2: cells.len() as f64 * cell_m2,
         evidence: Some(fault.evidence),
         is_minor: !fault.is_accepted(),
+        is_cut: false,
         semblance: None,
     }
 }

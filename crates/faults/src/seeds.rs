@@ -171,41 +171,54 @@ fn product(a: &[f32], b: &[f32]) -> f32 {
 
 /// Groups of seeds that lie on one surface, most evidence first.
 pub(crate) fn linked(ridges: &[Ridge], seeds: &[Seed]) -> Vec<Vec<usize>> {
+    let at = |n: usize| &ridges[seeds[n].ridge];
+    let is_one_throw = |n: usize, m: usize, turn: f32| {
+        // Strikes half a turn apart are one, seen from the other side.
+        let throw = if turn < 0.0 { -seeds[m].throw } else { seeds[m].throw };
+        (seeds[n].throw - throw).abs() <= THROWS
+    };
+    joined(seeds.len(), at, is_one_throw, FEWEST)
+}
+
+/// Groups of at least `fewest` of `count` ridges that lie on one surface, the largest first; `may_join` is asked of two whose
+/// planes are one, with the cosine between their strikes.
+pub(crate) fn joined<'a>(
+    count: usize,
+    at: impl Fn(usize) -> &'a Ridge,
+    may_join: impl Fn(usize, usize, f32) -> bool,
+    fewest: usize,
+) -> Vec<Vec<usize>> {
     let mut bins: HashMap<[i32; 3], Vec<usize>> = HashMap::new();
     let bin = |at: [f32; 3]| [(at[0] / APART) as i32, (at[1] / APART) as i32, (at[2] / BELOW) as i32];
-    for (n, seed) in seeds.iter().enumerate() {
-        bins.entry(bin(ridges[seed.ridge].at)).or_default().push(n);
+    for n in 0..count {
+        bins.entry(bin(at(n).at)).or_default().push(n);
     }
-    let mut sets = UnionFind::new(seeds.len());
-    for (n, seed) in seeds.iter().enumerate() {
-        let [i, j, k] = bin(ridges[seed.ridge].at);
+    let mut sets = UnionFind::new(count);
+    for n in 0..count {
+        let [i, j, k] = bin(at(n).at);
         for near in (0..27).map(|m| [i + m / 9 - 1, j + m / 3 % 3 - 1, k + m % 3 - 1]) {
             for &m in bins.get(&near).into_iter().flatten().filter(|&&m| m < n) {
-                if are_one(&ridges[seed.ridge], seed, &ridges[seeds[m].ridge], &seeds[m]) {
+                if on_one_plane(at(n), at(m)).is_some_and(|turn| may_join(n, m, turn)) {
                     sets.union(n as u32, m as u32);
                 }
             }
         }
     }
     let mut groups: HashMap<u32, Vec<usize>> = HashMap::new();
-    for n in 0..seeds.len() {
+    for n in 0..count {
         groups.entry(sets.find(n as u32)).or_default().push(n);
     }
-    let mut groups: Vec<Vec<usize>> = groups.into_values().filter(|group| group.len() >= FEWEST).collect();
+    let mut groups: Vec<Vec<usize>> = groups.into_values().filter(|group| group.len() >= fewest).collect();
     groups.sort_by(|a, b| b.len().cmp(&a.len()).then(a[0].cmp(&b[0])));
     groups
 }
 
-fn are_one(a: &Ridge, seed: &Seed, b: &Ridge, other: &Seed) -> bool {
+/// The cosine between the strikes of two ridges that lie on each other's planes.
+fn on_one_plane(a: &Ridge, b: &Ridge) -> Option<f32> {
     let apart = [b.at[0] - a.at[0], b.at[1] - a.at[1], b.at[2] - a.at[2]];
     let turn = a.plane.along[0] * b.plane.along[0] + a.plane.along[1] * b.plane.along[1];
-    // Strikes half a turn apart are one, seen from the other side.
-    let throw = if turn < 0.0 { -other.throw } else { other.throw };
     let off = |plane: &Plane| (apart[0] * plane.across[0] + apart[1] * plane.across[1] - plane.run * apart[2]).abs();
-    apart[0].hypot(apart[1]) <= APART
-        && apart[2].abs() <= BELOW
-        && turn.abs() >= STRIKES
-        && (seed.throw - throw).abs() <= THROWS
-        && off(&a.plane) <= OFF_PLANE
-        && off(&b.plane) <= OFF_PLANE
+    let are_near = apart[0].hypot(apart[1]) <= APART && apart[2].abs() <= BELOW;
+    let are_one = are_near && turn.abs() >= STRIKES && off(&a.plane) <= OFF_PLANE && off(&b.plane) <= OFF_PLANE;
+    are_one.then_some(turn)
 }

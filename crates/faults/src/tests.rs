@@ -58,7 +58,7 @@ fn a_plane_fault_is_found_with_its_place_throw_dip_and_sense() {
         let mean = cells.iter().map(|&n| off(n)).sum::<f32>() / cells.len() as f32;
         assert!(mean < 0.5, "{mean} traces off");
         assert!(surface.sheet.area() > 0.85 * 48.0 * 96.0, "{}", surface.sheet.area());
-        let proposal = &proposals(&all, &geometry(volume.size()))[0];
+        let proposal = &proposals(&all, &[], &geometry(volume.size()))[0];
         assert!((proposal.throw[0] - 10.0 * f64::from(throw.abs())).abs() <= 10.0, "{:?}", proposal.throw);
         assert_eq!((proposal.reverse, proposal.is_minor), (throw < 0.0, false));
         let dip = (1.04f64.sqrt() / (0.3 * 25.0 / 10.0)).atan().to_degrees();
@@ -92,10 +92,40 @@ fn what_is_no_fault_is_not_taken_for_one() {
         ),
     ];
     for (what, volume) in cases {
-        let all = found(&volume);
+        let [all, cuts] = find_with_cuts(&volume, &geometry(volume.size()), &Progress::silent()).unwrap();
+        // Stripes may look like one.
+        assert!(
+            cuts.len() <= usize::from(what.starts_with("stripes")),
+            "{what}: cuts of {:?}",
+            cuts.iter().map(|cut| cut.sheet.area()).collect::<Vec<_>>()
+        );
         assert!(all.iter().all(|surface| !surface.is_accepted()), "{what}: {:?}", all.first().map(|s| s.evidence));
     }
     assert!(found(&Volume::filled([1, 60, 90], 1.0)).is_empty(), "one inline");
+}
+
+/// Other beds beyond a plane: no throw makes both sides match, so it is a cut, and says so. A fault is none.
+#[test]
+fn where_other_beds_begin_is_a_cut() {
+    // Layers of random strength, of their own on each side.
+    let layers = |rock: usize, t: f32| {
+        let (n, share) = (t.max(0.0) as usize, t.max(0.0).fract());
+        let strength = |n: usize| noise(n * n * (131 + 18 * rock) + rock);
+        strength(n) * (1.0 - share) + strength(n + 1) * share
+    };
+    let volume = volume([56, 48, 96], |_, x, y, z| layers(usize::from(x > fault(y, z)), 0.6 * (z - 0.2 * y) + 20.0));
+    let geometry = geometry(volume.size());
+    let [faults, cuts] = find_with_cuts(&volume, &geometry, &Progress::silent()).unwrap();
+    // A part of it may match by chance; the rest has no throw.
+    let area: f32 = faults.iter().chain(&cuts).map(|surface| surface.sheet.area()).sum();
+    assert!(!cuts.is_empty() && area > 0.8 * 48.0 * 96.0, "{} cuts, {area}", cuts.len());
+    assert!(faults.iter().all(|fault| fault.offsets.constant < 0.6));
+    let proposed = proposals(&faults, &cuts, &geometry);
+    let proposal = proposed.last().unwrap();
+    assert!(proposal.is_cut && proposal.is_minor && proposal.throw == [0.0; 2]);
+    assert!(proposal.rests_on().contains("no throw") && proposal.throw_in_words("m") == "cut without a throw");
+    let [faults, cuts] = find_with_cuts(&faulted(5.0, 0.2), &geometry, &Progress::silent()).unwrap();
+    assert_eq!((faults.len(), cuts.len()), (1, 0));
 }
 
 #[test]

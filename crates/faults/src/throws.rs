@@ -155,6 +155,15 @@ impl Panels {
     }
 }
 
+/// Mean correlation without a shift on a surface, and on copies of it to either side.
+pub(crate) fn likeness(sides: Sides<'_>, sheet: &Sheet) -> [f32; 3] {
+    [0.0, -BESIDE, BESIDE].map(|off| {
+        let all = panels(sides, sheet, 2, off).correlations(sheet, 0);
+        let known: Vec<f32> = all.into_iter().filter(|value| value.is_finite()).collect();
+        known.iter().sum::<f32>() / known.len().max(1) as f32
+    })
+}
+
 /// Measures a surface. `greatest` is the greatest throw, samples.
 pub(crate) fn offsets(sides: Sides<'_>, sheet: &Sheet, greatest: i32) -> Offsets {
     let on = panels(sides, sheet, greatest as usize, 0.0);

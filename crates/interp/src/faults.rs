@@ -114,6 +114,9 @@ pub struct Proposal {
     /// Whether it is one of the many small proposals, its pairs scatter, or the data show no break on it.
     #[serde(default)]
     pub is_minor: bool,
+    /// Whether beds end at it while no throw makes its two sides match: a great fault may do that, and a boundary of rock.
+    #[serde(default)]
+    pub is_cut: bool,
     /// Mean semblance on it and on both sides of it, if there was a semblance volume.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub semblance: Option<[f32; 2]>,
@@ -122,15 +125,27 @@ pub struct Proposal {
 impl Proposal {
     /// What it rests on, in words.
     pub fn rests_on(&self) -> String {
-        let mut text = if self.horizons.is_empty() {
+        let mut text = if self.is_cut {
+            "beds end at it, but no throw makes its two sides match: it may be a fault, or a boundary of rock"
+                .to_owned()
+        } else if self.horizons.is_empty() {
             "its two sides match after the throw".to_owned()
         } else {
             format!("{} pairs on {}, {:.0} m off", self.support, self.horizons.join(", "), self.misfit_m)
         };
-        if let Some(evidence) = self.evidence {
+        if let Some(evidence) = self.evidence.filter(|_| !self.is_cut) {
             text += &format!(", evidence {evidence:.2}");
         }
         text
+    }
+
+    /// Its sense and throw in words; `symbol` is the unit of throws.
+    pub fn throw_in_words(&self, symbol: &str) -> String {
+        if self.is_cut {
+            return "cut without a throw".to_owned();
+        }
+        let kind = if self.reverse { "reverse" } else { "normal" };
+        format!("{kind}, throw {:.0} {symbol} (up to {:.0})", self.throw[0], self.throw[1])
     }
 
     /// The proposal as a fault of the given name.
@@ -283,6 +298,7 @@ fn describe(
         area_m2,
         evidence: None,
         is_minor: false,
+        is_cut: false,
         semblance: semblance.map(|volume| surface::semblance_on(surface, geometry, volume)),
     }
 }

@@ -71,6 +71,7 @@ fn proposed(project: &mut Project) {
         area_m2: 60_000.0,
         evidence: None,
         is_minor: id == 3,
+        is_cut: false,
         semblance: None,
     };
     let horizons = project.document().horizons.iter().map(|entry| entry.hash.clone()).collect();

@@ -4,7 +4,7 @@ mod network;
 mod peers;
 mod sticks;
 
-use faults::{FaultSurface, find};
+use faults::{FaultSurface, find, find_with_cuts};
 use network::{Drawn, network, undone};
 use std::path::Path;
 use survey::{Progress, SurveyGeometry, Volume};
@@ -71,6 +71,8 @@ fn methods<'a>(volume: &Volume<f32>, geometry: &SurveyGeometry, option: &str) ->
     let seconds = start.elapsed().as_secs_f64();
     if option == "-v" {
         list(&found);
+        println!("cuts without a throw:");
+        list(&find_with_cuts(volume, geometry, &Progress::silent()).unwrap()[1]);
     }
     found.retain(FaultSurface::is_accepted);
     let cells = |f: &FaultSurface| {
@@ -222,8 +224,12 @@ fn main() {
         return;
     }
     let (geometry, volume) = read(Path::new(&args[0]));
-    let found = find(&volume, &geometry, &Progress::silent()).unwrap();
+    let start = std::time::Instant::now();
+    let [found, cuts] = find_with_cuts(&volume, &geometry, &Progress::silent()).unwrap();
+    println!("{:.1} s", start.elapsed().as_secs_f64());
     list(&found);
+    println!("cuts without a throw:");
+    list(&cuts);
     if let Some(sticks) = args.get(1) {
         sticks::measure(&std::fs::read_to_string(sticks).unwrap(), &geometry, &found);
     }

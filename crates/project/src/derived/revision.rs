@@ -14,7 +14,7 @@ pub(crate) const PARAMETERIZATION: u32 = 9;
 pub(crate) const EXTRACTION: u32 = 2;
 
 /// Proposed faults.
-pub const PROPOSALS: u32 = 1;
+pub const PROPOSALS: u32 = 2;
 
 /// Faults found in the volume.
 pub(crate) const FOUND_FAULTS: u32 = 2;

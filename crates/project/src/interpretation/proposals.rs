@@ -59,17 +59,15 @@ impl Proposals {
 
     fn line(&self, f: &mut fmt::Formatter<'_>, p: &Proposal) -> fmt::Result {
         let unit = &self.unit;
-        let kind = if p.reverse { "reverse" } else { "normal" };
         let [a, b] = p.ends;
         write!(
             f,
-            "{}: {kind}, strikes {:.0} deg, dips {:.0} deg, throw {:.0} {unit} (up to {:.0}), from inline \
-             {:.0}, crossline {:.0} to inline {:.0}, crossline {:.0}, {:.0} to {:.0} {unit}; area {:.0} m2, {}",
+            "{}: {}, strikes {:.0} deg, dips {:.0} deg, from inline {:.0}, crossline {:.0} to inline {:.0}, crossline \
+             {:.0}, {:.0} to {:.0} {unit}; area {:.0} m2, {}",
             p.id,
+            p.throw_in_words(unit),
             p.strike_deg,
             p.dip_deg,
-            p.throw[0],
-            p.throw[1],
             a[0],
             a[1],
             b[0],
@@ -95,7 +93,7 @@ impl fmt::Display for Proposals {
             }
             if proposal.is_minor && !is_minor {
                 is_minor = true;
-                writeln!(f, "minor ones, small, scattered or without a break in the data:")?;
+                writeln!(f, "minor ones, small, scattered, without a break in the data or without a throw:")?;
             }
             self.line(f, proposal)?;
         }
@@ -207,8 +205,8 @@ fn in_volume(
     blocks: &FaultNetwork,
     progress: &Progress,
 ) -> Result<Vec<Proposal>, ProjectError> {
-    let found = faults::find(seismic, geometry, progress)?;
-    let mut new = faults::proposals(&found, geometry);
+    let [found, cuts] = faults::find_with_cuts(seismic, geometry, progress)?;
+    let mut new = faults::proposals(&found, &cuts, geometry);
     new.retain(|proposal| !is_known(proposal, blocks, geometry));
     Ok(new)
 }

@@ -87,10 +87,8 @@ impl FaultsPanel {
                     actions.push(step(PickingStep::EditFault(entry.name.clone())));
                 }
                 let fault = ChosenFault::Present(entry.name.clone());
-                let text = RichText::new(&entry.name);
-                let is_chosen = picking.faults.contains(&fault);
-                let name =
-                    ui.add(Label::new(if is_chosen { text.strong() } else { text }).truncate().sense(Sense::click()));
+                let text = marked(ui, RichText::new(&entry.name), picking.faults.contains(&fault));
+                let name = ui.add(Label::new(text).truncate().sense(Sense::click()));
                 if name.on_hover_text(format!("{}: {}", entry.name, entry.origin)).clicked() {
                     choose(ui, fault, actions);
                 }
@@ -124,7 +122,7 @@ impl FaultsPanel {
             ui.separator();
             let text = format!("{minor} minor proposal{}", if minor == 1 { "" } else { "s" });
             let hint = "Small ones, together a fifth of the total offset or less, and those whose evidence \
-                        scatters or shows no break in the data";
+                        scatters or shows no break in the data, and cuts without a throw";
             if ui.selectable_label(picking.minor, text).on_hover_text(hint).clicked() {
                 actions.push(step(PickingStep::Minor(!picking.minor)));
             }
@@ -146,8 +144,7 @@ impl FaultsPanel {
         ui.separator();
         let name = self.names.entry(proposal.id).or_insert_with(|| proposal.name.clone());
         let is_chosen = |fault: &ChosenFault| matches!(fault, ChosenFault::Proposed(id, _) if *id == proposal.id);
-        let text = RichText::new(in_words(proposal, unit));
-        let text = if chosen.iter().any(is_chosen) { text.strong() } else { text };
+        let text = marked(ui, RichText::new(in_words(proposal, unit)), chosen.iter().any(is_chosen));
         let label = ui.add(Label::new(text).wrap().sense(Sense::click())).on_hover_text(seen(proposal));
         if label.clicked() {
             choose(ui, ChosenFault::Proposed(proposal.id, name.clone()), actions);
@@ -171,6 +168,11 @@ impl FaultsPanel {
     }
 }
 
+/// The text of what is chosen on the colour of a selection.
+fn marked(ui: &Ui, text: RichText, is_chosen: bool) -> RichText {
+    if is_chosen { text.background_color(ui.visuals().selection.bg_fill) } else { text }
+}
+
 /// Chooses a fault in the list, with Shift beside others.
 fn choose(ui: &Ui, fault: ChosenFault, actions: &mut Vec<Action>) {
     let with_others = ui.input(|input| input.modifiers.shift);
@@ -180,11 +182,8 @@ fn choose(ui: &Ui, fault: ChosenFault, actions: &mut Vec<Action>) {
 
 /// A proposal in one sentence.
 pub(in crate::views) fn in_words(proposal: &Proposal, unit: &str) -> String {
-    let kind = if proposal.reverse { "reverse" } else { "normal" };
-    format!(
-        "Proposal {}: {kind}, throw {:.0} {unit} (up to {:.0}), dips {:.0}°, strikes {:.0}°",
-        proposal.id, proposal.throw[0], proposal.throw[1], proposal.dip_deg, proposal.strike_deg
-    )
+    let Proposal { id, dip_deg, strike_deg, .. } = proposal;
+    format!("Proposal {id}: {}, dips {dip_deg:.0}°, strikes {strike_deg:.0}°", proposal.throw_in_words(unit))
 }
 
 /// The evidence for a proposal.

@@ -27,8 +27,12 @@ pub(super) fn touch(
     overlay.mark(&ui.painter_at(response.rect), kind, &fault, &page);
     let unit = overlay.interpreted().map_or("", |shown| shown.unit.as_str());
     let text = match (&fault, proposal) {
-        (_, Some(proposal)) => in_words(proposal, unit),
-        (ChosenFault::Present(name) | ChosenFault::Proposed(_, name), None) => name.clone(),
+        (_, Some(proposal)) => {
+            in_words(proposal, unit) + "\nClick, then Enter accepts it, Delete dismisses it; Alt and a click cuts it"
+        }
+        (ChosenFault::Present(name) | ChosenFault::Proposed(_, name), None) => {
+            format!("{name}\nClick, then Delete removes it; Alt and a click cuts it")
+        }
     };
     response.clone().on_hover_text_at_pointer(text);
     if response.clicked() {
