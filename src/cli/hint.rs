@@ -3,6 +3,7 @@
 use files::FormatError;
 use param::ParamError;
 use project::ProjectError;
+use project::command::FaultEditError;
 use std::error::Error;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -117,10 +118,12 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         }
         ProjectError::ShortStick { .. } => "write a stick as --stick IL,XL,Z IL,XL,Z …",
         ProjectError::NotDrawn { .. } => "choose another --name, or give it sticks with `petroglyph fault sticks`",
-        ProjectError::HasSticks { .. } => "move their points with `petroglyph fault move`",
-        ProjectError::CutBeside { .. } => "give a place on the fault, between its ends",
-        ProjectError::FewFaults => "name them one after the other: `petroglyph fault merge PROJECT F1 F2`",
-        ProjectError::SideBySide { .. } => {
+        ProjectError::FaultEdit(FaultEditError::HasSticks { .. }) => "move their points with `petroglyph fault move`",
+        ProjectError::FaultEdit(FaultEditError::CutBeside { .. }) => "give a place on the fault, between its ends",
+        ProjectError::FaultEdit(FaultEditError::FewFaults) => {
+            "name them one after the other: `petroglyph fault merge PROJECT F1 F2`"
+        }
+        ProjectError::FaultEdit(FaultEditError::SideBySide { .. }) => {
             "leave them as they are; where one is wrong, cut it with `petroglyph fault cut` and merge the part that goes on"
         }
         ProjectError::NoGeometry => "import a volume, or create the project with --bounds and --size",

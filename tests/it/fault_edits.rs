@@ -26,7 +26,8 @@ fn names(at: &Path) -> Vec<String> {
 
 /// The range of a column (x, y or depth) of an exported fault.
 fn range(at: &Path, fault: &str, column: usize) -> [f64; 2] {
-    run_in(at, &format!("export p.petro out.ts --fault '{fault}' --overwrite")).done();
+    let _ = std::fs::remove_file(at.join("out.ts"));
+    run_in(at, &format!("export p.petro out.ts --fault '{fault}'")).done();
     let text = std::fs::read_to_string(at.join("out.ts")).unwrap();
     let vertices = text.lines().filter(|line| line.starts_with("VRTX") || line.starts_with("PVRTX"));
     let values = vertices.map(|line| line.split_whitespace().nth(2 + column).unwrap().parse::<f64>().unwrap().abs());
@@ -80,7 +81,7 @@ fn a_surface_from_a_file_is_cut_and_given_sticks() {
     run_in(at, &format!("fault sticks p.petro '{name}'")).failed(&["has sticks already"]);
     run_in(at, "undo p.petro").done();
     let [low, high] = range(at, &name, 2);
-    let shown = run_in(at, &format!("fault list p.petro --json")).done().json();
+    let shown = run_in(at, "fault list p.petro --json").done().json();
     let middle = 0.5 * (low + high);
     let told = run_in(at, &format!("fault cut p.petro '{name}' --at 130,530,{middle} --along strike --name Part"));
     let told = told.done().stdout;

@@ -7,6 +7,7 @@ mod noun;
 pub use advice::remedy_of;
 pub use noun::Noun;
 
+use crate::command::FaultEditError;
 use crate::placement::PlacementError;
 use files::FormatError;
 use files::segy::SegyError;
@@ -527,36 +528,9 @@ pub enum ProjectError {
         /// Its name.
         fault: String,
     },
-    /// A fault that was to be given sticks and has them.
-    #[error("fault \"{fault}\" has sticks already")]
-    HasSticks {
-        /// Its name.
-        fault: String,
-    },
-    /// A place at which a fault was to be cut lies beside it.
-    #[error("nothing of fault \"{fault}\" lies beyond inline {:.0}, crossline {:.0}, {:.1}: it cannot be cut there", at[0], at[1], at[2])]
-    CutBeside {
-        /// Its name.
-        fault: String,
-        /// Inline, crossline and vertical value.
-        at: [f64; 3],
-    },
-    /// A single fault, or one fault twice, that was to be merged.
-    #[error("it takes two different faults or more to merge")]
-    FewFaults,
-    /// Faults that run side by side and were to be merged.
-    #[error(
-        "faults \"{}\" and \"{}\" run side by side at inline {:.0}, crossline {:.0}, {apart_m:.0} m apart: they are two",
-        faults[0], faults[1], at[0], at[1]
-    )]
-    SideBySide {
-        /// Their names.
-        faults: [String; 2],
-        /// Inline and crossline where both are.
-        at: [f64; 2],
-        /// Their distance there, m.
-        apart_m: f64,
-    },
+    /// A fault that cannot be changed as a whole.
+    #[error(transparent)]
+    FaultEdit(#[from] FaultEditError),
     /// A fault was not drawn with so many sticks, or points on one.
     #[error("fault {fault} has no point {} on a stick {}", point + 1, stick + 1)]
     NoStickPoint {

@@ -68,15 +68,7 @@ impl State {
             Action::Extract(volume, settings) => {
                 return self.task_at(Place::Interpret, Task::Picking(PickingTask::Extract(volume, settings)));
             }
-            Action::ProposeFaults => {
-                // The numbers of former proposals mean nothing in the new list.
-                self.look(|view, _| {
-                    view.picking.dismissed.clear();
-                    view.picking.faults.clear();
-                    view.picking.tool = Tool::Faults;
-                });
-                return self.task_at(Place::Interpret, Task::Picking(PickingTask::ProposeFaults));
-            }
+            Action::ProposeFaults => return self.propose_faults(),
             Action::Appear(appearance) => {
                 self.remembered.appearance = appearance;
                 return vec![Task::Remember];
@@ -116,6 +108,16 @@ impl State {
         if let Some(session) = self.session.as_mut().filter(|session| session.root == snapshot.root) {
             session.renew(snapshot);
         }
+    }
+
+    /// The numbers of former proposals mean nothing in the new list; the pointer chooses from it.
+    fn propose_faults(&mut self) -> Vec<Task> {
+        self.look(|view, _| {
+            view.picking.dismissed.clear();
+            view.picking.faults.clear();
+            view.picking.tool = Tool::Faults;
+        });
+        self.task_at(Place::Interpret, Task::Picking(PickingTask::ProposeFaults))
     }
 
     /// Shows a notice, once.

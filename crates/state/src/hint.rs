@@ -2,6 +2,7 @@
 
 use files::FormatError;
 use project::ProjectError;
+use project::command::FaultEditError;
 use std::error::Error;
 
 /// What to do next about an error, or about what caused it; `None` where no general advice is possible.
@@ -51,10 +52,10 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         }
         ProjectError::ShortStick { .. } => "click at least two points before you end a stick",
         ProjectError::NotDrawn { .. } => "choose another fault, or use Edit beside its name",
-        ProjectError::HasSticks { .. } => "drag their points while sticks are drawn (F)",
-        ProjectError::CutBeside { .. } => "click on the fault, between its ends",
-        ProjectError::FewFaults => "choose two faults: click one, and the other with Shift",
-        ProjectError::SideBySide { .. } => {
+        ProjectError::FaultEdit(FaultEditError::HasSticks { .. }) => "drag their points while sticks are drawn (F)",
+        ProjectError::FaultEdit(FaultEditError::CutBeside { .. }) => "click on the fault, between its ends",
+        ProjectError::FaultEdit(FaultEditError::FewFaults) => "choose two faults: click one, and the other with Shift",
+        ProjectError::FaultEdit(FaultEditError::SideBySide { .. }) => {
             "leave them as they are; where one is wrong, cut it and merge the part that goes on"
         }
         ProjectError::NoProposals | ProjectError::OutdatedProposals => "propose faults again",

@@ -14,6 +14,7 @@ mod hint;
 pub mod last_session;
 mod notice;
 pub mod picking;
+mod picking_faults;
 mod picking_steps;
 #[cfg(test)]
 mod picking_tests;
@@ -34,7 +35,9 @@ pub use dialogue::{
 };
 pub use last_session::{Appearance, Remembered};
 pub use notice::{Notice, Place};
-pub use picking::{ChosenFault, How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, StickPoint, Tool};
+pub use picking::{
+    ChosenFault, FaultStep, How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, StickPoint, Tool,
+};
 pub use review::ShareKind;
 pub use session::{Session, Snapshot};
 pub use view::{Blended, Compare, Hidden, Layout, Panel, SectionKind, SectionVolumes, StandardView, ViewState};

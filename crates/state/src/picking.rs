@@ -71,6 +71,23 @@ pub struct Pick {
     pub levels: u32,
 }
 
+/// A step with whole faults.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FaultStep {
+    /// Choose one: alone, or with those that are chosen; one that is chosen with others is left out.
+    Choose(ChosenFault, bool),
+    /// Take the proposed ones that are chosen into the project.
+    Accept,
+    /// Dismiss the proposed ones that are chosen, and remove those of the project.
+    Drop,
+    /// Make one of those that are chosen.
+    Merge,
+    /// Cut one at a place, voxel.
+    Cut(ChosenFault, DVec3, CutAlong),
+    /// Draw more sticks of one of the project, or move their points; one without sticks gets some.
+    Edit(String),
+}
+
 /// A fault that is chosen.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ChosenFault {
@@ -228,18 +245,8 @@ pub enum PickingStep {
     NameFault(String),
     /// Make a fault from the sticks.
     MakeFault,
-    /// Choose a fault: alone, or with those that are chosen; one that is chosen with others is left out.
-    ChooseFault(ChosenFault, bool),
-    /// Take the proposed faults that are chosen into the project.
-    AcceptFaults,
-    /// Dismiss the proposed faults that are chosen, and remove those of the project.
-    DropFaults,
-    /// Make one fault of those that are chosen.
-    MergeFaults,
-    /// Cut a fault at a place, voxel.
-    CutFault(ChosenFault, DVec3, CutAlong),
-    /// Draw more sticks of a fault of the project, or move their points; one without sticks gets some.
-    EditFault(String),
+    /// Do something with whole faults.
+    Fault(FaultStep),
     /// Dismiss a proposal.
     Dismiss(u32),
     /// Show or hide minor proposals.

@@ -1,12 +1,9 @@
 //! What each step of the interpretation does to the state, and which tasks follow.
 
-use super::picking::{ChosenFault, How, Picking, PickingStep, PickingTask, StickPoint, Tool, free_name, place_of};
+use super::picking::{How, Picking, PickingStep, PickingTask, StickPoint, Tool, free_name, place_of};
 use super::{Place, State, Task};
 use interp::assembly::Operation;
-use project::command::{
-    AcceptFault, Climb, Command, CutFault, GiveSticks, MergeFaults, MoveStickPoint, PickByTime, PickFault, PickNode,
-    Remove, TimeLevel,
-};
+use project::command::{Climb, Command, MoveStickPoint, PickByTime, PickFault, PickNode, TimeLevel};
 use project::document::{Document, Drawn};
 use project::error::Noun;
 
@@ -113,25 +110,7 @@ impl State {
             PickingStep::Backspace => picking.take_last_point(),
             PickingStep::NameFault(name) => picking.fault = name,
             PickingStep::MakeFault => return picking.make_fault().into_iter().collect(),
-            PickingStep::ChooseFault(chosen, with_others) => picking.choose_fault(chosen, with_others),
-            PickingStep::AcceptFaults => return picking.accept_faults(document),
-            PickingStep::DropFaults => return picking.drop_faults(),
-            PickingStep::MergeFaults => return picking.merge_faults(document),
-            PickingStep::CutFault(chosen, voxel, along) => {
-                let mut tasks = Vec::new();
-                let fault = picking.taken_in(&chosen, document, &mut tasks);
-                picking.faults = vec![ChosenFault::Present(fault.clone())];
-                let command = CutFault { fault, at: place_of(&geometry, voxel), along, name: None };
-                tasks.push(Task::Apply(Box::new(Command::CutFault(command))));
-                return tasks;
-            }
-            PickingStep::EditFault(fault) => {
-                (picking.tool, picking.fault) = (Tool::Sticks, fault.clone());
-                picking.faults.clear();
-                if !document.sticks.iter().any(|drawn| drawn.fault == fault) {
-                    return vec![Task::Apply(Box::new(Command::GiveSticks(GiveSticks { fault })))];
-                }
-            }
+            PickingStep::Fault(step) => return picking.fault_step(step, document, &geometry),
             PickingStep::Dismiss(id) => picking.dismissed.push(id),
             PickingStep::Minor(minor) => picking.minor = minor,
         }
@@ -240,73 +219,6 @@ impl Picking {
         if !matches!(self.tool, Tool::Time | Tool::Draw | Tool::Track) {
             self.tool = Tool::Pick;
         }
-        tasks
-    }
-
-    fn choose_fault(&mut self, chosen: ChosenFault, with_others: bool) {
-        let known = self.faults.iter().position(|other| *other == chosen);
-        match (with_others, known) {
-            (true, Some(known)) => drop(self.faults.remove(known)),
-            (true, None) => self.faults.push(chosen),
-            (false, _) => self.faults = vec![chosen],
-        }
-    }
-
-    /// The name of a fault in the project; a proposed one is accepted first, under a name that is free.
-    fn taken_in(&self, chosen: &ChosenFault, document: &Document, tasks: &mut Vec<Task>) -> String {
-        let (id, wanted) = match chosen {
-            ChosenFault::Present(name) => return name.clone(),
-            ChosenFault::Proposed(id, name) => (*id, name.trim()),
-        };
-        let accepted = tasks.iter().filter_map(|task| match task {
-            Task::Apply(command) => match command.as_ref() {
-                Command::AcceptFault(accept) => Some(accept.name.clone()),
-                _ => None,
-            },
-            _ => None,
-        });
-        let mut taken: Vec<String> = accepted.chain(document.faults.iter().map(|entry| entry.name.clone())).collect();
-        taken.iter_mut().for_each(|name| *name = name.to_lowercase());
-        let mut name = wanted.to_owned();
-        let mut number = id;
-        while taken.contains(&name.to_lowercase()) {
-            name = format!("Fault {number}");
-            number += 1;
-        }
-        tasks.push(Task::Apply(Box::new(Command::AcceptFault(AcceptFault { id, name: name.clone() }))));
-        name
-    }
-
-    fn accept_faults(&mut self, document: &Document) -> Vec<Task> {
-        let mut tasks = Vec::new();
-        let names = self.faults.iter().map(|chosen| self.taken_in(chosen, document, &mut tasks)).collect::<Vec<_>>();
-        self.faults = names.into_iter().map(ChosenFault::Present).collect();
-        tasks
-    }
-
-    fn drop_faults(&mut self) -> Vec<Task> {
-        let mut tasks = Vec::new();
-        for chosen in std::mem::take(&mut self.faults) {
-            match chosen {
-                ChosenFault::Proposed(id, _) => self.dismissed.push(id),
-                ChosenFault::Present(name) => {
-                    tasks.push(Task::Apply(Box::new(Command::Remove(Remove { noun: Noun::Fault, name }))));
-                }
-            }
-        }
-        tasks
-    }
-
-    fn merge_faults(&mut self, document: &Document) -> Vec<Task> {
-        let mut tasks = self.accept_faults(document);
-        let names = self.faults.iter().filter_map(|chosen| match chosen {
-            ChosenFault::Present(name) => Some(name.clone()),
-            ChosenFault::Proposed(..) => None,
-        });
-        let faults: Vec<String> = names.collect();
-        let Some(name) = faults.first().cloned() else { return tasks };
-        self.faults.truncate(1);
-        tasks.push(Task::Apply(Box::new(Command::MergeFaults(MergeFaults { faults, name }))));
         tasks
     }
 

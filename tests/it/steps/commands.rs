@@ -63,6 +63,7 @@ impl Start {
 }
 
 const ADD_TOP: &str = "horizon add p.petro top.csv --name Top";
+const CUT_FAULT: &str = "fault cut p.petro F --at 3,5,32 --name Part";
 const ADD_FAULT: &str = "fault pick p.petro --name F --stick 3,2,4 3,2,60 --stick 3,9,4 3,9,60";
 const SET_SCALAR: &str = "scalar set p.petro seismic --interval 0,50,chalk";
 const PICK: &str = "pick p.petro --at 4,4,32 --horizon Picked --highest-valid";
@@ -132,7 +133,7 @@ pub(super) const MAKING: [Scenario; 5] = [
 ];
 
 /// What changes horizons, faults and wells.
-pub(super) const INTERPRETING: [Scenario; 23] = [
+pub(super) const INTERPRETING: [Scenario; 26] = [
     of(Imported, "horizon add p.petro top.csv --name Another"),
     of(Imported, "volume rename p.petro seismic Stack"),
     of(Imported, "horizon rename p.petro Top Roof"),
@@ -147,6 +148,9 @@ pub(super) const INTERPRETING: [Scenario; 23] = [
     of(Imported, "fault add p.petro g.ts --name G"),
     after(Imported, |at| all(at, &["fault add p.petro g.ts --name G"]), "fault truncate p.petro G --by F"),
     of(Imported, "fault extent p.petro F grow 20"),
+    after(Imported, |at| all(at, &["fault add p.petro g.ts --name G"]), "fault sticks p.petro G"),
+    of(Imported, CUT_FAULT),
+    after(Imported, |at| all(at, &[CUT_FAULT]), "fault merge p.petro F Part"),
     of(Imported, "fault move p.petro F --stick 1 --point 2 --to 3,3,60"),
     of(Imported, "fault rename p.petro F North"),
     of(Imported, "fault colour p.petro F '#c0182c'"),

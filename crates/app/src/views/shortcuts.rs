@@ -3,8 +3,8 @@
 use super::lasso;
 use crate::state::faces::{self, Face, Owner};
 use crate::state::{
-    Action, Choice, Compare, Dialogue, ExportForm, Layout, Look, Panel, PickingStep, Session, StandardView, State,
-    Tool, camera,
+    Action, Choice, Compare, Dialogue, ExportForm, FaultStep, Layout, Look, Panel, PickingStep, Session, StandardView,
+    State, Tool, camera,
 };
 use crate::widgets::dialogue;
 use crate::widgets::keyboard::{Listener, is_entered};
@@ -154,10 +154,10 @@ pub(crate) const INTERPRETING: &[Shortcut] = &[
     plain(Key::F, "F", "Draw fault sticks, or pick again", |session| turn_to(session, Tool::Sticks)),
     shifted(Key::F, "Shift F", "Choose faults, or pick again", |session| turn_to(session, Tool::Faults)),
     plain(Key::Delete, "Delete", "Dismiss or remove the faults that are chosen", |session| {
-        (session.view.picking.tool == Tool::Faults).then_some(Action::Picking(PickingStep::DropFaults))
+        (session.view.picking.tool == Tool::Faults).then_some(Action::Picking(PickingStep::Fault(FaultStep::Drop)))
     }),
     shifted(Key::M, "Shift M", "Merge the faults that are chosen", |session| {
-        (session.view.picking.faults.len() > 1).then_some(Action::Picking(PickingStep::MergeFaults))
+        (session.view.picking.faults.len() > 1).then_some(Action::Picking(PickingStep::Fault(FaultStep::Merge)))
     }),
     plain(Key::M, "M", "Draw lines of a horizon by hand, or pick again", |session| turn_to(session, Tool::Draw)),
     plain(Key::U, "U", "Track reflections from a click, or pick again", |session| turn_to(session, Tool::Track)),

@@ -9,7 +9,7 @@ use interp::faults::{Proposal, ProposeSettings};
 use project::Project;
 use project::command::{Command, PickFault, ProposeFaults, SetLayer};
 use project::interpretation::proposals::{self, Proposals};
-use state::{Action, ChosenFault, Dialogue, FileContent, Panel, PickingStep, Tool};
+use state::{Action, ChosenFault, Dialogue, FaultStep, FileContent, Panel, PickingStep, Tool};
 use survey::{Contact, Progress, TriangleMesh};
 
 pub(crate) fn act(harness: &mut Driven, action: Action) {
@@ -159,20 +159,29 @@ fn faults_are_chosen_on_sections_accepted_cut_and_merged() {
     wait(&mut harness, "both are drawn", |harness| {
         harness.state().as_ref().unwrap().is_settled() && harness.query_by_label("Fault 1 2").is_some()
     });
-    act(&mut harness, Action::Picking(PickingStep::ChooseFault(ChosenFault::Present("Fault 1".into()), false)));
-    act(&mut harness, Action::Picking(PickingStep::ChooseFault(ChosenFault::Present("Fault 1 2".into()), true)));
+    act(
+        &mut harness,
+        Action::Picking(PickingStep::Fault(FaultStep::Choose(ChosenFault::Present("Fault 1".into()), false))),
+    );
+    act(
+        &mut harness,
+        Action::Picking(PickingStep::Fault(FaultStep::Choose(ChosenFault::Present("Fault 1 2".into()), true))),
+    );
     click(&mut harness, "Merge");
     wait(&mut harness, "it is one", |harness| named(harness).len() == 2);
     // What was accepted and changed is no proposal again.
     wait(&mut harness, "the window is at rest", |harness| harness.state().as_ref().unwrap().is_settled());
     assert_eq!(harness.query_all_by_label_contains("Proposal").count(), 0);
-    act(&mut harness, Action::Picking(PickingStep::EditFault("Fault 2".into())));
+    act(&mut harness, Action::Picking(PickingStep::Fault(FaultStep::Edit("Fault 2".into()))));
     wait(&mut harness, "it has sticks", |harness| {
         document(harness).sticks.iter().any(|drawn| drawn.fault == "Fault 2" && drawn.sticks.len() > 10)
     });
     assert_eq!((picking(&harness).tool, picking(&harness).fault.as_str()), (Tool::Sticks, "Fault 2"));
     act(&mut harness, Action::Picking(PickingStep::Use(Tool::Faults)));
-    act(&mut harness, Action::Picking(PickingStep::ChooseFault(ChosenFault::Present("Fault 2".into()), false)));
+    act(
+        &mut harness,
+        Action::Picking(PickingStep::Fault(FaultStep::Choose(ChosenFault::Present("Fault 2".into()), false))),
+    );
     harness.key_press(Key::Delete);
     wait(&mut harness, "it is gone", |harness| named(harness) == ["Fault 1"]);
 }

@@ -289,7 +289,7 @@ fn a_fault_that_was_drawn_elsewhere_cuts_nothing() {
     };
     let (below, through) = (drawn([45.0, 60.0]), drawn([0.0, 20.0]));
     assert_eq!(below.block_count(), 2, "the continuation divides the volume");
-    let ends = [Vec3::new(14.0, 8.0, 8.0), Vec3::new(19.0, 8.0, 8.0)];
+    let ends = [Vec3::new(11.0, 8.0, 8.0), Vec3::new(18.0, 8.0, 8.0)];
     assert_ne!(below.block_at(ends[0]), below.block_at(ends[1]));
     let open = reassemble(&forest, &all, &[0], &FaultNetwork::none());
     let found = reassemble(&forest, &all, &[0], &below);
@@ -299,7 +299,8 @@ fn a_fault_that_was_drawn_elsewhere_cuts_nothing() {
         firsts.map(|sheet| sheet.z.iter().filter(|z| **z == 8.0).count()).sum()
     };
     assert_eq!(picked(&found.sheets), SIZE[0] * SIZE[1], "every trace of the picked sheet comes first in its block");
-    assert!(through.divides(ends[0] + Vec3::X, ends[1] - Vec3::X) && !below.divides(ends[0], ends[1]));
+    let beside = [16.0, 17.0].map(|x| Vec3::new(x, 8.0, 8.0));
+    assert!(through.divides(beside[0], beside[1]) && !below.divides(ends[0], ends[1]));
 }
 
 /// Two sheets that lie over one another in a strip stay what they are, wherever no fault tells them apart.

@@ -56,6 +56,41 @@ pub struct GiveSticks {
     pub fault: String,
 }
 
+/// Why a fault cannot be changed as a whole.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FaultEditError {
+    /// A fault that was to be given sticks and has them.
+    #[error("fault \"{fault}\" has sticks already")]
+    HasSticks {
+        /// Its name.
+        fault: String,
+    },
+    /// A place at which a fault was to be cut lies beside it.
+    #[error("nothing of fault \"{fault}\" lies beyond inline {:.0}, crossline {:.0}, {:.1}: it cannot be cut there", at[0], at[1], at[2])]
+    CutBeside {
+        /// Its name.
+        fault: String,
+        /// Inline, crossline and vertical value.
+        at: [f64; 3],
+    },
+    /// A single fault, or one fault twice, that was to be merged.
+    #[error("it takes two different faults or more to merge")]
+    FewFaults,
+    /// Faults that run side by side and were to be merged.
+    #[error(
+        "faults \"{}\" and \"{}\" run side by side at inline {:.0}, crossline {:.0}, {apart_m:.0} m apart: they are two",
+        faults[0], faults[1], at[0], at[1]
+    )]
+    SideBySide {
+        /// Their names.
+        faults: [String; 2],
+        /// Inline and crossline where both are.
+        at: [f64; 2],
+        /// Their distance there, m.
+        apart_m: f64,
+    },
+}
+
 /// Share of the shorter of two sticks on one section that may lie beside the other one, where faults are merged.
 const BESIDE: f64 = 0.25;
 /// Decimals of the places of sticks: a thousandth of a line is far finer than anyone can aim.
@@ -121,7 +156,7 @@ impl CutFault {
         };
         let entry = draft.document.faults[index].clone();
         let whole = content::read_fault(draft.root(), &entry)?;
-        let beside = || ProjectError::CutBeside { fault: self.fault.clone(), at: self.at };
+        let beside = || FaultEditError::CutBeside { fault: self.fault.clone(), at: self.at };
         let at = world_of(&geometry, &self.at);
         let across = match self.along {
             CutAlong::Dip => strike(&whole.mesh).ok_or_else(beside)?.extend(0.0),
@@ -132,7 +167,7 @@ impl CutFault {
         let mut meshes = whole.mesh.parted(&offs);
         let areas = [0, 1].map(|part: usize| area_m2(&meshes[part], &geometry));
         if areas.iter().any(|area| *area <= 0.0) {
-            return Err(beside());
+            return Err(beside().into());
         }
         let larger = usize::from(areas[1] > areas[0]);
         let mut told = Vec::new();
@@ -192,7 +227,7 @@ impl MergeFaults {
         let Self { faults, name } = self;
         let is_known = |n: usize| faults[..n].contains(&faults[n]);
         if faults.len() < 2 || (1..faults.len()).any(is_known) {
-            return Err(ProjectError::FewFaults);
+            return Err(FaultEditError::FewFaults.into());
         }
         let geometry = draft.document.frame()?.clone();
         let mut entries = Vec::new();
@@ -323,7 +358,7 @@ impl MergeFaults {
         let [p, q] = [at(upper), at(lower)];
         let lines = geometry.lines_from_voxel(geometry.voxel_from_world(p.extend(z)).truncate());
         let faults = [self.faults[a].clone(), self.faults[b].clone()];
-        Err(ProjectError::SideBySide { faults, at: lines.to_array(), apart_m: p.distance(q) })
+        Err(FaultEditError::SideBySide { faults, at: lines.to_array(), apart_m: p.distance(q) }.into())
     }
 }
 
@@ -333,7 +368,7 @@ impl GiveSticks {
         let geometry = draft.document.frame()?.clone();
         let entry = draft.document.faults[draft.document.position(Noun::Fault, name)?].clone();
         if draft.document.sticks.iter().any(|drawn| drawn.fault == *name) {
-            return Err(ProjectError::HasSticks { fault: name.clone() });
+            return Err(FaultEditError::HasSticks { fault: name.clone() }.into());
         }
         let before = content::read_fault(draft.root(), &entry)?;
         let axis = axis_along(&before.mesh, &geometry);

@@ -90,12 +90,7 @@ pub(super) fn check_near(geometry: &SurveyGeometry, place: [f64; 3]) -> Result<(
     if is_near {
         return Ok(());
     }
-    Err(ProjectError::PickOutside {
-        at: place,
-        inlines: [geometry.inlines.first, geometry.inlines.last()],
-        crosslines: [geometry.crosslines.first, geometry.crosslines.last()],
-        vertical: [geometry.vertical.first, geometry.vertical.last()],
-    })
+    Err(ProjectError::outside(place, geometry))
 }
 
 /// Makes the surface of the fault whose sticks these are; one stick alone has none.

@@ -1,7 +1,7 @@
 //! The panel of faults: drawn from sticks, proposed, accepted.
 
 use super::{go, palette};
-use crate::state::{Action, ChosenFault, PickingStep, Session, Tool};
+use crate::state::{Action, ChosenFault, FaultStep, PickingStep, Session, Tool};
 use crate::views::names::colour;
 use crate::widgets::obstacle::{needs, unless};
 use crate::work::{Interpreted, Job, RunningLine};
@@ -32,77 +32,8 @@ impl FaultsPanel {
     ) {
         let picking = &session.view.picking;
         let step = |step| Action::Picking(step);
-        let is_drawing = picking.tool == Tool::Sticks;
-        if ui
-            .selectable_label(is_drawing, "Draw sticks")
-            .on_hover_text("Click points along the fault on a section; Enter ends a stick (F)")
-            .clicked()
-        {
-            actions.push(step(PickingStep::Use(if is_drawing { Tool::Pick } else { Tool::Sticks })));
-        }
-        if is_drawing || !picking.sticks.is_empty() {
-            let complete = picking.sticks.len();
-            ui.label(format!(
-                "{complete} stick{} drawn, {} point{} on the next",
-                if complete == 1 { "" } else { "s" },
-                picking.stick.len(),
-                if picking.stick.len() == 1 { "" } else { "s" }
-            ));
-            ui.horizontal(|ui| {
-                let two = needs(picking.stick.len() > 1, "Click at least two points along the fault");
-                if unless(ui, two, Button::new("End stick")).on_hover_text("Enter").clicked() {
-                    actions.push(step(PickingStep::EndStick));
-                }
-                let some = !(picking.stick.is_empty() && picking.sticks.is_empty());
-                let none = needs(some, "No point is drawn");
-                if unless(ui, none, Button::new("Remove last point")).on_hover_text("Backspace").clicked() {
-                    actions.push(step(PickingStep::Backspace));
-                }
-            });
-            ui.horizontal(|ui| {
-                let mut name = picking.fault.clone();
-                let edit = ui.name_inputs("Name of the fault", |ui| {
-                    ui.add(TextEdit::singleline(&mut name).desired_width(120.0))
-                });
-                if edit.changed() {
-                    actions.push(step(PickingStep::NameFault(name.clone())));
-                }
-                let can = !name.trim().is_empty() && (complete > 0 || picking.stick.len() > 1);
-                if unless(ui, needs(can, "Draw a stick, and name the fault"), Button::new("Make fault")).clicked() {
-                    actions.push(step(PickingStep::MakeFault));
-                }
-            });
-        }
-        if is_drawing && picking.suggestion(&session.document, session.view.slices).is_some() {
-            ui.weak("Enter takes the dashed stick.");
-        }
-        for entry in &session.document.faults {
-            ui.horizontal(|ui| {
-                if let Some(chosen) = palette(ui, entry.ink(), &format!("Colour of fault {}", entry.name)) {
-                    actions.push(colour(Noun::Fault, &entry.name, chosen));
-                }
-                let hint = "Draw more sticks of it, or drag their points; one without sticks gets some";
-                let edit = Button::new("Edit").small();
-                if ui.add(edit).on_hover_text(format!("Edit fault {}: {hint}", entry.name)).clicked() {
-                    actions.push(step(PickingStep::EditFault(entry.name.clone())));
-                }
-                let fault = ChosenFault::Present(entry.name.clone());
-                let text = marked(ui, RichText::new(&entry.name), picking.faults.contains(&fault));
-                let name = ui.add(Label::new(text).truncate().sense(Sense::click()));
-                if name.on_hover_text(format!("{}: {}", entry.name, entry.origin)).clicked() {
-                    choose(ui, fault, actions);
-                }
-            });
-        }
-        if picking.faults.len() > 1 {
-            ui.horizontal(|ui| {
-                ui.label(format!("{} faults are chosen", picking.faults.len()));
-                let hint = "Make one fault of those that are chosen, which continue one another (Shift M)";
-                if ui.button("Merge").on_hover_text(hint).clicked() {
-                    actions.push(step(PickingStep::MergeFaults));
-                }
-            });
-        }
+        sticks(ui, session, actions);
+        present(ui, session, actions);
         let is_looking = running.iter().any(|line| line.job == Job::FaultProposals);
         let has_evidence = session.document.amplitudes().is_ok() || !session.document.horizons.is_empty();
         let can = has_evidence && !is_looking;
@@ -168,6 +99,88 @@ impl FaultsPanel {
     }
 }
 
+/// What goes with drawing sticks.
+fn sticks(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let picking = &session.view.picking;
+    let step = |step| Action::Picking(step);
+    let is_drawing = picking.tool == Tool::Sticks;
+    if ui
+        .selectable_label(is_drawing, "Draw sticks")
+        .on_hover_text("Click points along the fault on a section; Enter ends a stick (F)")
+        .clicked()
+    {
+        actions.push(step(PickingStep::Use(if is_drawing { Tool::Pick } else { Tool::Sticks })));
+    }
+    if is_drawing || !picking.sticks.is_empty() {
+        let complete = picking.sticks.len();
+        ui.label(format!(
+            "{complete} stick{} drawn, {} point{} on the next",
+            if complete == 1 { "" } else { "s" },
+            picking.stick.len(),
+            if picking.stick.len() == 1 { "" } else { "s" }
+        ));
+        ui.horizontal(|ui| {
+            let two = needs(picking.stick.len() > 1, "Click at least two points along the fault");
+            if unless(ui, two, Button::new("End stick")).on_hover_text("Enter").clicked() {
+                actions.push(step(PickingStep::EndStick));
+            }
+            let some = !(picking.stick.is_empty() && picking.sticks.is_empty());
+            let none = needs(some, "No point is drawn");
+            if unless(ui, none, Button::new("Remove last point")).on_hover_text("Backspace").clicked() {
+                actions.push(step(PickingStep::Backspace));
+            }
+        });
+        ui.horizontal(|ui| {
+            let mut name = picking.fault.clone();
+            let edit =
+                ui.name_inputs("Name of the fault", |ui| ui.add(TextEdit::singleline(&mut name).desired_width(120.0)));
+            if edit.changed() {
+                actions.push(step(PickingStep::NameFault(name.clone())));
+            }
+            let can = !name.trim().is_empty() && (complete > 0 || picking.stick.len() > 1);
+            if unless(ui, needs(can, "Draw a stick, and name the fault"), Button::new("Make fault")).clicked() {
+                actions.push(step(PickingStep::MakeFault));
+            }
+        });
+    }
+    if is_drawing && picking.suggestion(&session.document, session.view.slices).is_some() {
+        ui.weak("Enter takes the dashed stick.");
+    }
+}
+
+/// The faults of the project, and what is done with those that are chosen.
+fn present(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let picking = &session.view.picking;
+    let step = |step| Action::Picking(step);
+    for entry in &session.document.faults {
+        ui.horizontal(|ui| {
+            if let Some(chosen) = palette(ui, entry.ink(), &format!("Colour of fault {}", entry.name)) {
+                actions.push(colour(Noun::Fault, &entry.name, chosen));
+            }
+            let hint = "Draw more sticks of it, or drag their points; one without sticks gets some";
+            let edit = Button::new("Edit").small();
+            if ui.add(edit).on_hover_text(format!("Edit fault {}: {hint}", entry.name)).clicked() {
+                actions.push(step(PickingStep::Fault(FaultStep::Edit(entry.name.clone()))));
+            }
+            let fault = ChosenFault::Present(entry.name.clone());
+            let text = marked(ui, RichText::new(&entry.name), picking.faults.contains(&fault));
+            let name = ui.add(Label::new(text).truncate().sense(Sense::click()));
+            if name.on_hover_text(format!("{}: {}", entry.name, entry.origin)).clicked() {
+                choose(ui, fault, actions);
+            }
+        });
+    }
+    if picking.faults.len() > 1 {
+        ui.horizontal(|ui| {
+            ui.label(format!("{} faults are chosen", picking.faults.len()));
+            let hint = "Make one fault of those that are chosen, which continue one another (Shift M)";
+            if ui.button("Merge").on_hover_text(hint).clicked() {
+                actions.push(step(PickingStep::Fault(FaultStep::Merge)));
+            }
+        });
+    }
+}
+
 /// The text of what is chosen on the colour of a selection.
 fn marked(ui: &Ui, text: RichText, is_chosen: bool) -> RichText {
     if is_chosen { text.background_color(ui.visuals().selection.bg_fill) } else { text }
@@ -177,7 +190,7 @@ fn marked(ui: &Ui, text: RichText, is_chosen: bool) -> RichText {
 fn choose(ui: &Ui, fault: ChosenFault, actions: &mut Vec<Action>) {
     let with_others = ui.input(|input| input.modifiers.shift);
     actions.push(Action::Picking(PickingStep::Use(Tool::Faults)));
-    actions.push(Action::Picking(PickingStep::ChooseFault(fault, with_others)));
+    actions.push(Action::Picking(PickingStep::Fault(FaultStep::Choose(fault, with_others))));
 }
 
 /// A proposal in one sentence.

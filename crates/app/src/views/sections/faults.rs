@@ -1,6 +1,6 @@
 //! Faults under the pointer on a section: what they are, and what a click does with them.
 
-use crate::state::{Action, ChosenFault, PickingStep, SectionKind, Session};
+use crate::state::{Action, ChosenFault, FaultStep, PickingStep, SectionKind, Session};
 use crate::views::overlay::Overlay;
 use crate::views::picking::in_words;
 use eframe::egui::{Response, Ui};
@@ -40,9 +40,12 @@ pub(super) fn touch(
         let along = if modifiers.shift { CutAlong::Strike } else { CutAlong::Dip };
         let is_known = session.view.picking.faults.contains(&fault);
         actions.push(Action::Picking(if modifiers.alt {
-            PickingStep::CutFault(fault, voxel, along)
+            PickingStep::Fault(FaultStep::Cut(fault, voxel, along))
         } else {
-            PickingStep::ChooseFault(fault, modifiers.shift && !(is_known && session.view.picking.faults.len() == 1))
+            PickingStep::Fault(FaultStep::Choose(
+                fault,
+                modifiers.shift && !(is_known && session.view.picking.faults.len() == 1),
+            ))
         }));
     }
 }
