@@ -3,7 +3,7 @@
 use files::FormatError;
 use param::ParamError;
 use project::ProjectError;
-use project::command::FaultEditError;
+use project::error::FaultEditError;
 use std::error::Error;
 use std::io::ErrorKind;
 use std::path::Path;

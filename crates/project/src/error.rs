@@ -2,12 +2,13 @@
 
 mod advice;
 mod causes;
+mod fault_edit;
 mod noun;
 
 pub use advice::remedy_of;
+pub use fault_edit::FaultEditError;
 pub use noun::Noun;
 
-use crate::command::FaultEditError;
 use crate::placement::PlacementError;
 use files::FormatError;
 use files::segy::SegyError;

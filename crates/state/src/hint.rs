@@ -2,7 +2,7 @@
 
 use files::FormatError;
 use project::ProjectError;
-use project::command::FaultEditError;
+use project::error::FaultEditError;
 use std::error::Error;
 
 /// What to do next about an error, or about what caused it; `None` where no general advice is possible.

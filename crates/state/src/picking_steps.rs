@@ -51,21 +51,12 @@ impl State {
                 }
             }
             PickingStep::Accept => {
-                if picking.tool == Tool::Sticks {
-                    // Where none is begun, the one that is suggested is taken.
-                    if let Some(suggested) = picking.suggestion(document, session.view.slices) {
-                        picking.stick = suggested.points.iter().map(|voxel| place_of(&geometry, *voxel)).collect();
-                    }
-                    picking.end_stick();
-                    return Vec::new();
-                }
-                if picking.tool == Tool::Faults {
-                    return picking.accept_faults(document);
-                }
-                if picking.tool == Tool::Draw {
-                    return picking.end_line(document).into_iter().collect();
-                }
-                return picking.accept().into_iter().collect();
+                return match picking.tool {
+                    Tool::Sticks => picking.take_stick(document, session.view.slices),
+                    Tool::Faults => picking.accept_faults(document),
+                    Tool::Draw => picking.end_line(document).into_iter().collect(),
+                    Tool::Pick | Tool::Lasso | Tool::Time | Tool::Track => picking.accept().into_iter().collect(),
+                };
             }
             PickingStep::GiveUp => picking.give_up(),
             PickingStep::Begin => return picking.turn_to(None, document),
@@ -220,6 +211,15 @@ impl Picking {
             self.tool = Tool::Pick;
         }
         tasks
+    }
+
+    /// Ends the stick; where none is begun, the one that is suggested is taken.
+    fn take_stick(&mut self, document: &Document, slices: [f64; 3]) -> Vec<Task> {
+        if let (Some(suggested), Some(geometry)) = (self.suggestion(document, slices), &document.geometry) {
+            self.stick = suggested.points.iter().map(|voxel| place_of(geometry, *voxel)).collect();
+        }
+        self.end_stick();
+        Vec::new()
     }
 
     /// The command that makes a fault of the sticks; nothing while there are none.

@@ -37,7 +37,7 @@ pub use contact::SetContact;
 pub use draw::{DrawHorizon, HorizonDrawn};
 pub use extract::{Extract, ProposeFaults};
 pub use fault::{AddFault, FaultAdded, SetFaultExtent, SetTruncation};
-pub use fault_edit::{CutAlong, CutFault, FaultEditError, GiveSticks, MergeFaults};
+pub use fault_edit::{CutAlong, CutFault, GiveSticks, MergeFaults};
 pub use fault_pick::{AcceptFault, MoveStickPoint, PickFault};
 pub use horizon::{AddHorizon, Age, HorizonAdded};
 pub use import::{ImportVolume, VolumeImported};
