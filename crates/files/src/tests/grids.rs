@@ -196,6 +196,12 @@ fn wells_of_rms_have_places_logs_and_zones() {
     let end = well.path.position_at_md(2600.0).unwrap();
     assert!(end.distance(DVec3::new(458_051.10, 6_000_606.85, 2105.14)) < 0.02, "{end}");
     assert_eq!(well.tops.iter().map(|top| top.name.as_str()).collect::<Vec<_>>(), ["A", "B"]);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let told = well::describe(&path, &text).unwrap().unwrap();
+    assert_eq!((told.columns.len(), told.facts[0].as_str()), (2, "well: Tor_9"));
+    let Some(path) = case("03-name-then-rows/p1h.txt") else { return };
+    let told = well::describe(&path, &std::fs::read_to_string(&path).unwrap()).unwrap().unwrap();
+    assert!(told.evidence.contains("name stands alone") && told.columns.len() == 4, "{told:?}");
     let (_folder, path) = file(
         "a.w",
         "1.0\nUNDEFINED\nA 1 457000 6000000\n2\nMDepth UNK lin\nPoro CONT\n457000 6000000 -25 0 0.2\n457000 6000000 75 100 -999\n",

@@ -1,8 +1,12 @@
 //! The description of a well's file before its import.
 
 use super::columns::WellColumn;
+use super::deviation::resinsight;
 use super::error::WellFileError;
 use super::las::parse_las;
+use super::options::WellOptions;
+use super::report::WellReport;
+use super::rms;
 use super::table::Table;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -94,7 +98,22 @@ pub fn describe(file: &Path, text: &str) -> Result<Option<WellFileDescription>, 
                 .collect(),
         }));
     }
-    let table = Table::parse(file, text);
+    if rms::is_rms(text) {
+        let (well, _) = rms::parse_rms(file, text, &WellOptions::default())?;
+        let curves = well.logs.iter().flat_map(|set| &set.curves);
+        return Ok(Some(WellFileDescription {
+            file: file.to_owned(),
+            kind: WellFileKind::Deviation,
+            evidence: "its head is that of an RMS well".into(),
+            facts: vec![format!("well: {}", well.name), format!("datum: {} m", well.path.datum_m())],
+            rows: well.path.stations().len(),
+            columns: curves.map(|c| column(&c.name, &c.unit, "", c.values.iter().map(|v| f64::from(*v)))).collect(),
+        }));
+    }
+    let mut table = Table::parse(file, text);
+    let is_titled = table.title.is_some()
+        && table.columns.is_empty()
+        && resinsight(file, &mut table, &mut WellReport::default()).is_ok();
     let has = |c: WellColumn| table.position(c).is_some();
     let depth = [WellColumn::Tvdss, WellColumn::Tvd, WellColumn::Z].into_iter().any(has);
     let angles = has(WellColumn::Md) && has(WellColumn::Inclination);
@@ -103,7 +122,9 @@ pub fn describe(file: &Path, text: &str) -> Result<Option<WellFileDescription>, 
         let name = n.to_ascii_lowercase();
         ["inline", "crossline", "iline", "xline"].iter().any(|w| name.contains(w))
     });
-    let (kind, evidence) = if angles || (has(WellColumn::Md) && places && depth) || (has(WellColumn::Dx) && depth) {
+    let (kind, evidence) = if is_titled {
+        (WellFileKind::Deviation, "a name stands alone before X, Y, TVDSS and MD, whose lengths agree")
+    } else if angles || (has(WellColumn::Md) && places && depth) || (has(WellColumn::Dx) && depth) {
         (WellFileKind::Deviation, "its columns are those of a deviation")
     } else if has(WellColumn::Surface) && (has(WellColumn::Well) || has(WellColumn::Md)) && !on_lines {
         (WellFileKind::Tops, "its columns are a surface's name and a depth along a well")
@@ -112,6 +133,9 @@ pub fn describe(file: &Path, text: &str) -> Result<Option<WellFileDescription>, 
     } else {
         return Ok(None);
     };
+    if is_titled {
+        table.names = ["X", "Y", "TVDSS", "MD"].map(str::to_owned).to_vec();
+    }
     let columns = table.names.iter().enumerate().map(|(n, name)| {
         let unit = table.units[n].map_or("", |u| u.symbol());
         column(name, unit, "", table.rows.iter().filter_map(|row| table.optional(row, n)))

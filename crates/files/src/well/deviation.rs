@@ -91,7 +91,7 @@ pub(super) fn deviation_of(
 }
 
 /// Takes rows of four numbers that no line names as X, Y, TVDSS and MD, if the lengths say that they are.
-fn resinsight(file: &Path, table: &mut Table<'_>, report: &mut WellReport) -> Result<(), WellFileError> {
+pub(super) fn resinsight(file: &Path, table: &mut Table<'_>, report: &mut WellReport) -> Result<(), WellFileError> {
     use WellColumn::{Md, Tvdss, X, Y};
     let numbers: Vec<Vec<f64>> = table
         .rows
