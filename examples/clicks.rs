@@ -49,12 +49,12 @@ fn nearest(event: &Event, nodes: &[Known], ny: usize) -> Vec<Option<(Support, f3
 /// Counts of nodes: those that an event covers, and those of them that it goes through, by what holds it there.
 #[derive(Default)]
 struct Counts {
-    covered: [usize; 3],
-    found: [usize; 3],
+    covered: [usize; 4],
+    found: [usize; 4],
     nodes: usize,
 }
 
-const SUPPORTS: [Support; 3] = [Support::Tracked, Support::Snapped, Support::Between];
+const SUPPORTS: [Support; 4] = [Support::Tracked, Support::Snapped, Support::Between, Support::Assumed];
 
 impl Counts {
     fn add(&mut self, nearest: &[Option<(Support, f32)>], nodes: &[Known], beside_fault: bool) {
@@ -195,7 +195,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut seeds = vec![seed(&nodes[(2 * place + 1) * nodes.len() / (2 * places)])];
         for (share, counts) in shares.iter_mut().zip(&mut counts) {
             let start = Instant::now();
-            let Some(event) = times.reflections.event(&times.tau, &seeds, &times.cuts) else { break };
+            let Some(mut event) = times.reflections.event(&times.tau, &seeds, &times.cuts) else { break };
+            event.examine(&times.reflections, &seeds, &times.cuts, &times.amplitudes);
             slowest = slowest.max(start.elapsed().as_secs_f64());
             let nearest = nearest(&event, &nodes, ny);
             counts.iter_mut().zip([false, true]).for_each(|(counts, beside)| counts.add(&nearest, &nodes, beside));

@@ -109,7 +109,8 @@ fn measure(survey: &Synthetic, tau: &Volume<f32>, reflections: &Reflections, cut
                     continue;
                 }
                 let seed = Seed { trace: [sx, sy], z: z as f32 };
-                let Some(event) = reflections.event(tau, &[seed], cuts) else { continue };
+                let Some(mut event) = reflections.event(tau, &[seed], cuts) else { continue };
+                event.examine(reflections, &[seed], cuts, &survey.seismic);
                 for &(x, y, block, z) in nodes.iter().step_by(7) {
                     errors.event[usize::from(block != home)].push(event_error(&event, x, y, z));
                     let error = error_at(tau.trace(x, y), time, z);

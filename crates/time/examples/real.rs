@@ -12,7 +12,7 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 use survey::{Progress, SurveyGeometry, Volume};
-use time::{Cut, Event, Reflections, Seed, TimeSettings, geologic_time};
+use time::{Cut, Event, Node, Reflections, Seed, Support, TimeSettings, geologic_time};
 
 /// Distance within which a node is found, samples.
 const FOUND: f32 = 1.0;
@@ -78,6 +78,45 @@ fn farthest_wrong(nodes: &[Known], right: &[bool]) -> Option<usize> {
     wrong.into_iter().max_by_key(|&n| alone(n))
 }
 
+/// Difference of depth between neighbouring traces that counts as a jump, samples: about half a period.
+const JUMP: f32 = 4.0;
+
+/// How many pairs of neighbouring traces there are between which no fault lies, and between how many of them it jumps.
+fn jumps(event: &Event, cuts: &[Cut], [nx, ny, _]: [usize; 3]) -> [f64; 2] {
+    let mut depth = vec![f32::NAN; nx * ny];
+    for node in event.nodes.iter().rev() {
+        depth[usize::from(node.x) * ny + usize::from(node.y)] = node.z;
+    }
+    let mut count = [0.0; 2];
+    for (x, y) in (0..nx).flat_map(|x| (0..ny).map(move |y| (x, y))) {
+        for (i, j) in [(x + 1, y), (x, y + 1)].into_iter().filter(|(i, j)| *i < nx && *j < ny) {
+            let [a, b] = [depth[x * ny + y], depth[i * ny + j]];
+            let is_by_fault =
+                |cut: &Cut| cut.separates([x, y], a, [i, j], b) || cut.side([x, y], a).abs() < BESIDE_FAULT;
+            if a.is_finite() && b.is_finite() && !cuts.iter().any(is_by_fault) {
+                count = [count[0] + f64::from(u8::from((a - b).abs() > JUMP)), count[1] + 1.0];
+            }
+        }
+    }
+    count
+}
+
+/// Traces beside a fault that are not looked at for jumps.
+const BESIDE_FAULT: f32 = 1.5;
+
+/// What clicks make: an event, examined.
+fn event(
+    volume: &Volume<f32>,
+    tau: &Volume<f32>,
+    reflections: &Reflections,
+    seeds: &[Seed],
+    cuts: &[Cut],
+) -> Option<Event> {
+    let mut event = reflections.event(tau, seeds, cuts)?;
+    event.examine(reflections, seeds, cuts, volume);
+    Some(event)
+}
+
 /// Prints what clicks find with some faults, of which clicks know some; returns what to dump.
 fn measure(
     volume: &Volume<f32>,
@@ -96,26 +135,44 @@ fn measure(
         let mut shares: Vec<(f64, f64, Vec<f32>)> = Vec::new();
         // What two and three clicks find, and how much of what was right before each of them is right after it.
         let mut more = [(); CLICKS].map(|()| [Vec::new(), Vec::new()]);
+        let mut all_kept = [[0.0; 2]; CLICKS];
+        // Jumps before and after the event was examined, of nodes that are only assumed how many are right, and questions.
+        let (mut jumped, mut assumed, mut asked) = ([[0.0; 2]; 2], [0.0; 2], 0);
         for place in 0..PLACES {
             let node = &nodes[(2 * place + 1) * nodes.len() / (2 * PLACES)];
             let seed = Seed { trace: node.trace, z: node.z };
-            let Some(event) = reflections.event(&found.tau, &[seed], known) else {
+            let Some(mut event) = reflections.event(&found.tau, &[seed], known) else {
                 shares.push((0.0, 0.0, vec![f32::INFINITY; nodes.len()]));
                 continue;
             };
+            let jumps_before = jumps(&event, known, volume.size());
+            asked += event.examine(&reflections, &[seed], known, volume).len();
+            for (sum, count) in jumped.iter_mut().zip([jumps_before, jumps(&event, known, volume.size())]) {
+                *sum = [sum[0] + count[0], sum[1] + count[1]];
+            }
             let off = off(&event, nodes);
             let share = |is: &dyn Fn(f32) -> bool| off.iter().filter(|off| is(**off)).count() as f64 / off.len() as f64;
+            let doubtful: Vec<&Node> = event.nodes.iter().filter(|at| at.support == Support::Assumed).collect();
+            for (node, off) in nodes.iter().zip(&off) {
+                let is_here =
+                    |at: &&Node| [at.x, at.y].map(usize::from) == node.trace && (at.z - node.z - off).abs() < 1e-3;
+                if doubtful.iter().any(is_here) {
+                    assumed = [assumed[0] + f64::from(u8::from(off.abs() <= FOUND)), assumed[1] + 1.0];
+                }
+            }
             let mut before: Vec<bool> = off.iter().map(|off| off.abs() <= FOUND).collect();
             shares.push((share(&|off| off.abs() <= FOUND), share(&|off| off.is_finite()), off));
             let mut seeds = vec![seed];
-            for [found_by, kept] in &mut more {
+            for ([found_by, kept], all_kept) in more.iter_mut().zip(&mut all_kept) {
                 let Some(node) = farthest_wrong(nodes, &before) else { break };
                 seeds.push(Seed { trace: nodes[node].trace, z: nodes[node].z });
-                let Some(event) = reflections.event(&found.tau, &seeds, known) else { break };
+                let Some(event) = event(volume, &found.tau, &reflections, &seeds, known) else { break };
                 let after: Vec<bool> = self::off(&event, nodes).iter().map(|off| off.abs() <= FOUND).collect();
                 let count = |is: &dyn Fn(usize) -> bool| (0..nodes.len()).filter(|&n| is(n)).count() as f64;
                 found_by.push(count(&|n| after[n]) / nodes.len() as f64);
-                kept.push(count(&|n| before[n] && after[n]) / count(&|n| before[n]).max(1.0));
+                let [stays, was] = [count(&|n| before[n] && after[n]), count(&|n| before[n])];
+                kept.push(stays / was.max(1.0));
+                *all_kept = [all_kept[0] + stays, all_kept[1] + was];
                 before = after;
             }
         }
@@ -130,6 +187,13 @@ fn measure(
             100.0 * (covered - share),
             each.join(" ")
         );
+        let [before, after] = jumped.map(|[jumps, pairs]| 1e4 * jumps / f64::max(pairs, 1.0));
+        println!(
+            "    jumps of more than {JUMP} samples: {before:.1}, then {after:.1} of 10000 pairs; {asked} questions; {:.1} % of \
+             what is assumed is right ({} nodes)",
+            100.0 * assumed[0] / f64::max(assumed[1], 1.0),
+            assumed[1]
+        );
         for (n, of_clicks) in more.iter_mut().enumerate().filter(|(_, [found_by, _])| !found_by.is_empty()) {
             let [share, kept] = [0, 1].map(|which| {
                 of_clicks[which].sort_by(f64::total_cmp);
@@ -138,10 +202,11 @@ fn measure(
                 [all.get(all.len() / 2).copied().unwrap_or(f64::NAN), mean].map(|share| 100.0 * share)
             });
             println!(
-                "    {} clicks: median {:.1} %, mean {:.1} %; of what was right before the last, mean {:.1} % stays, least {:.1} %",
+                "    {} clicks: median {:.1} %, mean {:.1} %; of what was right before the last, {:.1} % stays (mean of the places {:.1} %, least {:.1} %)",
                 n + 2,
                 share[0],
                 share[1],
+                100.0 * all_kept[n][0] / f64::max(all_kept[n][1], 1.0),
                 kept[1],
                 100.0 * of_clicks[1].first().copied().unwrap_or(f64::NAN)
             );

@@ -3,9 +3,10 @@
 //! A seed holds the part of its patch that lies along its level: that is one reflection, whatever τ says elsewhere. The
 //! first seed also holds the other patches along its level in its fault block. From there claims spread over the traces.
 //! Their distance is counted in traces; a step through a fault at the depth of the level counts [`THROUGH_FAULT`] of
-//! them, so that a claim fills its fault block and goes round a tip. A later seed corrects the ones before it: within
-//! [`TAKEN`] traces of what it holds they hold nothing, and a patch of the first seed's level is dropped as a whole where
-//! a later seed says that the event is another. A patch that nothing joins to the first seed's own, as beyond a fault that
+//! them, so that a claim fills its fault block and goes round a tip. A later seed corrects the ones before it where it lies:
+//! a patch on which it lies holds nothing within [`TAKEN`] traces of what the later seed holds, while a seed's own patch on
+//! which no later one lies stays (`own_patches`). Of the other patches on the first seed's level none is held within as
+//! many traces, and one is dropped as a whole where a later seed says that the event is another. A patch that nothing joins to the first seed's own, as beyond a fault that
 //! nobody knows of, is held only where that one is closer than what a later seed holds. The level at a trace is the mean of
 //! the seeds' times with weights 1/d⁸.
 //!
@@ -29,6 +30,8 @@ const DROPPED: f64 = 0.1;
 pub(crate) struct Holding {
     /// τ of the seed.
     pub time: f32,
+    /// The number of its patch.
+    pub hub: Option<u32>,
     /// Trace of the seed (x·crosslines + y).
     pub trace: usize,
     /// Traces of its patch.
@@ -50,15 +53,19 @@ pub(crate) struct Along {
 /// The level at each trace (x·crosslines + y) of `count` inlines and crosslines, and the number of the seed that it has
 /// most of.
 pub(crate) fn levels(holdings: &[Holding], cuts: &[Cut], count: [usize; 2]) -> Vec<(f32, usize)> {
+    let patches = own_patches(holdings, cuts, count);
     let mut distances: Vec<Vec<u32>> = Vec::with_capacity(holdings.len());
-    for holding in holdings.iter().rev() {
+    for (holding, patch) in holdings.iter().zip(&patches).rev() {
         let is_left = |trace: &usize| distances.iter().all(|later| later[*trace] > TAKEN * STEP);
         let is_dropped = |Along { traces: patch, .. }: &Along| {
             let taken = patch.iter().filter(|trace| distances.iter().any(|later| later[**trace] == 0)).count();
             taken as f64 >= DROPPED * patch.len() as f64
         };
         let mut held = vec![holding.trace];
-        held.extend(holding.patch.iter().copied().filter(is_left));
+        // A later seed that lies on it takes from it what is around.
+        let correcting = holdings.iter().skip(holdings.len() - distances.len()).map(|later| later.trace);
+        let is_corrected = correcting.into_iter().any(|later| holding.patch.contains(&later));
+        held.extend(patch.iter().copied().filter(|trace| !is_corrected || is_left(trace)));
         let mut distance = spread(&held, &holding.depth, cuts, count);
         if !holding.others.is_empty() {
             let kept = holding.others.iter().filter(|patch| !is_dropped(patch));
@@ -84,6 +91,47 @@ pub(crate) fn levels(holdings: &[Holding], cuts: &[Cut], count: [usize; 2]) -> V
         ((sum / weights) as f32, most.1)
     };
     (0..count[0] * count[1]).map(level).collect()
+}
+
+/// What each seed holds of its own patch. Where the patches of two seeds lie on one trace, one of them left the event. If
+/// the later seed lies where the earlier one's patch does, that one is corrected there: it keeps what is closer to it, if
+/// the later seed's patch in turn runs past it, and nothing otherwise. If it does not, the earlier patch stays, and the later
+/// one, which is another reflection elsewhere, is held only where it is closer to its seed than the earlier patch is.
+fn own_patches(holdings: &[Holding], cuts: &[Cut], count: [usize; 2]) -> Vec<Vec<usize>> {
+    let on = |holding: &Holding| {
+        let mut is_on = vec![false; count[0] * count[1]];
+        holding.patch.iter().for_each(|trace| is_on[*trace] = true);
+        is_on
+    };
+    let is_on: Vec<Vec<bool>> = holdings.iter().map(on).collect();
+    let mut patches: Vec<Vec<usize>> = holdings.iter().map(|holding| holding.patch.clone()).collect();
+    for (later, seed) in holdings.iter().enumerate() {
+        for (earlier, first) in holdings[..later].iter().enumerate() {
+            let shared = first.patch.iter().filter(|trace| is_on[later][**trace]).count();
+            if shared == 0 || first.hub == seed.hub {
+                continue;
+            }
+            let from = |seed: &Holding| spread(&[seed.trace], &seed.depth, cuts, count);
+            let is_corrected = is_on[earlier][seed.trace];
+            let runs_past = is_on[later][first.trace];
+            match (is_corrected, runs_past) {
+                (true, false) => patches[earlier].retain(|trace| !is_on[later][*trace]),
+                (true, true) => {
+                    let [a, b] = [first, seed].map(from);
+                    patches[earlier].retain(|trace| !is_on[later][*trace] || a[*trace] <= b[*trace]);
+                    patches[later].retain(|trace| !is_on[earlier][*trace] || a[*trace] > b[*trace]);
+                }
+                (false, _) => {
+                    patches[later].retain(|trace| !is_on[earlier][*trace]);
+                    if shared as f64 >= DROPPED * seed.patch.len() as f64 {
+                        let (a, b) = (spread(&first.patch, &first.depth, cuts, count), from(seed));
+                        patches[later].retain(|trace| a[*trace] > b[*trace]);
+                    }
+                }
+            }
+        }
+    }
+    patches
 }
 
 /// Least cost of the steps from what a seed holds to each trace (E. W. Dijkstra, Numerische Mathematik 1, 1959).
@@ -127,7 +175,14 @@ mod tests {
     const COUNT: [usize; 2] = [40, 30];
 
     fn holding(time: f32, trace: usize, patch: Vec<usize>) -> Holding {
-        Holding { time, trace, patch, others: Vec::new(), depth: vec![5.0; COUNT[0] * COUNT[1]] }
+        Holding {
+            time,
+            hub: Some(trace as u32),
+            trace,
+            patch,
+            others: Vec::new(),
+            depth: vec![5.0; COUNT[0] * COUNT[1]],
+        }
     }
 
     fn at(levels: &[(f32, usize)], x: usize, y: usize) -> f32 {
@@ -160,6 +215,19 @@ mod tests {
         assert!((at(&found, 33, 15) - 2.0).abs() < 0.1);
         assert!((at(&found, 30, 25) - 1.0).abs() < 1e-6, "the first seed's own patch keeps its time");
         assert!((at(&found, 3, 3) - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_patch_on_which_no_later_seed_lies_stays_where_the_patch_of_a_later_one_runs_over_it() {
+        // The second seed lies beyond the first one's patch, on a patch that runs over nearly the whole survey.
+        let rows = |x: std::ops::Range<usize>| (x.start * COUNT[1]..x.end * COUNT[1]).collect::<Vec<usize>>();
+        let found = levels(&[holding(1.0, 0, rows(0..25)), holding(2.0, 35 * COUNT[1] + 15, rows(6..40))], &[], COUNT);
+        let right = (0..25).flat_map(|x| (0..30).map(move |y| (x, y)));
+        assert!(right.clone().all(|(x, y)| (at(&found, x, y) - 1.0).abs() < 1e-3), "what was right stays");
+        assert!((at(&found, 35, 15) - 2.0).abs() < 1e-3 && (at(&found, 39, 2) - 2.0).abs() < 1e-3);
+        // It does not stay where the second seed lies on it and its patch ends before the first.
+        let found = levels(&[holding(1.0, 0, rows(0..40)), holding(2.0, 35 * COUNT[1] + 15, rows(20..40))], &[], COUNT);
+        assert!((at(&found, 22, 5) - 2.0).abs() < 1e-3 && (at(&found, 5, 5) - 1.0).abs() < 1e-3);
     }
 
     #[test]

@@ -25,6 +25,8 @@ pub enum Support {
     Snapped,
     /// The level of τ alone.
     Between,
+    /// Beyond a fault or a jump across which nothing tells that it is the same reflection ([`Event::examine`]).
+    Assumed,
 }
 
 /// A node of an event.
@@ -202,7 +204,7 @@ impl Reflections {
         };
         let patch = (0..nx * ny).filter(is_held).collect();
         let depth = along.iter().map(|level| level.unwrap_or(seed.z)).collect();
-        Holding { time: *time, trace: seed.trace[0] * ny + seed.trace[1], patch, others: Vec::new(), depth }
+        Holding { time: *time, hub: *hub, trace: seed.trace[0] * ny + seed.trace[1], patch, others: Vec::new(), depth }
     }
 
     /// The patches but a seed's own that lie along the seed's level, which crosses each trace at a depth.

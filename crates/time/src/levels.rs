@@ -1,7 +1,7 @@
 //! The levels of τ that stand out, and the character of what lies between them: what a picture without interpretation
 //! is made of.
 
-use crate::isochron::isochron;
+use crate::isochron::crossings;
 use crate::logs::Log;
 use rayon::prelude::*;
 use survey::Volume;
@@ -13,7 +13,7 @@ pub struct Level {
     pub time: f32,
     /// Share of the live traces that it crosses.
     pub coverage: f64,
-    /// Mean amplitude along it, over the root mean square of the volume; negative for a trough.
+    /// Mean amplitude of its reflection, over the root mean square of the volume; negative for a trough.
     pub strength: f32,
 }
 
@@ -65,38 +65,96 @@ fn whole(tau: &Volume<f32>, volume: &Volume<f32>) -> (Log, f32, usize) {
     (log, (energy / count.max(1) as f64).sqrt() as f32, live)
 }
 
-/// Chooses up to `count` levels by strength and coverage, at least half of an even spacing apart; ascending.
+/// Distance from a level within which a trace has its reflection, samples: τ is a little off here and there.
+const BESIDE: f32 = 1.5;
+/// Share of the mean amplitude along a level from which on a trace has the reflection, too.
+const ALIKE: f32 = 0.4;
+/// Thickness of a layer that can be seen in a picture, as a share of the samples, and least share of the traces of two levels
+/// on which what lies between them has it.
+const SEEN_THICKNESS: f32 = 0.025;
+const LEAST_SEEN: f64 = 0.7;
+
+/// A level that may be chosen.
+struct Candidate {
+    level: Level,
+    /// Its depth on each trace, NaN where there is none.
+    depth: Vec<f32>,
+    /// Share of the traces that it crosses on which its reflection is.
+    continuity: f64,
+}
+
+impl Candidate {
+    /// A level of a time at which amplitudes have a sign on the average. On each trace it has the strongest amplitude of that
+    /// sign beside it, so that a strong reflection along which τ is a sample off here and there counts as what it is.
+    fn new(tau: &Volume<f32>, volume: &Volume<f32>, time: f32, sign: f32, rms: f32, live: usize) -> Self {
+        let [nx, ny, nz] = tau.size();
+        let on = |trace: usize| {
+            let (x, y) = (trace / ny, trace % ny);
+            let at = crossings(tau.trace(x, y), time).next().filter(|_| volume.is_live(x, y))?;
+            let low = (at - BESIDE).ceil().max(0.0) as usize;
+            let high = ((at + BESIDE).floor() as usize).min(nz - 1);
+            let amplitude = volume.trace(x, y)[low..=high].iter().map(|a| sign * a).fold(f32::NEG_INFINITY, f32::max);
+            amplitude.is_finite().then_some((at, amplitude))
+        };
+        let all: Vec<Option<(f32, f32)>> = (0..nx * ny).into_par_iter().map(on).collect();
+        let crossed = all.iter().flatten().count();
+        let mean = all.iter().flatten().map(|(_, a)| f64::from(*a)).sum::<f64>() / crossed.max(1) as f64;
+        let alike = all.iter().flatten().filter(|(_, a)| f64::from(*a) >= f64::from(ALIKE) * mean).count();
+        let level = Level {
+            time,
+            coverage: crossed as f64 / live.max(1) as f64,
+            strength: sign * mean as f32 / rms.max(f32::MIN_POSITIVE),
+        };
+        let depth = all.iter().map(|at| at.map_or(f32::NAN, |(at, _)| at)).collect();
+        Self { level, depth, continuity: alike as f64 / crossed.max(1) as f64 }
+    }
+
+    /// Strong, on most traces, and of one sign on them.
+    fn score(&self) -> f64 {
+        f64::from(self.level.strength.abs()) * (self.level.coverage * self.continuity).powi(2)
+    }
+
+    /// Whether the rock between two levels is a layer that can be seen on most of their traces.
+    fn leaves_a_layer(&self, other: &Self, nz: usize) -> bool {
+        let both =
+            self.depth.iter().zip(&other.depth).map(|(a, b)| (a - b).abs()).filter(|thickness| thickness.is_finite());
+        let count = both.clone().count();
+        let seen = both.filter(|thickness| *thickness >= SEEN_THICKNESS * nz as f32).count();
+        count > 0 && seen as f64 >= LEAST_SEEN * count as f64
+    }
+}
+
+/// Least distance of two levels, as a share of an even spacing. More of it spreads layers over the survey, but leaves out the
+/// second of two strong reflections that lie close together, as the top and the base of a chalk do.
+const LEAST_SPACING: f32 = 0.25;
+
+/// Chooses up to `count` levels by strength, coverage and continuity, at least a quarter of an even spacing apart and so that
+/// what lies between two of them is no sliver; ascending. Cost: one pass over τ for each reflection of the survey.
 pub fn strongest_levels(tau: &Volume<f32>, volume: &Volume<f32>, count: usize) -> Vec<Level> {
     let (log, rms, live) = whole(tau, volume);
     let bins: Vec<(f32, f32)> = log.means(0.25 * live as f32).collect();
     let (Some(first), Some(last)) = (bins.first(), bins.last()) else { return Vec::new() };
-    let apart = (last.0 - first.0) / (2.0 * count.max(1) as f32);
+    let apart = LEAST_SPACING * (last.0 - first.0) / (count + 1) as f32;
     let is_top = |n: &usize| bins[*n].1.abs() >= bins[n - 1].1.abs() && bins[*n].1.abs() > bins[n + 1].1.abs();
-    let ny = tau.size()[1];
-    let mut levels: Vec<Level> = (1..bins.len().saturating_sub(1))
-        .filter(is_top)
-        .map(|n| {
-            let mut traces: Vec<usize> = isochron(tau, bins[n].0)
-                .crossings
-                .iter()
-                .map(|at| usize::from(at.x) * ny + usize::from(at.y))
-                .collect();
-            traces.dedup();
-            let coverage = traces.len() as f64 / live.max(1) as f64;
-            Level { time: bins[n].0, coverage, strength: bins[n].1 / rms.max(f32::MIN_POSITIVE) }
-        })
-        .filter(|level| level.coverage >= LEAST_COVERAGE && level.strength.abs() >= LEAST_STRENGTH)
+    let least = LEAST_STRENGTH * rms;
+    let mut candidates: Vec<Candidate> = (1..bins.len().saturating_sub(1))
+        .filter(|n| is_top(n) && bins[*n].1.abs() >= least)
+        .map(|n| Candidate::new(tau, volume, bins[n].0, bins[n].1.signum(), rms, live))
+        .filter(|candidate| candidate.level.coverage >= LEAST_COVERAGE)
         .collect();
-    let score = |level: &Level| f64::from(level.strength.abs()) * level.coverage.powi(2);
-    levels.sort_by(|a, b| score(b).total_cmp(&score(a)));
-    let mut chosen: Vec<Level> = Vec::new();
-    for level in levels {
-        if chosen.len() < count && chosen.iter().all(|other| (other.time - level.time).abs() >= apart) {
-            chosen.push(level);
+    candidates.sort_by(|a, b| b.score().total_cmp(&a.score()));
+    let nz = tau.size()[2];
+    let mut chosen: Vec<Candidate> = Vec::new();
+    for candidate in candidates {
+        let is_apart = |other: &Candidate| {
+            (other.level.time - candidate.level.time).abs() >= apart && candidate.leaves_a_layer(other, nz)
+        };
+        if chosen.len() < count && chosen.iter().all(is_apart) {
+            chosen.push(candidate);
         }
     }
-    chosen.sort_by(|a, b| a.time.total_cmp(&b.time));
-    chosen
+    chosen.sort_by(|a, b| a.level.time.total_cmp(&b.level.time));
+    chosen.into_iter().map(|candidate| candidate.level).collect()
 }
 
 /// The character of each part of τ between ascending times, that above the first and that below the last included.
@@ -129,6 +187,32 @@ pub fn characters(tau: &Volume<f32>, volume: &Volume<f32>, times: &[f32]) -> Vec
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_strong_reflector_close_to_a_stronger_one_is_chosen_and_a_sliver_is_not() {
+        // Strong reflectors at τ 60 and 72, a weaker one at 20. Below 72 one follows at 84 that comes to lie on it on most
+        // traces: what lies between them is a sliver.
+        let size = [24, 24, 120];
+        let (mut tau, mut volume) = (Volume::filled(size, 0.0f32), Volume::filled(size, 0.0f32));
+        for (x, y) in (0..24).flat_map(|x| (0..24).map(move |y| (x, y))) {
+            // Depth of a time: the twelve samples below 72 are squeezed into a half of one beyond inline 6.
+            let squeezed = if x > 6 { 11.5 } else { 0.0 };
+            let depth = |t: f32| t - squeezed * ((t - 72.0) / 12.0).clamp(0.0, 1.0);
+            for z in 0..120 {
+                let mut time = 0.0;
+                while depth(time) < z as f32 {
+                    time += 0.05;
+                }
+                tau.trace_mut(x, y)[z] = time;
+                let bed = |at: f32, height: f32| height * (-(z as f32 - depth(at)).powi(2) / 4.0).exp();
+                volume.trace_mut(x, y)[z] = bed(20.0, 0.6) + bed(60.0, 1.2) - bed(72.0, 1.0) - bed(84.0, 0.9);
+            }
+        }
+        let times: Vec<f32> = strongest_levels(&tau, &volume, 3).iter().map(|level| level.time).collect();
+        assert_eq!(times.len(), 3, "{times:?}");
+        let is_near = |n: usize, at: f32| (times[n] - at).abs() < 1.5;
+        assert!(is_near(0, 20.0) && is_near(1, 60.0) && (is_near(2, 72.0) || is_near(2, 84.0)), "{times:?}");
+    }
 
     #[test]
     fn the_strongest_reflectors_are_the_levels_and_chaos_is_told_from_beds() {

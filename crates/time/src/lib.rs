@@ -27,6 +27,7 @@
 //! | throws, then what matches across faults | `throws`, `logs`, `matches` |
 //! | patches of one event become one | `merge` |
 //! | one level of τ, and the event that it is with the reflections along it | [`isochron()`], [`Reflections`] |
+//! | the pieces of an event, and what is only assumed | `pieces`, [`Event::examine`] |
 //! | beds laid flat, and where beds are missing | [`flattened`], [`rates`] |
 //! | slabs of a survey that does not fit into memory | [`Slabs`], [`JoinedSlabs`] |
 //! | levels that stand out | [`strongest_levels`], [`characters`] |
@@ -52,6 +53,7 @@ mod links;
 mod logs;
 mod matches;
 mod merge;
+mod pieces;
 mod rate;
 mod reflections;
 mod slabs;
@@ -72,6 +74,7 @@ pub use flatten::flattened;
 pub use interpretation::{Interpretation, Jump, KnownHorizon, Place};
 pub use isochron::{Crossing, Isochron, isochron};
 pub use levels::{Character, Level, characters, strongest_levels};
+pub use pieces::Doubt;
 pub use rate::rates;
 pub use reflections::{Reflection, Reflections};
 pub use slabs::{JoinedSlabs, Slabs, surfaces_within};

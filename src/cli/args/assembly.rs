@@ -22,7 +22,8 @@ pub(in crate::cli) struct PickArgs {
     #[arg(long)]
     pub(in crate::cli) highest_valid: bool,
     /// Add a new horizon that is the level of geologic time through the place, over the whole survey and across its
-    /// faults, or correct one that was made so around the place; `petroglyph time` first
+    /// faults, or correct one that was made so around the place; `petroglyph time` first. Where both sides of a fault do
+    /// not tell which reflection it is, it says so, and a place beyond the fault decides
     #[arg(long, conflicts_with_all = ["up", "highest_valid", "remove", "colour"])]
     pub(in crate::cli) by_time: bool,
     /// Remove the node from the horizon

@@ -3,12 +3,12 @@
 use super::horizon::{Age, insert_made};
 use super::{Effect, Noun, ProjectError};
 use crate::derived::FaultBlocks;
-use crate::document::{Chooser, Document, Origin};
+use crate::document::{Chooser, Document, HorizonQuery, Origin, QueryBorder};
 use crate::folder::Draft;
 use crate::interpretation::assembly;
 use crate::interpretation::times::Times;
-use ::time::{Crossing, Cut, Event, Node, Reflections, Seed, Support, isochron};
-use glam::Vec3;
+use ::time::{Crossing, Doubt, Event, Node, Reflections, Seed, Support, isochron};
+use glam::{DVec2, Vec3};
 use interp::Extremum;
 use model::FaultNetwork;
 use rayon::prelude::*;
@@ -57,8 +57,12 @@ pub struct PickedByTime {
     pub snapped: usize,
     /// Number of nodes between reflections.
     pub between: usize,
+    /// Number of nodes beyond a fault or a jump across which nothing tells that it is the same reflection.
+    pub assumed: usize,
     /// Share of the survey's traces that it covers, 0 to 1.
     pub coverage: f64,
+    /// What is asked about them; a place there decides.
+    pub queries: Vec<HorizonQuery>,
 }
 
 impl std::fmt::Display for PickedByTime {
@@ -70,7 +74,11 @@ impl std::fmt::Display for PickedByTime {
             "horizon '{horizon}' by geologic time{places}: {:.1} % of the traces in {sheets} sheets, {tracked} nodes on \
              its reflection (tracked), {snapped} on one close by (snapped), {between} between reflections (filled)",
             100.0 * coverage
-        )
+        )?;
+        if self.assumed > 0 {
+            write!(f, ", {} assumed (extrapolated)", self.assumed)?;
+        }
+        self.queries.iter().try_for_each(|query| write!(f, "\n{query}"))
     }
 }
 
@@ -79,14 +87,14 @@ impl PickByTime {
         let corrected = self.corrected(&draft.document)?;
         let geometry = draft.document.frame()?.clone();
         let times = Times::load(draft.facts(), progress)?;
-        let Times { tau, reflections, cuts } = times.as_ref();
+        let Times { tau, reflections, .. } = times.as_ref();
         let blocks = draft.facts().get(&FaultBlocks, progress)?;
         let earlier = corrected.map_or(&[][..], |index| draft.document.horizons[index].origin.seeds());
         let value = |time: f32, chosen_by| (level(tau, time, reflections), Origin::Level { time, chosen_by });
         let (event, origin) = match self.level {
             TimeLevel::Through(at) => {
                 let seeds = [earlier, &[at]].concat();
-                (through(&seeds, &geometry, tau, reflections, cuts)?, Origin::ByTime { seeds })
+                through(seeds, &draft.document, &times)?
             }
             TimeLevel::Of(time) => value(time, Chooser::Person),
             TimeLevel::Chosen(time) => value(time, Chooser::Program),
@@ -101,6 +109,7 @@ impl PickByTime {
         };
         let tracked = count(Quality::Tracked) + count(Quality::Picked);
         let (snapped, between) = (count(Quality::Snapped), count(Quality::Filled));
+        let (assumed, queries) = (count(Quality::Extrapolated), origin.queries().to_vec());
         let mut traces: Vec<[u16; 2]> = event.nodes.iter().map(|at| [at.x, at.y]).collect();
         traces.dedup();
         let coverage = traces.len() as f64 / (tau.size()[0] * tau.size()[1]) as f64;
@@ -124,7 +133,9 @@ impl PickByTime {
             tracked,
             snapped,
             between,
+            assumed,
             coverage,
+            queries,
         }))
     }
 
@@ -152,18 +163,26 @@ fn voxel(at: [f64; 3], geometry: &SurveyGeometry) -> Result<Seed, ProjectError> 
     }
 }
 
-/// The event through places, each on the reflection beside it if there is one.
-fn through(
-    seeds: &[[f64; 3]],
-    geometry: &SurveyGeometry,
-    tau: &Volume<f32>,
-    reflections: &Reflections,
-    cuts: &[Cut],
-) -> Result<Event, ProjectError> {
+/// The event through places, each on the reflection beside it if there is one, and what nothing tells of it.
+fn through(seeds: Vec<[f64; 3]>, document: &Document, times: &Times) -> Result<(Event, Origin), ProjectError> {
+    let Times { tau, amplitudes, reflections, cuts } = times;
+    let (geometry, names) = (document.frame()?, document.names(Noun::Fault));
     let voxels = seeds.iter().map(|at| voxel(*at, geometry)).collect::<Result<Vec<_>, _>>()?;
     // The last is the new one.
     let unknown = ProjectError::TimeUnknown { at: seeds.last().copied().unwrap_or_default() };
-    reflections.event(tau, &voxels, cuts).ok_or(unknown)
+    let mut event = reflections.event(tau, &voxels, cuts).ok_or(unknown)?;
+    let all = event.nodes.len().max(1) as f64;
+    let query = |doubt: Doubt| {
+        let beyond = match doubt.fault {
+            None => QueryBorder::Jump,
+            Some(fault) => names.get(fault).cloned().map_or(QueryBorder::FoundFault, QueryBorder::Fault),
+        };
+        let lines = geometry.lines_from_voxel(DVec2::new(doubt.place.trace[0] as f64, doubt.place.trace[1] as f64));
+        let at = [lines.x, lines.y, geometry.vertical.value_at(f64::from(doubt.place.z))];
+        HorizonQuery { beyond, at, share: doubt.nodes as f64 / all }
+    };
+    let queries = event.examine(reflections, &voxels, cuts, amplitudes).into_iter().map(query).collect();
+    Ok((event, Origin::ByTime { seeds, queries }))
 }
 
 /// A level of time as it is, which is smoother than what was tracked; its nodes tell which reflections it passes.
@@ -215,6 +234,7 @@ fn sheets(event: &Event, geometry: &SurveyGeometry, blocks: &FaultNetwork, seeds
             Support::Tracked => Quality::Tracked,
             Support::Snapped => Quality::Snapped,
             Support::Between => Quality::Filled,
+            Support::Assumed => Quality::Extrapolated,
         };
     }
     if seeds.is_empty() {
@@ -240,4 +260,65 @@ fn smooth(sheet: &mut Sheet) {
         if sheet.depth[n].is_finite() { near[near.len() / 2] } else { f32::NAN }
     };
     sheet.depth = (0..nu * nv).into_par_iter().map(median).collect();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Project;
+    use crate::command::{Command, ComputeTime, PickFault, Rename};
+    use crate::fixture::extracted;
+    use ::time::TimeSettings;
+    use survey::VerticalUnit;
+
+    /// Whatever is drawn, a horizon, through a place of it.
+    fn click(project: &mut Project, at: [f64; 3]) -> PickedByTime {
+        let pick = PickByTime { level: TimeLevel::Through(at), horizon: "Chalk".to_owned() };
+        let Effect::PickedByTime(done) = project.apply(&Command::PickByTime(pick), &Progress::silent()).unwrap() else {
+            panic!("another effect");
+        };
+        done
+    }
+
+    #[test]
+    fn what_both_sides_of_a_fault_do_not_tell_is_asked_kept_with_the_horizon_and_decided_by_a_click_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let (size, quiet) = ([48, 32, 96], Progress::silent());
+        let geometry = SurveyGeometry::regular(size, 25.0, 10.0, VerticalUnit::Metres);
+        let mut volume = Volume::filled(size, 0.0f32);
+        for (n, sample) in volume.samples_mut().iter_mut().enumerate() {
+            let [x, y, z] = [n / 96 / 32, n / 96 % 32, n % 96].map(|at| at as f32);
+            // Peaks every ten samples, all alike, six samples deeper beyond the fault.
+            let t = z - 0.2 * y - if x > 23.5 { 6.0 } else { 0.0 };
+            *sample = (t * std::f32::consts::TAU / 10.0).cos();
+        }
+        let mut project = extracted(folder.path(), &geometry, &volume);
+        let at = |x: f64, y: f64, z: f64| {
+            let lines = geometry.lines_from_voxel(DVec2::new(x, y));
+            [lines.x, lines.y, geometry.vertical.value_at(z)]
+        };
+        let sticks = [0.0, 31.0].map(|y| vec![at(23.5, y, 0.0), at(23.5, y, 95.0)]).to_vec();
+        let fault = PickFault { name: "Fault 2".to_owned(), sticks };
+        let time = ComputeTime { name: "time".to_owned(), settings: TimeSettings::default(), memory_bytes: None };
+        for command in [Command::PickFault(fault), Command::Time(time)] {
+            project.apply(&command, &quiet).unwrap();
+        }
+        let told = click(&mut project, at(8.0, 16.0, 43.2));
+        assert_eq!(told.queries.len(), 1);
+        assert_eq!(told.queries[0].beyond, QueryBorder::Fault("Fault 2".to_owned()));
+        assert!(
+            told.assumed > 600 && told.to_string().contains("which reflection is it beyond \"Fault 2\"?"),
+            "{told}"
+        );
+        let rename = Rename { noun: Noun::Fault, from: "Fault 2".to_owned(), to: "Main".to_owned() };
+        project.apply(&Command::Rename(rename), &quiet).unwrap();
+        let kept = project.document().horizons[0].origin.queries();
+        assert_eq!(
+            kept.iter().map(|query| &query.beyond).collect::<Vec<_>>(),
+            [&QueryBorder::Fault("Main".to_owned())]
+        );
+        let decided = click(&mut project, at(40.0, 16.0, 59.2));
+        assert_eq!((decided.queries.len(), decided.assumed), (0, 0), "{decided}");
+        assert!(project.document().horizons[0].origin.queries().is_empty());
+    }
 }

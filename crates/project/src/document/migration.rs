@@ -105,7 +105,7 @@ impl Source {
             entry.insert("refined".to_owned(), Value::Array(refined));
         }
         if let Some(seeds) = entry.remove("seeds") {
-            return Ok(Origin::ByTime { seeds: Vec::deserialize(seeds)? });
+            return Ok(Origin::ByTime { seeds: Vec::deserialize(seeds)?, queries: Vec::new() });
         }
         if let Some(log) = entry.get("assembly") {
             let has_picks = log.get("picks").and_then(Value::as_array).is_some_and(|picks| !picks.is_empty());

@@ -21,7 +21,7 @@ pub use entries::{
     Refinement, SceneEntry, Style, TextureEntry, VolumeEntry, WellEntry,
 };
 pub use ids::{Id, Renamed};
-pub use origin::{AttributeKind, Chooser, Origin, Uninterpreted};
+pub use origin::{AttributeKind, Chooser, HorizonQuery, Origin, QueryBorder, Uninterpreted};
 use param::KDefinition;
 pub use picks::{Assembly, Drawn, DrawnEntry, FaultSticks, PickEntry};
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,6 @@
 //! Where the data of a project came from. It is a fact that is asked for; words are made of it only where they are shown.
 
-use super::references::{HORIZON, VOLUME};
+use super::references::{FAULT, HORIZON, VOLUME};
 use super::{Document, VolumeEntry};
 use crate::error::{Noun, ProjectError};
 use serde::{Deserialize, Serialize};
@@ -53,6 +53,9 @@ pub enum Origin {
     ByTime {
         /// Inline, crossline and vertical value of each.
         seeds: Vec<[f64; 3]>,
+        /// Where nothing tells which reflection it is, the largest part first.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        queries: Vec<HorizonQuery>,
     },
     /// A level of geologic time as it is.
     Level {
@@ -73,6 +76,48 @@ pub enum Origin {
         /// The names of the horizons that are offset at it; none: it was found in the volume.
         horizons: Vec<String>,
     },
+}
+
+/// A part of a horizon by time of which nothing tells that it is the same reflection: it is assumed until a place is
+/// pointed at there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HorizonQuery {
+    /// The fault beyond which it lies.
+    pub beyond: QueryBorder,
+    /// Inline, crossline and vertical value in its midst, on what is assumed.
+    pub at: [f64; 3],
+    /// Its share of the horizon's nodes, 0 to 1.
+    pub share: f64,
+}
+
+/// What a part of a horizon lies beyond.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum QueryBorder {
+    /// A fault of the project, by its name.
+    Fault(String),
+    /// A fault that was found in the volume and that the project does not have.
+    FoundFault,
+    /// A jump by half a period or more, without a fault.
+    Jump,
+}
+
+impl fmt::Display for HorizonQuery {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let beyond = match &self.beyond {
+            QueryBorder::Fault(name) => format!("beyond \"{name}\""),
+            QueryBorder::FoundFault => "beyond a fault that was found in the volume".to_owned(),
+            QueryBorder::Jump => "beyond a jump".to_owned(),
+        };
+        let [inline, crossline, z] = self.at;
+        write!(
+            f,
+            "which reflection is it {beyond}? {:.1} % of it is only assumed there, for both sides do not tell; point at the \
+             right one near inline {inline:.0}, crossline {crossline:.0} (assumed at {z:.1})",
+            100.0 * self.share
+        )
+    }
 }
 
 /// Who chose something.
@@ -140,13 +185,25 @@ impl Origin {
             Self::Attribute { of, .. } | Self::GeologicTime { of } | Self::TimeFraction { of } => vec![(VOLUME, of)],
             Self::Share { between, .. } => between.iter_mut().map(|name| (HORIZON, name)).collect(),
             Self::Proposed { horizons } => horizons.iter_mut().map(|name| (HORIZON, name)).collect(),
+            Self::ByTime { queries, .. } => {
+                let named = queries.iter_mut().filter_map(|query| match &mut query.beyond {
+                    QueryBorder::Fault(name) => Some((FAULT, name)),
+                    QueryBorder::FoundFault | QueryBorder::Jump => None,
+                });
+                named.collect()
+            }
             _ => Vec::new(),
         }
     }
 
     /// Places at which a person pointed in geologic time; none for anything else.
     pub fn seeds(&self) -> &[[f64; 3]] {
-        if let Self::ByTime { seeds } = self { seeds } else { &[] }
+        if let Self::ByTime { seeds, .. } = self { seeds } else { &[] }
+    }
+
+    /// Where nothing tells which reflection a horizon by time is.
+    pub fn queries(&self) -> &[HorizonQuery] {
+        if let Self::ByTime { queries, .. } = self { queries } else { &[] }
     }
 }
 
@@ -161,7 +218,7 @@ impl fmt::Display for Origin {
             Self::TimeFraction { of } => write!(f, "k by geologic time of the volume {of}"),
             Self::Picked => f.write_str("assembled from picks"),
             Self::Drawn => f.write_str("drawn"),
-            Self::ByTime { seeds } => {
+            Self::ByTime { seeds, .. } => {
                 f.write_str("geologic time through ")?;
                 if let Some([inline, crossline, z]) = seeds.first() {
                     write!(f, "inline {inline}, crossline {crossline}, {z}")?;

@@ -79,7 +79,7 @@ pub(crate) type VisitReference<'v> = dyn FnMut(Reference<'_>, &mut String) -> bo
 
 pub(super) const VOLUME: &[Noun] = &[Noun::Volume];
 pub(super) const HORIZON: &[Noun] = &[Noun::Horizon];
-const FAULT: &[Noun] = &[Noun::Fault];
+pub(super) const FAULT: &[Noun] = &[Noun::Fault];
 pub(super) const WELL: &[Noun] = &[Noun::Well];
 pub(super) const LAYER: &[Noun] = &[Noun::Layer];
 pub(super) const TEXTURE: &[Noun] = &[Noun::Texture];

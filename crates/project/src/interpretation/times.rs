@@ -16,11 +16,13 @@ use std::sync::Arc;
 use survey::{Contact, Progress, Quality, SurveyGeometry, Volume, Well, well::is_same_surface};
 use system::memory;
 
-/// The newest geologic time of a project, with the reflections and faults that picks by it need. Memory: 4 bytes a voxel
-/// and 20 a vertex of the candidates.
+/// The newest geologic time of a project, with the amplitudes, reflections and faults that picks by it need. Memory: 8
+/// bytes a voxel and 20 a vertex of the candidates.
 pub struct Times {
     /// τ in samples, NaN where it is not known.
     pub tau: Volume<f32>,
+    /// The amplitudes that it is of.
+    pub amplitudes: Volume<f32>,
     /// The vertices of all candidates.
     pub reflections: Reflections,
     /// The faults: those that are drawn, or found in the volume where none is.
@@ -34,7 +36,7 @@ impl std::fmt::Debug for Times {
 }
 
 /// Memory that times and reflections take for each sample while they are read.
-const HELD_BYTES: usize = 16;
+const HELD_BYTES: usize = 20;
 
 /// The geologic time that an entry is of.
 struct TimesOf<'a>(&'a VolumeEntry);
@@ -45,7 +47,14 @@ impl Query for TimesOf<'_> {
 
     fn key(&self, facts: Facts<'_>) -> Result<String, ProjectError> {
         let extraction = facts.document.extraction.as_ref().map(|entry| &entry.key);
-        Ok(key_of(&(&self.0.file, &self.0.hash, extraction, blocks_key(facts.document), revision::FOUND_FAULTS)))
+        Ok(key_of(&(
+            &self.0.file,
+            &self.0.hash,
+            &facts.document.amplitudes()?.hash,
+            extraction,
+            blocks_key(facts.document),
+            revision::FOUND_FAULTS,
+        )))
     }
 
     fn compute(&self, facts: Facts<'_>, progress: &Progress) -> Result<Times, ProjectError> {
@@ -53,6 +62,7 @@ impl Query for TimesOf<'_> {
         memory::check("geologic time and all reflections", &frame.size(), HELD_BYTES)?;
         let candidates = Candidates::load(facts, progress)?;
         let tau = content::read_volume(facts.root, self.0, frame, progress)?;
+        let amplitudes = content::read_volume(facts.root, facts.document.amplitudes()?, frame, progress)?;
         let mut cuts = Cut::of_network(&*facts.get(&FaultBlocks, progress)?, tau.size());
         if cuts.is_empty() {
             cuts = match found_cuts(facts, progress) {
@@ -64,7 +74,7 @@ impl Query for TimesOf<'_> {
             };
         }
         let reflections = Reflections::new(&candidates.forest.surfaces, &cuts);
-        Ok(Times { tau, reflections, cuts })
+        Ok(Times { tau, amplitudes, reflections, cuts })
     }
 
     fn bytes(times: &Times) -> usize {

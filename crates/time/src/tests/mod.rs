@@ -194,3 +194,43 @@ fn a_further_seed_is_obeyed_where_nothing_that_the_first_follows_reflects_beside
         assert!((node.z - seed.z).abs() < 0.2, "{node:?} for {seed:?}");
     }
 }
+
+/// The event of a volume whose upper side lies six samples deeper beyond inline 24, from seeds at the middle crossline.
+fn across(bed: impl Fn(f32) -> f32, seeds: &[Seed]) -> (crate::Event, Vec<crate::Doubt>) {
+    let mut volume = Volume::filled([48, 32, 96], 0.0f32);
+    for (n, sample) in volume.samples_mut().iter_mut().enumerate() {
+        let (x, y, z) = ((n / 96 / 32) as f32, (n / 96 % 32) as f32, (n % 96) as f32);
+        *sample = bed(z - 0.2 * y - if x > 23.5 { 6.0 } else { 0.0 });
+    }
+    let cuts = [Cut::new(Across::Inlines, 32, 96, |_, _| 23.5)];
+    let surfaces = grow_surfaces(&volume, &GrowSettings::default(), &Progress::silent()).unwrap();
+    let tau = time_of(&volume, &cuts).tau;
+    let reflections = Reflections::new(&surfaces, &cuts);
+    let mut event = reflections.event(&tau, seeds, &cuts).unwrap();
+    let doubts = event.examine(&reflections, seeds, &cuts, &volume);
+    (event, doubts)
+}
+
+#[test]
+fn beyond_a_fault_whose_sides_repeat_an_event_is_assumed_until_a_place_there_decides() {
+    // Peaks every ten samples, all alike, and beds of which none repeats.
+    let alike = |t: f32| (t * std::f32::consts::TAU / 10.0).cos();
+    let seed = |x: usize, z: f32| Seed { trace: [x, 16], z };
+    let first = seed(8, 43.2);
+    let (event, doubts) = across(alike, &[first]);
+    assert_eq!(doubts.iter().map(|doubt| doubt.fault).collect::<Vec<_>>(), [Some(0)]);
+    assert!(doubts[0].place.trace[0] > 23 && doubts[0].nodes > 600, "{doubts:?}");
+    for node in &event.nodes {
+        assert_eq!(node.support == Support::Assumed, node.x > 23, "{node:?}");
+    }
+    // A place there, a peak farther down, is obeyed all over that block, and nothing is asked any more.
+    let second = seed(40, 59.2);
+    let (event, doubts) = across(alike, &[first, second]);
+    assert_eq!(doubts, []);
+    let off = |node: &crate::Node| (node.z - 0.2 * f32::from(node.y) - if node.x > 23 { 56.0 } else { 40.0 }).abs();
+    let right = event.nodes.iter().filter(|node| off(node) < 0.5).count();
+    assert!(right as f32 > 0.95 * event.nodes.len() as f32, "{right} of {}", event.nodes.len());
+    // Beds of which none repeats tell it.
+    let (event, doubts) = across(beds, &[first]);
+    assert!(doubts.is_empty() && event.nodes.iter().all(|node| node.support != Support::Assumed), "{doubts:?}");
+}

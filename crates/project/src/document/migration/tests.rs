@@ -49,7 +49,7 @@ fn horizons_say_who_made_them_and_what_was_done_to_them_since() {
     let seeds = "seeds = [[101.0, 501.0, 30.5]]";
     let clicked =
         migrated("horizons", "volumes/time.zarr", "geologic time through inline 101, crossline 501, 30.5", seeds);
-    assert_eq!(origin(&clicked), Origin::ByTime { seeds: vec![[101.0, 501.0, 30.5]] });
+    assert_eq!(origin(&clicked), Origin::ByTime { seeds: vec![[101.0, 501.0, 30.5]], queries: Vec::new() });
     let level = of("horizons", "volumes/time.zarr", "geologic time 23.5");
     assert_eq!(level, Origin::Level { time: 23.5, chosen_by: Chooser::Program });
     let share = of("horizons", "Top to Base", "25.0 % of the thickness from Top to Base to Base");
