@@ -104,19 +104,6 @@ fn jumps(event: &Event, cuts: &[Cut], [nx, ny, _]: [usize; 3]) -> [f64; 2] {
 /// Traces beside a fault that are not looked at for jumps.
 const BESIDE_FAULT: f32 = 1.5;
 
-/// What clicks make: an event, examined.
-fn event(
-    volume: &Volume<f32>,
-    tau: &Volume<f32>,
-    reflections: &Reflections,
-    seeds: &[Seed],
-    cuts: &[Cut],
-) -> Option<Event> {
-    let mut event = reflections.event(tau, seeds, cuts)?;
-    event.examine(reflections, seeds, cuts, volume);
-    Some(event)
-}
-
 /// Prints what clicks find with some faults, of which clicks know some; returns what to dump.
 fn measure(
     volume: &Volume<f32>,
@@ -166,7 +153,8 @@ fn measure(
             for ([found_by, kept], all_kept) in more.iter_mut().zip(&mut all_kept) {
                 let Some(node) = farthest_wrong(nodes, &before) else { break };
                 seeds.push(Seed { trace: nodes[node].trace, z: nodes[node].z });
-                let Some(event) = event(volume, &found.tau, &reflections, &seeds, known) else { break };
+                let Some(mut event) = reflections.event(&found.tau, &seeds, known) else { break };
+                event.examine(&reflections, &seeds, known, volume);
                 let after: Vec<bool> = self::off(&event, nodes).iter().map(|off| off.abs() <= FOUND).collect();
                 let count = |is: &dyn Fn(usize) -> bool| (0..nodes.len()).filter(|&n| is(n)).count() as f64;
                 found_by.push(count(&|n| after[n]) / nodes.len() as f64);
