@@ -66,7 +66,9 @@ fn horizons(project: &Project) -> Report {
     let mut report = Report::default();
     for entry in &document.horizons {
         report.say(format!("{}: {}, {}", entry.name, entry.contact.word(), entry.history()));
-        entry.origin.queries().iter().for_each(|query| report.say(format!("  {query}")));
+        for query in entry.origin.queries() {
+            report.say(format!("  {query}"));
+        }
     }
     if document.horizons.is_empty() {
         report.say("no horizons");
@@ -82,7 +84,9 @@ fn show_horizon(project: &Project, name: &str) -> anyhow::Result<Report> {
     let unit = document.frame()?.vertical.unit.symbol();
     let mut report = Report::default();
     report.say(format!("{name}: {}, {}", entry.contact.word(), entry.history()));
-    entry.origin.queries().iter().for_each(|query| report.say(format!("  {query}")));
+    for query in entry.origin.queries() {
+        report.say(format!("  {query}"));
+    }
     let mut sheets = Vec::new();
     for sheet in &horizon.sheets {
         let known = || sheet.depth.iter().copied().filter(|depth| depth.is_finite());

@@ -222,8 +222,8 @@ mod tests {
         // The second seed lies beyond the first one's patch, on a patch that runs over nearly the whole survey.
         let rows = |x: std::ops::Range<usize>| (x.start * COUNT[1]..x.end * COUNT[1]).collect::<Vec<usize>>();
         let found = levels(&[holding(1.0, 0, rows(0..25)), holding(2.0, 35 * COUNT[1] + 15, rows(6..40))], &[], COUNT);
-        let right = (0..25).flat_map(|x| (0..30).map(move |y| (x, y)));
-        assert!(right.clone().all(|(x, y)| (at(&found, x, y) - 1.0).abs() < 1e-3), "what was right stays");
+        let mut right = (0..25).flat_map(|x| (0..30).map(move |y| (x, y)));
+        assert!(right.all(|(x, y)| (at(&found, x, y) - 1.0).abs() < 1e-3), "what was right stays");
         assert!((at(&found, 35, 15) - 2.0).abs() < 1e-3 && (at(&found, 39, 2) - 2.0).abs() < 1e-3);
         // It does not stay where the second seed lies on it and its patch ends before the first.
         let found = levels(&[holding(1.0, 0, rows(0..40)), holding(2.0, 35 * COUNT[1] + 15, rows(20..40))], &[], COUNT);

@@ -234,3 +234,36 @@ fn beyond_a_fault_whose_sides_repeat_an_event_is_assumed_until_a_place_there_dec
     let (event, doubts) = across(beds, &[first]);
     assert!(doubts.is_empty() && event.nodes.iter().all(|node| node.support != Support::Assumed), "{doubts:?}");
 }
+
+#[test]
+fn a_cycle_that_is_skipped_within_a_block_is_mended_or_asked_about() {
+    // Where a reef or a dimmed reflection lets time slip, the event runs ten samples, about a period, too deep.
+    let strat = |x: f32, y: f32, z: f32| z - 0.3 * x + 0.2 * y;
+    let volume = volume([48, 32, 96], strat);
+    let surfaces = grow_surfaces(&volume, &GrowSettings::default(), &Progress::silent()).unwrap();
+    let reflections = Reflections::new(&surfaces, &[]);
+    let tau = time_of(&volume, &[]).tau;
+    let seed = Seed { trace: [8, 16], z: reflections.nearest([8, 16], 40.0, None, 6.0).unwrap().z };
+    let wanted = strat(8.0, 16.0, seed.z);
+    let off = |node: &crate::Node| (strat(f32::from(node.x), f32::from(node.y), node.z) - wanted).abs();
+    let jumps = |event: &crate::Event| {
+        let pairs = event.nodes.windows(2).filter(|pair| pair[0].x == pair[1].x);
+        pairs.filter(|pair| (pair[0].z - pair[1].z).abs() > 4.0).count()
+    };
+    let slipped = |slips: &dyn Fn(u16, u16) -> bool| {
+        let mut event = reflections.event(&tau, &[seed], &[]).unwrap();
+        event.nodes.iter_mut().filter(|node| slips(node.x, node.y)).for_each(|node| node.z += 10.0);
+        let before = jumps(&event);
+        let doubts = event.examine(&reflections, &[seed], &[], &volume);
+        (before, event, doubts)
+    };
+    // In an island of a few traces.
+    let (before, event, doubts) = slipped(&|x, y| (30..34).contains(&x) && (12..16).contains(&y));
+    assert!(before == 8 && jumps(&event) == 0 && doubts.is_empty(), "{before} {}", jumps(&event));
+    assert!(event.nodes.iter().all(|node| off(node) < 0.5));
+    assert!(event.nodes.len() > 48 * 32 - 8, "{}", event.nodes.len());
+    // In a third of the survey: that is asked about, and only assumed.
+    let (_, event, doubts) = slipped(&|x, _| x >= 32);
+    assert!(matches!(doubts[..], [crate::Doubt { fault: None, .. }]), "{doubts:?}");
+    assert!(event.nodes.iter().all(|node| (node.support == Support::Assumed) == (node.x >= 32)));
+}
