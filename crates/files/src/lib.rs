@@ -48,16 +48,20 @@
 //! | EarthVision, Petrel points and well tops | ✓ | points | | |
 //! | Charisma | ✓ | sticks | | |
 //! | Esri ASCII, Surfer (DSAA, DSBB, DSRB) | ✓ | | | |
-//! | GeoJSON | points | traces with a dip, sticks | | |
+//! | GeoTIFF, GXF, NetCDF (classic), NumPy arrays | ✓ | | | |
+//! | OBJ, STL | ✓ | ✓ | | |
+//! | GeoJSON, shapefile | points | traces with a dip, sticks | | |
 //! | ZMAP+ points, RMS points (CSV/XYZ with 999 separators or attributes), polygons with ids | ✓ | outlines, sticks | | |
 //!
 //! To add a format: one file with a `CODEC`, one variant of [`Format`], one line in `CODECS`.
 
+mod binary;
 mod block_fit;
 mod charisma;
 mod column;
 mod columns;
 mod cps3;
+mod crs;
 mod csv;
 mod describe;
 mod dug;
@@ -68,6 +72,9 @@ mod esri;
 mod export;
 mod fault;
 mod geojson;
+mod geotiff;
+mod grid;
+mod gxf;
 mod horizon;
 mod iesx;
 mod ijxyz;
@@ -77,7 +84,10 @@ mod known;
 mod lattice;
 mod mesh_sticks;
 mod neighbours;
+mod netcdf;
+mod npy;
 mod number;
+mod obj;
 mod opendtect;
 mod options;
 mod outline;
@@ -92,16 +102,20 @@ mod report;
 mod resampling;
 mod scatter;
 pub mod segy;
+mod shapefile;
 mod sheets;
 mod sticks;
+mod stl;
 mod surface_kind;
 mod surfer;
 mod table;
 mod text;
+mod traces;
 mod tsurf;
 mod unit;
 mod vertical;
 pub mod well;
+mod welded_mesh;
 mod write;
 mod zmap;
 mod zmap_points;
@@ -183,6 +197,20 @@ pub enum Format {
     Surfer,
     /// GeoJSON lines and points.
     GeoJson,
+    /// Wavefront OBJ meshes.
+    Obj,
+    /// STL meshes, text and binary.
+    Stl,
+    /// GeoTIFF grids of one band.
+    GeoTiff,
+    /// NumPy arrays.
+    Npy,
+    /// Geosoft's grid exchange format.
+    Gxf,
+    /// Classic NetCDF grids.
+    NetCdf,
+    /// Shapefiles of lines and points.
+    Shapefile,
 }
 
 /// The kind of surface that a file holds, or that is to be read from it.
@@ -261,7 +289,14 @@ const CODECS: &[Codec] = &[
     irap_binary::CODEC,
     petromod::CODEC,
     surfer::CODEC,
+    npy::CODEC,
+    netcdf::CODEC,
+    geotiff::CODEC,
+    shapefile::CODEC,
+    stl::CODEC,
     esri::CODEC,
+    gxf::CODEC,
+    obj::CODEC,
     geojson::CODEC,
     irap::CODEC,
     cps3::CODEC,
