@@ -55,7 +55,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
 fn of_text(source: &SourceFile) -> Result<Vec<RawSurface>, FormatError> {
     let text = source.text();
     let mut surfaces = Vec::new();
-    let (mut name, mut solid) = (None, WeldedMesh::default());
+    let (mut name, mut solid, mut facets) = (None, WeldedMesh::default(), 0);
     let mut corners = Vec::new();
     for line in text::lines(&text) {
         let (keyword, rest) = line.text.split_once(char::is_whitespace).unwrap_or((line.text, ""));
@@ -72,10 +72,10 @@ fn of_text(source: &SourceFile) -> Result<Vec<RawSurface>, FormatError> {
                 }
                 add(&mut solid, &corners);
                 corners.clear();
+                facets += 1;
             }
             "endsolid" => {
-                let shape = RawShape::Mesh(std::mem::take(&mut solid).mesh);
-                surfaces.push(RawSurface::new(name.take(), shape));
+                surfaces.push(finished(name.take(), std::mem::take(&mut solid), std::mem::take(&mut facets)));
             }
             _ => {}
         }
@@ -94,6 +94,14 @@ fn add(solid: &mut WeldedMesh, corners: &[DVec3]) {
     }
 }
 
+/// The surface of a solid that has so many facets in its file.
+fn finished(name: Option<String>, solid: WeldedMesh, facets: usize) -> RawSurface {
+    let missing = facets.saturating_sub(solid.mesh.triangles.len());
+    let fact = "triangles have no area, or a corner that is no number, and were left out";
+    let note = (missing > 0).then(|| format!("{missing} {fact}"));
+    RawSurface { notes: note.into_iter().collect(), ..RawSurface::new(name, RawShape::Mesh(solid.mesh)) }
+}
+
 fn of_bytes(source: &SourceFile) -> Result<RawSurface, FormatError> {
     let mut rest = BinaryCursor::at(source, HEADER, Endian::Little);
     let count = rest.count(Word::U32)?;
@@ -107,9 +115,10 @@ fn of_bytes(source: &SourceFile) -> Result<RawSurface, FormatError> {
         let corners: Vec<DVec3> = numbers.as_chunks::<3>().0.iter().map(|corner| DVec3::from_array(*corner)).collect();
         add(&mut solid, &corners);
     }
-    let largest = solid.mesh.vertices.iter().map(|v| v.truncate().abs().max_element()).fold(0.0, f64::max);
+    let mut surface = finished(None, solid, count);
+    let RawShape::Mesh(mesh) = &surface.shape else { return Ok(surface) };
+    let largest = mesh.vertices.iter().map(|v| v.truncate().abs().max_element()).fold(0.0, f64::max);
     let step = largest * f64::from(f32::EPSILON);
-    let mut surface = RawSurface::new(None, RawShape::Mesh(solid.mesh));
     if step > 0.01 {
         surface.notes.push(format!("its coordinates are floats of 4 bytes, which tell places {step:.2} m apart"));
     }
