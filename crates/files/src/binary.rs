@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn numbers_of_every_type_in_both_orders() {
         let source = SourceFile { path: "a".into(), bytes: vec![0xff, 0xfe, 0x41, 0x20, 0, 0, 7] };
-        for (endian, wanted) in [(Endian::Big, [-2.0, 10.0]), (Endian::Little, [-257.0, 1.1542e-41])] {
+        for (endian, wanted) in [(Endian::Big, [-2.0, 10.0]), (Endian::Little, [-257.0, 1.157_05e-41])] {
             let mut cursor = BinaryCursor::at(&source, 0, endian);
             let found = [cursor.number(Word::I16).unwrap(), cursor.number(Word::F32).unwrap()];
             assert!((found[0] - wanted[0]).abs() < 1e-9 && (found[1] / wanted[1] - 1.0).abs() < 1e-3, "{found:?}");

@@ -77,7 +77,9 @@ mod tests {
         let geographic = "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],\
                           PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]";
         let utm = |unit: &str| {
-            format!("PROJCS[\"UTM 31\",{geographic},PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"Scale_Factor\",0.9996],{unit}]")
+            format!(
+                "PROJCS[\"UTM 31\",{geographic},PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"Scale_Factor\",0.9996],{unit}]"
+            )
         };
         let unit = |text: &str| match Crs::of_wkt(text) {
             Crs::Projected(unit, _) => unit,
@@ -89,7 +91,8 @@ mod tests {
         assert_eq!(unit(&utm("UNIT[\"Foot_US\",0.3048006096012192]")), Some(ZUnit::SurveyFeet));
         assert_eq!(unit(&utm("UNIT[\"Foot\",0.3048]")), Some(ZUnit::Feet));
         assert_eq!(unit(&utm("UNIT[\"furlong\",201.168]")), None);
-        let compound = format!("COMPD_CS[\"UTM + height\",{},VERT_CS[\"h\",UNIT[\"foot\",0.3048]]]", utm("UNIT[\"metre\",1]"));
+        let compound =
+            format!("COMPD_CS[\"UTM + height\",{},VERT_CS[\"h\",UNIT[\"foot\",0.3048]]]", utm("UNIT[\"metre\",1]"));
         assert_eq!(unit(&compound), Some(ZUnit::Metres), "the other is the unit of heights");
         let second = "PROJCRS[\"UTM 31\",BASEGEOGCRS[\"WGS 84\",ANGLEUNIT[\"degree\",0.0174]],CONVERSION[\"UTM\",PARAMETER[\"k\",0.9996,\
                       SCALEUNIT[\"unity\",1]]],CS[Cartesian,2],AXIS[\"(E)\",east],LENGTHUNIT[\"US survey foot\",0.304800609601219]]";

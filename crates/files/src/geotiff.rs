@@ -60,7 +60,8 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     let is_grey = matches!(pixels.colortype().map_err(failed)?, ColorType::Gray(_));
     let from_white = pixels.find_tag_unsigned::<u16>(Tag::PhotometricInterpretation).ok().flatten() == Some(0);
     if !is_grey || from_white {
-        return Err(source.bad_grid("it is a picture, or has several bands: write its one band of heights, gdal_translate -b 1"));
+        return Err(source
+            .bad_grid("it is a picture, or has several bands: write its one band of heights, gdal_translate -b 1"));
     }
     let (width, height) = pixels.dimensions().map_err(failed)?;
     let count = [width as usize, height as usize];
@@ -85,7 +86,9 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     let scan = Scan { first: place.first, along: place.along, across: place.across, count };
     let mut surface = scan.surface(source, words.of("description").map(str::to_owned), values, f64::is_nan)?;
     if scale != 1.0 || offset != 0.0 {
-        surface.notes.push(format!("values were multiplied by the file's scale {scale}, and its offset {offset} was added"));
+        surface
+            .notes
+            .push(format!("values were multiplied by the file's scale {scale}, and its offset {offset} was added"));
     }
     surface.notes.extend(null.map(|null| format!("the file's null is {null}")));
     let unit = |key: u16| match keys.short(key)? {
@@ -100,7 +103,8 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     let stated = words.of("unittype").and_then(|word| Some((ZUnit::parse(word)?, format!("band unit {word}"))));
     surface.vertical.unit = stated.or(unit(VERTICAL_UNIT).map(|unit| (unit, "VerticalUnits".to_owned())));
     if has_mask(&mut pixels) {
-        let fact = "it has a mask of holes, which is not read: write a null instead, gdal_translate -mask none -a_nodata";
+        let fact =
+            "it has a mask of holes, which is not read: write a null instead, gdal_translate -mask none -a_nodata";
         surface.warnings.push(fact.to_owned().into());
     }
     Ok(vec![surface])
@@ -223,7 +227,11 @@ fn values(source: &SourceFile, pixels: &mut Pixels<'_>, [width, height]: [usize;
         let (wide, high) = (across.min(width - x), down.min(height - y));
         let chunk = numbers(pixels.read_chunk(n as u32).map_err(failed)?);
         if chunk.len() != wide * high {
-            return Err(source.length("pixels of a tile of which there are bytes", wide * high, chunk.len().min(*size as usize)));
+            return Err(source.length(
+                "pixels of a tile of which there are bytes",
+                wide * high,
+                chunk.len().min(*size as usize),
+            ));
         }
         for (row, line) in chunk.chunks_exact(wide).enumerate() {
             let at = (y + row) * width + x;

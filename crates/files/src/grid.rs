@@ -159,7 +159,8 @@ mod tests {
     #[test]
     fn a_scan_in_any_direction_has_each_value_at_its_place() {
         let source = SourceFile { path: "a".into(), bytes: Vec::new() };
-        for (along, across) in [(DVec2::X, -DVec2::Y), (-DVec2::Y, DVec2::X), (-DVec2::X, -DVec2::Y), (DVec2::Y, DVec2::X)]
+        for (along, across) in
+            [(DVec2::X, -DVec2::Y), (-DVec2::Y, DVec2::X), (-DVec2::X, -DVec2::Y), (DVec2::Y, DVec2::X)]
         {
             let scan = Scan { first: DVec2::new(5.0, 7.0), along, across, count: [3, 2] };
             let surface = scan.surface(&source, None, (0..6).map(f64::from).collect(), |v| v == 4.0).unwrap();

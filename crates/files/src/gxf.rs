@@ -49,7 +49,9 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     if !header.contains_key("GRID") {
         return Err(source.bad_grid("it has no #GRID"));
     }
-    let words = |key: &str| header.get(key).map(|text| text::fields(text, text.contains(',').then_some(','))).unwrap_or_default();
+    let words = |key: &str| {
+        header.get(key).map(|text| text::fields(text, text.contains(',').then_some(','))).unwrap_or_default()
+    };
     let nth = |key: &str, n: usize| words(key).get(n).and_then(|field| number::of(field.text));
     let number = |key: &str, or: f64| nth(key, 0).unwrap_or(or);
     let need = |key: &str| nth(key, 0).ok_or_else(|| source.bad_grid(format!("it has no number #{key}")));
@@ -58,7 +60,8 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     if !(points >= 1.0 && rows >= 1.0 && points * rows < 4e9) || !(0.0..=MOST_CHARACTERS as f64).contains(&characters) {
         return Err(source.bad_grid(format!("{points} points, {rows} rows, values of {characters} characters")));
     }
-    let (dummy, scale, offset) = (number("DUMMY", USUAL_DUMMY), nth("TRANSFORM", 0).unwrap_or(1.0), nth("TRANSFORM", 1).unwrap_or(0.0));
+    let (dummy, scale, offset) =
+        (number("DUMMY", USUAL_DUMMY), nth("TRANSFORM", 0).unwrap_or(1.0), nth("TRANSFORM", 1).unwrap_or(0.0));
     let count = [points as usize, rows as usize];
     if count[0] * count[1] > NODES_A_BYTE * source.bytes.len() {
         return Err(source.length("bytes at least", count[0] * count[1] / NODES_A_BYTE, source.bytes.len()));
@@ -74,9 +77,11 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     values.iter_mut().for_each(|value| *value = if is_dummy(*value) { f64::NAN } else { *value * scale + offset });
     let sense = number("SENSE", 1.0);
     let scan = scan(sense, count, [number("PTSEPARATION", 1.0), number("RWSEPARATION", 1.0)], number("ROTATION", 0.0));
-    let scan = scan.ok_or_else(|| source.bad_grid(format!("#SENSE {sense}, which is none of 1 to 4 with either sign")))?;
+    let scan =
+        scan.ok_or_else(|| source.bad_grid(format!("#SENSE {sense}, which is none of 1 to 4 with either sign")))?;
     let origin = DVec2::new(number("XORIGIN", 0.0), number("YORIGIN", 0.0));
-    let title = header.get("TITLE").map(|title| title.trim_matches(['"', ' ']).to_owned()).filter(|title| !title.is_empty());
+    let title =
+        header.get("TITLE").map(|title| title.trim_matches(['"', ' ']).to_owned()).filter(|title| !title.is_empty());
     let mut surface = Scan { first: scan.first + origin, ..scan }.surface(source, title, values, f64::is_nan)?;
     if characters == 0.0 {
         surface.notes.push(format!("the file's null is {dummy}"));

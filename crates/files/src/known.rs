@@ -20,7 +20,10 @@ const STARTS: [(&[u8], &str); 24] = [
     (b"Rar!\x1a\x07", "it is a RAR archive: unpack it first"),
     (b"\xd0\xcf\x11\xe0", "it is a file of Microsoft Office, or an old Petrel project: save the sheet as csv"),
     (b"{\\rtf", "it is a document (RTF): save its table as csv"),
-    (b"\x89HDF", "it is HDF5, as NetCDF-4 and RESQML are: write NetCDF classic (nccopy -k classic), or csv, Irap or Esri ASCII"),
+    (
+        b"\x89HDF",
+        "it is HDF5, as NetCDF-4 and RESQML are: write NetCDF classic (nccopy -k classic), or csv, Irap or Esri ASCII",
+    ),
     (b"\x84\x83\x82\x81", "it is OMF 1: export its surfaces as OBJ, DXF or GOCAD TSurf, its points as csv"),
     (b"II\x2a\0\x10\0\0\0CR", "it is a camera's raw picture, which has no heights"),
     (b"\x89PNG", "it is a picture (PNG), which has no heights: export the grid that it shows"),

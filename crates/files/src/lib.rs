@@ -87,6 +87,7 @@ mod mesh_sticks;
 mod neighbours;
 mod netcdf;
 mod npy;
+mod npy_volume;
 mod number;
 mod obj;
 mod opendtect;
@@ -115,8 +116,8 @@ mod traces;
 mod tsurf;
 mod unit;
 mod vertical;
-pub mod well;
 mod welded_mesh;
+pub mod well;
 mod write;
 mod zmap;
 mod zmap_points;
@@ -128,6 +129,7 @@ pub use error::{FormatError, HorizontalExtent};
 pub use export::{ExportOptions, ExportReport, WhenRotated};
 pub use format::{Format, SurfaceKind};
 pub use mesh_sticks::{axis_along, extent_along, planes_along, stick_along_cut, sticks_on_sections, strike};
+pub use npy_volume::NpyVolume;
 pub use options::{HorizonShape, ImportOptions, PlaceBy, ValueOrder};
 pub use report::{Gridding, ImportReport, Provenance, Settled};
 pub use scatter::grid_points;
@@ -204,7 +206,9 @@ fn unknown(path: &Path, bytes: &[u8]) -> FormatError {
 /// assert!(files::known_but_not_read("a.csv".as_ref(), b"x,y,z").is_none());
 /// ```
 pub fn known_but_not_read(path: &Path, start: &[u8]) -> Option<FormatError> {
-    known::by_name(path, start).map(|_| unknown(path, start))
+    // Of GOCAD's objects some are read.
+    let known = known::by_name(path, start).filter(|_| !start.starts_with(b"GOCAD "));
+    known.map(|_| unknown(path, start))
 }
 
 /// The comments at the beginning of a text file, which may state units.

@@ -74,7 +74,8 @@ struct CdfHeader<'a> {
 
 /// The types of numbers by their codes; 2 are characters.
 fn word_of(code: usize) -> Option<Option<Word>> {
-    let words = [Word::I8, Word::I16, Word::I32, Word::F32, Word::F64, Word::U8, Word::U16, Word::U32, Word::I64, Word::U64];
+    let words =
+        [Word::I8, Word::I16, Word::I32, Word::F32, Word::F64, Word::U8, Word::U16, Word::U32, Word::I64, Word::U64];
     match code {
         1 => Some(Some(Word::I8)),
         2 => Some(None),
@@ -137,7 +138,8 @@ impl<'a> HeaderReader<'a> {
     fn attribute(&mut self) -> Result<Attribute, FormatError> {
         let (name, word, count) = (self.name()?, self.word()?, self.count()?);
         let bytes = self.filled(count.saturating_mul(word.map_or(1, Word::bytes)))?;
-        let text = if word.is_none() { String::from_utf8_lossy(bytes).trim_matches('\0').to_owned() } else { String::new() };
+        let text =
+            if word.is_none() { String::from_utf8_lossy(bytes).trim_matches('\0').to_owned() } else { String::new() };
         Ok(Attribute { name, text, numbers: word.map_or_else(Vec::new, |word| word.values(bytes, Endian::Big)) })
     }
 
@@ -345,13 +347,16 @@ fn of_coordinates(
 
 fn surface(header: &CdfHeader<'_>, variable: &Variable, scan: Scan) -> Result<RawSurface, FormatError> {
     let nulls = ["_FillValue", "missing_value"].map(|name| variable.number(name));
-    let [scale, offset] = [("scale_factor", 1.0), ("add_offset", 0.0)].map(|(name, or)| variable.number(name).unwrap_or(or));
+    let [scale, offset] =
+        [("scale_factor", 1.0), ("add_offset", 0.0)].map(|(name, or)| variable.number(name).unwrap_or(or));
     let mut values = header.values(variable)?;
     let is_null = |value: f64| nulls.iter().any(|null| number::is_null(value, *null));
     values.iter_mut().for_each(|value| *value = if is_null(*value) { f64::NAN } else { *value * scale + offset });
     let mut surface = scan.surface(header.source, Some(variable.name.clone()), values, f64::is_nan)?;
     if scale != 1.0 || offset != 0.0 {
-        surface.notes.push(format!("values were multiplied by the file's scale {scale}, and its offset {offset} was added"));
+        surface
+            .notes
+            .push(format!("values were multiplied by the file's scale {scale}, and its offset {offset} was added"));
     }
     surface.notes.extend(nulls.iter().flatten().take(1).map(|null| format!("the file's null is {null}")));
     let title = header.attributes.iter().find(|attribute| attribute.name == "title").map(|title| title.text.trim());

@@ -18,11 +18,8 @@ use glam::DVec2;
 use std::path::Path;
 use survey::horizon::NodeGrid;
 
-pub(super) const CODEC: Codec = Codec {
-    read_horizon: Some(read),
-    read_fault: Some(read),
-    ..Codec::of(Format::Npy, "npy", "npy", detect)
-};
+pub(super) const CODEC: Codec =
+    Codec { read_horizon: Some(read), read_fault: Some(read), ..Codec::of(Format::Npy, "npy", "npy", detect) };
 
 /// The first bytes.
 pub(super) const SIGNATURE: &[u8] = b"\x93NUMPY";
@@ -68,7 +65,10 @@ impl ArrayHeader {
         let missing = |key: &str| bad(format!("its header has no {key}: {}", excerpt(&text)));
         let descr = value("descr").ok_or_else(|| missing("descr"))?;
         let (word, endian) = number_type(descr).ok_or_else(|| {
-            bad(format!("numbers of the kind {}: save it with astype('float32')", excerpt(&descr[..descr.len().min(12)])))
+            bad(format!(
+                "numbers of the kind {}: save it with astype('float32')",
+                excerpt(&descr[..descr.len().min(12)])
+            ))
         })?;
         let shape = value("shape").and_then(|text| text.strip_prefix('(')?.split_once(')')).map(|(inside, _)| inside);
         let sides = shape.ok_or_else(|| missing("shape"))?.split(',').map(str::trim).filter(|side| !side.is_empty());
@@ -148,19 +148,24 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     let Some(geometry) = context.geometry else {
         let grid = NodeGrid { origin: DVec2::ZERO, u_step: DVec2::X, v_step: DVec2::Y, count: sides };
         let mut surface = grid::surface(source, None, grid, (values, NodeOrder::Columns), is_hole)?;
-        surface.notes.push("it has no places: X and Y are counted, and are the survey's inlines and crosslines on import".to_owned());
+        surface.notes.push(
+            "it has no places: X and Y are counted, and are the survey's inlines and crosslines on import".to_owned(),
+        );
         return Ok(vec![surface]);
     };
     let [inlines, crosslines] = [geometry.size()[0], geometry.size()[1]];
     if sides != [inlines, crosslines] {
         let [a, b] = sides;
         let turned = if [b, a] == [inlines, crosslines] { "; transpose it" } else { "" };
-        let why = format!("{a} by {b} values, where the survey has {inlines} inlines by {crosslines} crosslines{turned}");
+        let why =
+            format!("{a} by {b} values, where the survey has {inlines} inlines by {crosslines} crosslines{turned}");
         return Err(source.bad_grid(why));
     }
     let grid = NodeGrid::of_survey(geometry);
     let mut surface = grid::surface(source, None, grid, (values, NodeOrder::Columns), is_hole)?;
-    surface.notes.push("taken as a value for each inline and crossline of the survey, which the file does not state".to_owned());
+    surface
+        .notes
+        .push("taken as a value for each inline and crossline of the survey, which the file does not state".to_owned());
     Ok(vec![surface])
 }
 

@@ -26,9 +26,13 @@ const KEYWORDS: &str = "v vt vn vp f l p o g s mg usemtl mtllib usemap maplib cs
 fn detect(source: &SourceFile) -> Option<String> {
     let start = String::from_utf8_lossy(&source.bytes[..source.bytes.len().min(4000)]).into_owned();
     // The last line may be cut.
-    let whole = if source.bytes.len() > 4000 { start.rsplit_once(['\n', '\r']).map_or("", |(whole, _)| whole) } else { &start };
-    let mut has_place = false;
+    let whole =
+        if source.bytes.len() > 4000 { start.rsplit_once(['\n', '\r']).map_or("", |(whole, _)| whole) } else { &start };
+    let (mut has_place, mut goes_on) = (false, false);
     for line in text::lines(whole).filter(|line| !line.text.starts_with('#')) {
+        if std::mem::replace(&mut goes_on, line.text.ends_with('\\')) {
+            continue;
+        }
         let mut words = line.text.split_whitespace();
         let keyword = words.next().filter(|word| KEYWORDS.split(' ').any(|known| known == *word))?;
         has_place |= keyword == "v" && words.filter_map(number::plain).count() >= 3;
@@ -122,7 +126,8 @@ fn corners(source: &SourceFile, line: Line<'_>, rest: &str, known: usize) -> Res
 
 /// Whether places lie over a survey only when Y and Z are exchanged as Blender does.
 fn is_turned(places: &[DVec3], geometry: &SurveyGeometry) -> bool {
-    let inside = |of: fn(&DVec3) -> DVec2| places.iter().filter(|p| is_inside(voxel_xy(geometry, of(p)), geometry)).count();
+    let inside =
+        |of: fn(&DVec3) -> DVec2| places.iter().filter(|p| is_inside(voxel_xy(geometry, of(p)), geometry)).count();
     inside(|p| p.truncate()) == 0 && inside(|p| DVec2::new(p.x, -p.z)) * 2 > places.len()
 }
 

@@ -93,7 +93,10 @@ impl SourceFile {
 
     /// An error where places are angles; the evidence says why.
     pub(crate) fn degrees(&self, kind: SurfaceKind, evidence: &str) -> FormatError {
-        self.empty(kind, format!("its coordinates are degrees ({evidence}): project them to the survey's coordinate system"))
+        self.empty(
+            kind,
+            format!("its coordinates are degrees ({evidence}): project them to the survey's coordinate system"),
+        )
     }
 }
 

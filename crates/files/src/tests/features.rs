@@ -105,20 +105,32 @@ fn written(shp: &[u8], dbf: Option<&[u8]>, prj: Option<&str>) -> (tempfile::Temp
 
 #[test]
 fn traces_of_a_shapefile_dip_as_its_table_says() {
-    let shapes = [Shape { kind: 3, parts: line(456_500.0) }, Shape { kind: 3, parts: line(457_500.0) }, Shape { kind: 0, parts: vec![] }];
+    let shapes = [
+        Shape { kind: 3, parts: line(456_500.0) },
+        Shape { kind: 3, parts: line(457_500.0) },
+        Shape { kind: 0, parts: vec![] },
+    ];
     for (columns, rows) in [
         (
             vec![("NAME", b'C', 20), ("DIP", b'N', 6), ("DIP_DIR", b'N', 6)],
             vec![["F0", "65", "90"], ["F1", "80.5", "270"], ["nothing", "1", "1"]],
         ),
-        (vec![("Fault", b'C', 8), ("dip", b'F', 12), ("strike", b'F', 12)], vec![["F0", "65.0", "0.0"], ["F1", "80.5", "180"], ["", "", ""]]),
-        (vec![("fault_name", b'C', 8), ("dip", b'C', 8), ("azimuth", b'C', 8)], vec![["F0", "65", "90"], ["F1", "80.5", "270"], ["", "", ""]]),
+        (
+            vec![("Fault", b'C', 8), ("dip", b'F', 12), ("strike", b'F', 12)],
+            vec![["F0", "65.0", "0.0"], ["F1", "80.5", "180"], ["", "", ""]],
+        ),
+        (
+            vec![("fault_name", b'C', 8), ("dip", b'C', 8), ("azimuth", b'C', 8)],
+            vec![["F0", "65", "90"], ["F1", "80.5", "270"], ["", "", ""]],
+        ),
     ] {
         let rows: Vec<&[&str]> = rows.iter().map(|row| &row[..]).collect();
         let (_folder, path) = written(&shp(&shapes), Some(&dbf(&columns, &rows)), Some(UTM));
         let faults = read_fault(&path, &survey_of_cases(), &ImportOptions::default()).unwrap();
         assert_eq!(faults.iter().map(|(fault, _)| fault.name.as_str()).collect::<Vec<_>>(), ["F0", "F1"]);
-        for ((fault, report), (dip, east, x)) in faults.iter().zip([(65.0_f64, 1.0, 456_500.0), (80.5, -1.0, 457_500.0)]) {
+        for ((fault, report), (dip, east, x)) in
+            faults.iter().zip([(65.0_f64, 1.0, 456_500.0), (80.5, -1.0, 457_500.0)])
+        {
             assert_eq!(report.format.value, Format::Shapefile);
             let [top, bottom] = [fault.mesh.vertices[0], fault.mesh.vertices[1]];
             let at = top.lerp(bottom, 1000.0 / (bottom.z - top.z));
@@ -144,11 +156,16 @@ fn sticks_areas_and_points_with_heights_are_read() {
     // Points of two formations: with Z, as a cloud, or with a column of heights.
     let place = |n: usize| (456_100.0 + 700.0 * (n % 4) as f64, 5_999_100.0 + 700.0 * (n / 4) as f64);
     let at = |n: usize, z: f64| [place(n).0, place(n).1, z];
-    let points = |kind: u32| (0..32).map(|n| Shape { kind, parts: vec![vec![at(n % 16, 800.0 + 400.0 * (n / 16) as f64)]] }).collect::<Vec<_>>();
+    let points = |kind: u32| {
+        (0..32)
+            .map(|n| Shape { kind, parts: vec![vec![at(n % 16, 800.0 + 400.0 * (n / 16) as f64)]] })
+            .collect::<Vec<_>>()
+    };
     let names: Vec<&str> = (0..32).map(|n| if n < 16 { "Chalk" } else { "Marl" }).collect();
     let named: Vec<[&str; 1]> = names.iter().map(|name| [*name]).collect();
     let named: Vec<&[&str]> = named.iter().map(|row| &row[..]).collect();
-    let with_heights: Vec<[&str; 2]> = names.iter().map(|name| [*name, if *name == "Chalk" { "-800" } else { "-1200" }]).collect();
+    let with_heights: Vec<[&str; 2]> =
+        names.iter().map(|name| [*name, if *name == "Chalk" { "-800" } else { "-1200" }]).collect();
     let with_heights: Vec<&[&str]> = with_heights.iter().map(|row| &row[..]).collect();
     let cloud = |k: usize| Shape { kind: 18, parts: vec![(0..16).map(|n| at(n, 800.0 + 400.0 * k as f64)).collect()] };
     for (what, shapes, table) in [
@@ -158,8 +175,13 @@ fn sticks_areas_and_points_with_heights_are_read() {
         ("measured", points(21), dbf(&[("formation", b'C', 8), ("Elevation", b'N', 8)], &with_heights)),
     ] {
         let (_folder, path) = written(&shp(&shapes), Some(&table), Some(UTM));
-        let found = read_horizons(&path, &survey_of_cases(), &ImportOptions::default()).unwrap_or_else(|e| panic!("{what}: {e}"));
-        assert_eq!(found.iter().map(|(horizon, _)| horizon.name.as_str()).collect::<Vec<_>>(), ["Chalk", "Marl"], "{what}");
+        let found = read_horizons(&path, &survey_of_cases(), &ImportOptions::default())
+            .unwrap_or_else(|e| panic!("{what}: {e}"));
+        assert_eq!(
+            found.iter().map(|(horizon, _)| horizon.name.as_str()).collect::<Vec<_>>(),
+            ["Chalk", "Marl"],
+            "{what}"
+        );
         assert_eq!((found[0].1.range, found[1].1.range), ([800.0; 2], [1200.0; 2]), "{what}: {}", found[0].1);
     }
     // Measurements of a dip are normals, where a surface of any shape is wanted.
@@ -175,15 +197,21 @@ fn sticks_areas_and_points_with_heights_are_read() {
 #[test]
 fn coordinate_systems_of_a_shapefile_are_followed_or_refused() {
     let shapes = |scale: f64| {
-        let parts = line(456_500.0).into_iter().map(|part| part.into_iter().map(|p| p.map(|v| v / scale)).collect()).collect();
+        let parts =
+            line(456_500.0).into_iter().map(|part| part.into_iter().map(|p| p.map(|v| v / scale)).collect()).collect();
         shp(&[Shape { kind: 3, parts }])
     };
-    let geographic = UTM.split_once("GEOGCS").map(|(_, rest)| format!("GEOGCS{}", rest.split(",PROJECTION").next().unwrap())).unwrap();
+    let geographic = UTM
+        .split_once("GEOGCS")
+        .map(|(_, rest)| format!("GEOGCS{}", rest.split(",PROJECTION").next().unwrap()))
+        .unwrap();
     let (_folder, path) = written(&shapes(1.0), None, Some(&geographic));
     let error = read_fault(&path, &survey_of_cases(), &ImportOptions::default()).unwrap_err().to_string();
     assert!(error.contains("degrees") && error.contains("GCS_WGS_1984"), "{error}");
     let (_folder, path) = written(&shapes(1e5), None, None);
-    assert!(read_fault(&path, &survey_of_cases(), &ImportOptions::default()).unwrap_err().to_string().contains("degrees"));
+    assert!(
+        read_fault(&path, &survey_of_cases(), &ImportOptions::default()).unwrap_err().to_string().contains("degrees")
+    );
     let feet = UTM.replace("UNIT[\"Meter\",1.0]", "UNIT[\"Foot_US\",0.3048006096012192]");
     let (_folder, path) = written(&shapes(1200.0 / 3937.0), None, Some(&feet));
     let (fault, report) = read_fault(&path, &survey_of_cases(), &ImportOptions::default()).unwrap().remove(0);

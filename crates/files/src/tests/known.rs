@@ -55,7 +55,9 @@ fn archives_offices_and_grids_of_other_kinds_are_named_whatever_their_length() {
         ("a.glb", long(b"glTF\x02\0\0\0"), "glTF"),
     ] {
         match refused(name, &content) {
-            FormatError::UnknownFormat { found, is_named: true, .. } => assert!(found.contains(words), "{name}: {found}"),
+            FormatError::UnknownFormat { found, is_named: true, .. } => {
+                assert!(found.contains(words), "{name}: {found}")
+            }
             other => panic!("{name}: {other}"),
         }
     }

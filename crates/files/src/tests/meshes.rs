@@ -37,7 +37,8 @@ fn is_plane(what: &str, content: &[u8], name: &str) -> Vec<(Horizon, ImportRepor
 
 fn refused(name: &str, content: &[u8]) -> String {
     let (_folder, path) = bytes(name, content);
-    let _ = (describe(&path, &ImportOptions::default()), read_fault(&path, &survey_of_cases(), &ImportOptions::default()));
+    let _ =
+        (describe(&path, &ImportOptions::default()), read_fault(&path, &survey_of_cases(), &ImportOptions::default()));
     read_horizons(&path, &survey_of_cases(), &ImportOptions::default()).unwrap_err().to_string()
 }
 
@@ -52,9 +53,16 @@ fn obj_meshes_as_other_programs_write_them_are_horizons_and_faults() {
         ("plain", places() + &faces(plain)),
         (
             "Blender",
-            format!("# Blender 4.2\nmtllib a.mtl\no Chalk\n{}vn 0 0 1\ns 0\nusemtl None\n{}", places(), faces(|n| format!("{}//1", n + 1))),
+            format!(
+                "# Blender 4.2\nmtllib a.mtl\no Chalk\n{}vn 0 0 1\ns 0\nusemtl None\n{}",
+                places(),
+                faces(|n| format!("{}//1", n + 1))
+            ),
         ),
-        ("MeshLab, with colours", places().replace('\n', " 0.5 0.5 0.5\n") + "vt 0 0\nvn 0 0 1\n" + &faces(|n| format!("{}/1/1", n + 1))),
+        (
+            "MeshLab, with colours",
+            places().replace('\n', " 0.5 0.5 0.5\n") + "vt 0 0\nvn 0 0 1\n" + &faces(|n| format!("{}/1/1", n + 1)),
+        ),
         ("Leapfrog", format!("# Leapfrog\r\ng Chalk\r\n{}", (places() + &faces(plain)).replace('\n', "\r\n"))),
         ("counted from the last", places() + &faces(|n| format!("{}", n as i64 - (N * N) as i64))),
         ("faces of four corners", places() + &quads),
@@ -66,18 +74,23 @@ fn obj_meshes_as_other_programs_write_them_are_horizons_and_faults() {
         let fault = read_fault(&path, &survey_of_cases(), &ImportOptions::default()).unwrap().remove(0).0;
         assert_eq!((fault.mesh.vertices.len(), fault.mesh.triangles.len()), (N * N, 2 * (N - 1) * (N - 1)), "{what}");
     }
-    let below: String = (0..N * N).map(|n| place(n / N, n % N)).map(|p| format!("v {} {} {}\n", p.x, p.y, p.z + 100.0)).collect();
+    let below: String =
+        (0..N * N).map(|n| place(n / N, n % N)).map(|p| format!("v {} {} {}\n", p.x, p.y, p.z + 100.0)).collect();
     let second = faces(|n| format!("{}", n + 1 + N * N));
     for keyword in ["o", "g"] {
         let text = format!("{keyword} Top Chalk\n{}{}{keyword} Base Chalk\n{below}{second}", places(), faces(plain));
         let found = is_plane("two", text.as_bytes(), "a.obj");
-        assert_eq!(found.iter().map(|(horizon, _)| horizon.name.as_str()).collect::<Vec<_>>(), ["Top Chalk", "Base Chalk"]);
+        assert_eq!(
+            found.iter().map(|(horizon, _)| horizon.name.as_str()).collect::<Vec<_>>(),
+            ["Top Chalk", "Base Chalk"]
+        );
     }
     // Groups within objects are parts of them.
     let parts = format!("o A\n{}g one\n{}g two\nf 1 12 13\n", places(), faces(plain));
     assert_eq!(is_plane("parts", parts.as_bytes(), "a.obj").len(), 1);
     // Polylines are sticks, places alone are points.
-    let sticks = "o F\nv 456500 5999200 500\nv 456600 5999200 900\nv 456500 6000200 500\nv 456600 6000200 900\nl 1 2\nl 3 4\n";
+    let sticks =
+        "o F\nv 456500 5999200 500\nv 456600 5999200 900\nv 456500 6000200 500\nv 456600 6000200 900\nl 1 2\nl 3 4\n";
     let (_folder, path) = file("a.obj", sticks);
     assert_eq!(read_fault(&path, &survey_of_cases(), &ImportOptions::default()).unwrap()[0].0.mesh.triangles.len(), 2);
     let (_folder, path) = file("a.obj", &places());
@@ -100,7 +113,8 @@ fn obj_files_that_are_broken_or_turned_are_refused_with_the_sentence_that_helps(
         assert!(error.contains(words), "{words}: {error}");
     }
     // Blender exports Y up unless it is told otherwise.
-    let turned: String = (0..N * N).map(|n| place(n / N, n % N)).map(|p| format!("v {} {} {}\n", p.x, p.z, -p.y)).collect();
+    let turned: String =
+        (0..N * N).map(|n| place(n / N, n % N)).map(|p| format!("v {} {} {}\n", p.x, p.z, -p.y)).collect();
     let error = refused("a.obj", (turned + &faces(|n| format!("{}", n + 1))).as_bytes());
     assert!(error.contains("Up Axis Z"), "{error}");
     // A corner without a height costs its triangles.
@@ -162,8 +176,14 @@ fn stl_files_that_are_broken_are_refused() {
     let binary = binary_stl("x");
     assert!(refused("a.stl", &binary[..binary.len() - 60]).contains("triangles: expected 200, found 198"));
     assert!(refused("a.stl", &text.as_bytes()[..text.len() - 300]).contains("cut off"));
-    assert!(refused("a.stl", b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n").contains("line 4: expected vertex x y z"));
-    assert!(refused("a.stl", b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\nendloop\n").contains("three vertices"));
+    assert!(
+        refused("a.stl", b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2\n")
+            .contains("line 4: expected vertex x y z")
+    );
+    assert!(
+        refused("a.stl", b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\nendloop\n")
+            .contains("three vertices")
+    );
     assert!(refused("a.stl", b"solid a\nfacet\nendsolid\n").contains("no triangle"));
     let mut lying = binary.clone();
     lying[80..84].copy_from_slice(&u32::MAX.to_le_bytes());

@@ -163,7 +163,8 @@ fn netcdf_grids_as_gmt_gdal_and_xarray_write_them_are_the_plane_of_the_cases() {
     assert_eq!(is_plane("GDAL", &file_of(1, &SIDES, &[projection, x(), y(), band]), &plain, 0).name, "a");
     let mut holed = from_south();
     holed[5] = -9999.0;
-    let fill = grid(FLOAT, holed.clone()).number("_FillValue", FLOAT, -9999.0).text("units", "m").text("positive", "down");
+    let fill =
+        grid(FLOAT, holed.clone()).number("_FillValue", FLOAT, -9999.0).text("units", "m").text("positive", "down");
     let report = is_plane("fill", &file_of(1, &SIDES, &[x(), y(), fill]), &plain, 1);
     assert!(report.assumptions.is_empty(), "{report}");
     let missing = grid(SHORT, holed).number("missing_value", SHORT, -9999.0);
@@ -185,8 +186,11 @@ fn netcdf_grids_as_gmt_gdal_and_xarray_write_them_are_the_plane_of_the_cases() {
     let content = file_of(2, &axes, &own);
     is_plane("xarray", &content, &ImportOptions { select: Some("top_chalk".into()), ..ImportOptions::default() }, 0);
     let (_folder, path) = bytes("a.nc", &content);
-    let names: Vec<String> =
-        read_horizons(&path, &survey_of_cases(), &plain).unwrap().into_iter().map(|(horizon, _)| horizon.name).collect();
+    let names: Vec<String> = read_horizons(&path, &survey_of_cases(), &plain)
+        .unwrap()
+        .into_iter()
+        .map(|(horizon, _)| horizon.name)
+        .collect();
     assert_eq!(names, ["top_chalk", "base_chalk"]);
     // Rows that are records, alone and beside another variable of records.
     let records = [("y", 0), ("x", N as u64)];
@@ -221,8 +225,12 @@ fn grids_of_the_old_gmt_are_read_with_nodes_and_with_pixels() {
 #[test]
 fn netcdf_files_that_are_no_grid_are_refused_and_never_panic() {
     let grid = || Variable::of("z", &[0, 1], FLOAT, from_south());
-    let lon = || Variable { name: "lon", ..Variable::of("lon", &[1], DOUBLE, (0..N).map(|i| 3.0 + i as f64 / 1000.0).collect()) };
-    let lat = Variable::of("lat", &[0], DOUBLE, (0..N).map(|i| 54.0 + i as f64 / 1000.0).collect()).text("units", "degrees_north");
+    let lon = || Variable {
+        name: "lon",
+        ..Variable::of("lon", &[1], DOUBLE, (0..N).map(|i| 3.0 + i as f64 / 1000.0).collect())
+    };
+    let lat = Variable::of("lat", &[0], DOUBLE, (0..N).map(|i| 54.0 + i as f64 / 1000.0).collect())
+        .text("units", "degrees_north");
     let degrees = file_of(1, &[("lat", N as u64), ("lon", N as u64)], &[lon(), lat, grid()]);
     assert!(refused(&degrees).contains("degrees"));
     let uneven = Variable::of("x", &[1], DOUBLE, (0..N).map(|i| 456_000.0 + (i * i) as f64).collect());

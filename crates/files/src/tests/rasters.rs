@@ -79,7 +79,11 @@ impl Layout {
     fn file(self, mut tags: Vec<(u16, Tag)>, chunks: &[Vec<u8>], is_tiled: bool) -> Vec<u8> {
         let word = if self.is_64 { 8 } else { 4 };
         let mut out = if self.big_endian { b"MM".to_vec() } else { b"II".to_vec() };
-        out.extend(if self.is_64 { [self.put(43, 2), self.put(8, 2), self.put(0, 2)].concat() } else { self.put(42, 2) });
+        out.extend(if self.is_64 {
+            [self.put(43, 2), self.put(8, 2), self.put(0, 2)].concat()
+        } else {
+            self.put(42, 2)
+        });
         let directory_at = out.len();
         out.extend(self.put(0, word));
         let mut starts = Vec::new();
@@ -157,7 +161,9 @@ fn lzw(data: &[u8]) -> Vec<u8> {
     let codes = data.chunks(250).flat_map(|part| std::iter::once(256_u16).chain(part.iter().map(|b| u16::from(*b))));
     let bits: Vec<bool> =
         codes.chain([257]).flat_map(|code| (0..9).rev().map(move |bit| code >> bit & 1 == 1)).collect();
-    bits.chunks(8).map(|byte| byte.iter().enumerate().fold(0, |sum, (n, bit)| sum | u8::from(*bit) << (7 - n))).collect()
+    bits.chunks(8)
+        .map(|byte| byte.iter().enumerate().fold(0, |sum, (n, bit)| sum | u8::from(*bit) << (7 - n)))
+        .collect()
 }
 
 #[test]
@@ -176,7 +182,13 @@ fn geotiffs_as_gdal_qgis_and_arcgis_write_them_are_the_plane_of_the_cases() {
     let matrix = [
         (33550, Tag::Double(vec![])),
         (33922, Tag::Double(vec![])),
-        (34264, Tag::Double([[100.0, 0.0, 0.0, 455_950.0], [0.0, -100.0, 0.0, 6_002_050.0], [0.0; 4], [0.0, 0.0, 0.0, 1.0]].concat())),
+        (
+            34264,
+            Tag::Double(
+                [[100.0, 0.0, 0.0, 455_950.0], [0.0, -100.0, 0.0, 6_002_050.0], [0.0; 4], [0.0, 0.0, 0.0, 1.0]]
+                    .concat(),
+            ),
+        ),
     ];
     // The tie point may be that of another pixel.
     let middle = [(33922, Tag::Double(vec![10.0, 20.0, 0.0, 456_950.0, 6_000_050.0, 0.0]))];
@@ -202,7 +214,12 @@ fn geotiffs_as_gdal_qgis_and_arcgis_write_them_are_the_plane_of_the_cases() {
     // Rows from the south, in strips of ten.
     let south = [
         (278, Tag::Short(vec![10])),
-        (34264, Tag::Double([[100.0, 0.0, 0.0, 455_950.0], [0.0, 100.0, 0.0, 5_998_950.0], [0.0; 4], [0.0, 0.0, 0.0, 1.0]].concat())),
+        (
+            34264,
+            Tag::Double(
+                [[100.0, 0.0, 0.0, 455_950.0], [0.0, 100.0, 0.0, 5_998_950.0], [0.0; 4], [0.0, 0.0, 0.0, 1.0]].concat(),
+            ),
+        ),
     ];
     let strips: Vec<Vec<u8>> = floats(&from_south()).chunks(10 * N * 4).map(<[u8]>::to_vec).collect();
     is_plane("south.tif", &LITTLE.file(with(tags(32, 3, 1), &south), &strips, false), Format::GeoTiff, 0, 0.01);
@@ -228,7 +245,9 @@ fn tiles_holes_and_what_gdal_says_of_a_band_are_read() {
         values[40] = null;
         floats(&values)
     };
-    for (text, null) in [("-9999", -9999.0), ("nan", f64::NAN), ("-3.4028234663852886e+38 ", f64::from(f32::MIN)), ("0", 0.0)] {
+    for (text, null) in
+        [("-9999", -9999.0), ("nan", f64::NAN), ("-3.4028234663852886e+38 ", f64::from(f32::MIN)), ("0", 0.0)]
+    {
         let told = with(tags(32, 3, 1), &[(42113, Tag::Text(text))]);
         is_plane("null.tif", &LITTLE.file(told, &[holed(null)], false), Format::GeoTiff, 1, 0.01);
     }
@@ -257,7 +276,13 @@ fn tiles_holes_and_what_gdal_says_of_a_band_are_read() {
             (34735, Tag::Short([&[1, 1, 0, 2, 1024, 0, 1, 1][..], &keys].concat())),
             (34736, Tag::Double(vec![foot])),
         ];
-        let report = is_plane("feet.tif", &LITTLE.file(with(tags(32, 3, 1), &feet), &[floats(&from_north())], false), Format::GeoTiff, 0, 0.01);
+        let report = is_plane(
+            "feet.tif",
+            &LITTLE.file(with(tags(32, 3, 1), &feet), &[floats(&from_north())], false),
+            Format::GeoTiff,
+            0,
+            0.01,
+        );
         assert!(report.notes.iter().any(|note| note.contains("X and Y are in usft")), "{report}");
     }
 }
@@ -266,9 +291,14 @@ fn tiles_holes_and_what_gdal_says_of_a_band_are_read() {
 fn geotiffs_that_are_no_grid_of_heights_are_refused_with_the_sentence_that_helps() {
     let f4 = floats(&from_north());
     let degrees = [(34735, Tag::Short(vec![1, 1, 0, 1, 1024, 0, 1, 2]))];
-    let rgb = [(258, Tag::Short(vec![8; 3])), (262, Tag::Short(vec![2])), (277, Tag::Short(vec![3])), (339, Tag::Short(vec![1; 3]))];
+    let rgb = [
+        (258, Tag::Short(vec![8; 3])),
+        (262, Tag::Short(vec![2])),
+        (277, Tag::Short(vec![3])),
+        (339, Tag::Short(vec![1; 3])),
+    ];
     let nowhere = [(33550, Tag::Double(vec![])), (33922, Tag::Double(vec![]))];
-    let huge = [(256, Tag::Long(vec![4_000_000_000])), (257, Tag::Long(vec![4_000_000_000]))];
+    let huge = [(256, Tag::Long(vec![4_000_000_000]))];
     let wide = [(322, Tag::Long(vec![0x7fff_fff0])), (323, Tag::Long(vec![0x7fff_fff0]))];
     for (others, words) in [
         (&degrees[..], "degrees"),
@@ -280,7 +310,8 @@ fn geotiffs_that_are_no_grid_of_heights_are_refused_with_the_sentence_that_helps
         (&wide, ""),
         (&[(278, Tag::Short(vec![1]))], "tiles or strips: expected 31, found 1"),
     ] {
-        let error = refused("a.tif", &LITTLE.file(with(tags(32, 3, 1), others), std::slice::from_ref(&f4), words.is_empty()));
+        let error =
+            refused("a.tif", &LITTLE.file(with(tags(32, 3, 1), others), std::slice::from_ref(&f4), words.is_empty()));
         assert!(error.contains(words), "{words}: {error}");
     }
     let whole = LITTLE.file(tags(32, 3, 8), &[stored(&f4)], false);
@@ -333,7 +364,10 @@ fn arrays_of_numpy_are_horizons_over_the_survey_or_points() {
     is_plane("points.npy", &npy(1, &head("<f8", "False", "(961, 3)"), &points), Format::Npy, 0, 0.01);
 
     for (content, words) in [
-        (npy(1, &head("<f8", "False", "(31, 30)"), &f8[..31 * 30 * 8]), "31 by 30 values, where the survey has 31 inlines"),
+        (
+            npy(1, &head("<f8", "False", "(31, 30)"), &f8[..31 * 30 * 8]),
+            "31 by 30 values, where the survey has 31 inlines",
+        ),
         (npy(1, &head("<f8", "False", "(31, 31, 2)"), &[&f8[..], &f8].concat()), "which is a volume"),
         (npy(1, &head("<f8", "False", "(31, 31)"), &f8[..100]), "expected 7688, found 100"),
         (npy(1, &head("<f8", "False", "(99999999999, 99999999999)"), &f8), "a shape of"),
@@ -348,7 +382,8 @@ fn arrays_of_numpy_are_horizons_over_the_survey_or_points() {
         let error = refused("a.npy", &content);
         assert!(error.contains(words), "{words}: {error}");
     }
-    let narrow = SurveyGeometry { crosslines: survey::geometry::LineAxis { first: 1, step: 1, count: 20 }, ..survey_of_cases() };
+    let narrow =
+        SurveyGeometry { crosslines: survey::geometry::LineAxis { first: 1, step: 1, count: 20 }, ..survey_of_cases() };
     let (_folder, path) = bytes("a.npy", &npy(1, &head("<f8", "False", "(20, 31)"), &f8[..20 * 31 * 8]));
     let error = read_horizons(&path, &narrow, &ImportOptions::default()).unwrap_err().to_string();
     assert!(error.contains("transpose it"), "{error}");
@@ -365,7 +400,8 @@ fn gxf_grids_of_every_sense_and_packing_are_the_plane_of_the_cases() {
         )
     };
     let text = |at: &dyn Fn(usize, usize) -> (usize, usize)| {
-        let row = |r: usize| (0..N).map(|p| at(p, r)).map(|(i, j)| format!("{:.2} ", z(i, j))).collect::<String>() + "\n";
+        let row =
+            |r: usize| (0..N).map(|p| at(p, r)).map(|(i, j)| format!("{:.2} ", z(i, j))).collect::<String>() + "\n";
         (0..N).map(row).collect::<String>()
     };
     let m = N - 1;
@@ -384,9 +420,24 @@ fn gxf_grids_of_every_sense_and_packing_are_the_plane_of_the_cases() {
         assert_eq!(report.name, "A, B", "{sense}");
     }
     let plain = text(&|p, r| (p, r));
-    is_plane("a.gxf", (head("#DUMMY\n-1e12\n") + &plain.replacen("1000.00", "-1e12", 1)).as_bytes(), Format::Gxf, 1, 0.01);
-    is_plane("a.gxf", (head("#DUMMY\n*\n") + &plain.replacen("1000.00", "*", 1)).replace('\n', "\r\n").as_bytes(), Format::Gxf, 1, 0.01);
-    let doubled = plain.split_whitespace().map(|v| format!("{}\n", (v.parse::<f64>().unwrap() - 500.0) * 2.0)).collect::<String>();
+    is_plane(
+        "a.gxf",
+        (head("#DUMMY\n-1e12\n") + &plain.replacen("1000.00", "-1e12", 1)).as_bytes(),
+        Format::Gxf,
+        1,
+        0.01,
+    );
+    is_plane(
+        "a.gxf",
+        (head("#DUMMY\n*\n") + &plain.replacen("1000.00", "*", 1)).replace('\n', "\r\n").as_bytes(),
+        Format::Gxf,
+        1,
+        0.01,
+    );
+    let doubled = plain
+        .split_whitespace()
+        .map(|v| format!("{}\n", (v.parse::<f64>().unwrap() - 500.0) * 2.0))
+        .collect::<String>();
     is_plane("a.gxf", (head("#TRANSFORM\n0.5, 500\n") + &doubled).as_bytes(), Format::Gxf, 0, 0.01);
 
     // Three characters of base 90: hundredths of a metre up to 7290.

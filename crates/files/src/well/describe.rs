@@ -93,7 +93,10 @@ pub fn describe(file: &Path, text: &str) -> Result<Option<WellFileDescription>, 
             let unit = if i.unit.is_empty() { String::new() } else { format!(" {}", i.unit) };
             format!("{}: {}{unit}", i.mnemonic, i.value)
         }));
-        facts.extend(las_tops::table_of(text).map(|tops| format!("tops: {}", tops.lines().filter(|l| !l.is_empty()).count() - 1)));
+        facts.extend(
+            las_tops::table_of(text)
+                .map(|tops| format!("tops: {}", tops.lines().filter(|l| !l.is_empty()).count() - 1)),
+        );
         let columns = las.curves.iter().zip(&las.data);
         return Ok(Some(WellFileDescription {
             file: file.to_owned(),

@@ -13,10 +13,15 @@ const NAMES: [&str; 8] = ["TOPN", "TOPNAME", "NAME", "SURFACE", "FORMATION", "FO
 /// What is the depth of a top.
 const DEPTHS: [&str; 6] = ["TOPT", "TOPD", "TOPDEP", "TOPDEPTH", "TOPMD", "TOP"];
 
+/// Whether a text begins with a section.
+pub(super) fn is_las(text: &str) -> bool {
+    text::lines(text).find(|line| !line.text.starts_with('#')).is_some_and(|line| line.text.starts_with('~'))
+}
+
 /// The file as a table: the columns of its tops on the line of the title of their data, the rows where they are, and all
 /// other lines empty, so that lines keep their numbers. `None` if it has no tops.
 pub(super) fn table_of(las: &str) -> Option<String> {
-    if !las.trim_start_matches(['\u{feff}', ' ', '\n', '\r', '\t']).starts_with('~') {
+    if !is_las(las) {
         return None;
     }
     let mut table = String::new();
@@ -106,7 +111,9 @@ fn header_of(items: &[LasItem], reference: &str, unit: &str) -> Option<String> {
     let kind = match named {
         WellColumn::Tvdss => "tvdss",
         WellColumn::Tvd => "tvd",
-        _ if ["subsea", "sub-sea", "sub sea", "tvdss", "msl", "sea level"].iter().any(|w| reference.contains(w)) => "tvdss",
+        _ if ["subsea", "sub-sea", "sub sea", "tvdss", "msl", "sea level"].iter().any(|w| reference.contains(w)) => {
+            "tvdss"
+        }
         _ if reference.contains("tvd") || reference.contains("vertical") => "tvd",
         _ => "md",
     };

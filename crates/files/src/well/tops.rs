@@ -37,6 +37,12 @@ pub fn parse_tops(
     report: &mut WellReport,
 ) -> Result<Vec<TopRow>, WellFileError> {
     let of_las = las_tops::table_of(text);
+    if of_las.is_none() && las_tops::is_las(text) {
+        return Err(WellFileError::Empty {
+            file: file.to_owned(),
+            what: "tops (sections ~Tops_Definition and ~Tops_Data)",
+        });
+    }
     let mut table = Table::parse(file, of_las.as_deref().unwrap_or(text));
     if table.rows.is_empty() {
         return Err(WellFileError::Empty { file: file.to_owned(), what: "tops" });
