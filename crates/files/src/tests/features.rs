@@ -103,6 +103,12 @@ fn written(shp: &[u8], dbf: Option<&[u8]>, prj: Option<&str>) -> (tempfile::Temp
     (folder, path)
 }
 
+/// Two sticks of a fault.
+pub(super) fn small_shapefile() -> Vec<u8> {
+    let stick = |y: f64| vec![[0.0, y, 40.0], [500.0, y, 80.0]];
+    shp(&[Shape { kind: 13, parts: vec![stick(0.0), stick(100.0)] }])
+}
+
 #[test]
 fn traces_of_a_shapefile_dip_as_its_table_says() {
     let shapes = [

@@ -145,6 +145,19 @@ fn refused(content: &[u8]) -> String {
     read_horizons(&path, &survey_of_cases(), &ImportOptions::default()).unwrap_err().to_string()
 }
 
+/// A grid of 2 by 3 nodes near the origin.
+pub(super) fn small_grid() -> Vec<u8> {
+    let axis = |name, dimension: u32, count: usize| {
+        Variable::of(name, &[dimension], DOUBLE, (0..count).map(|n| 25.0 * n as f64).collect())
+    };
+    let z = Variable::of("z", &[0, 1], FLOAT, (0..6).map(|n| 40.0 + f64::from(n)).collect()).number(
+        "_FillValue",
+        FLOAT,
+        45.0,
+    );
+    file_of(1, &[("y", 2), ("x", 3)], &[axis("x", 1, 3), axis("y", 0, 2), z])
+}
+
 #[test]
 fn netcdf_grids_as_gmt_gdal_and_xarray_write_them_are_the_plane_of_the_cases() {
     let plain = ImportOptions::default();

@@ -166,6 +166,20 @@ fn lzw(data: &[u8]) -> Vec<u8> {
         .collect()
 }
 
+/// A strip of deflate over the first traces of a survey.
+pub(super) fn small_geotiff() -> Vec<u8> {
+    let place = [
+        (256, Tag::Short(vec![3])),
+        (257, Tag::Short(vec![2])),
+        (278, Tag::Short(vec![2])),
+        (33550, Tag::Double(vec![25.0, 25.0, 0.0])),
+        (33922, Tag::Double(vec![0.0, 0.0, 0.0, 0.0, 50.0, 0.0])),
+        (42113, Tag::Text("-9999")),
+    ];
+    let pixels = stored(&floats(&[40.0, 41.0, 42.0, 43.0, -9999.0, 45.0]));
+    LITTLE.file(with(tags(32, 3, 8), &place), &[pixels], false)
+}
+
 #[test]
 fn geotiffs_as_gdal_qgis_and_arcgis_write_them_are_the_plane_of_the_cases() {
     let values = from_north();
