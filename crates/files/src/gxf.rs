@@ -57,7 +57,8 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     let need = |key: &str| nth(key, 0).ok_or_else(|| source.bad_grid(format!("it has no number #{key}")));
     let (points, rows) = (need("POINTS")?, need("ROWS")?);
     let characters = number("GTYPE", 0.0);
-    if !(points >= 1.0 && rows >= 1.0 && points * rows < 4e9) || !(0.0..=MOST_CHARACTERS as f64).contains(&characters) {
+    let is_usable = points >= 1.0 && rows >= 1.0 && points * rows < 4e9;
+    if !is_usable || !(0.0..=MOST_CHARACTERS as f64).contains(&characters) {
         return Err(source.bad_grid(format!("{points} points, {rows} rows, values of {characters} characters")));
     }
     let (dummy, scale, offset) =

@@ -235,7 +235,8 @@ mod tests {
 
     #[test]
     fn blocks_of_both_orders_and_many_types_have_each_sample_at_its_place() {
-        let kinds: [(&str, &dyn Fn(f64) -> Vec<u8>); 5] = [
+        type Encode<'a> = &'a dyn Fn(f64) -> Vec<u8>;
+        let kinds: [(&str, Encode<'_>); 5] = [
             ("<f4", &|v| (v as f32).to_le_bytes().to_vec()),
             (">f8", &|v| v.to_be_bytes().to_vec()),
             ("<i2", &|v| (v as i16).to_le_bytes().to_vec()),

@@ -56,7 +56,7 @@ fn archives_offices_and_grids_of_other_kinds_are_named_whatever_their_length() {
     ] {
         match refused(name, &content) {
             FormatError::UnknownFormat { found, is_named: true, .. } => {
-                assert!(found.contains(words), "{name}: {found}")
+                assert!(found.contains(words), "{name}: {found}");
             }
             other => panic!("{name}: {other}"),
         }

@@ -92,9 +92,9 @@ fn binary_files() -> Vec<(&'static str, Vec<u8>)> {
     vec![
         ("stl", stl),
         ("npy", npy),
-        ("geotiff", super::rasters::small_geotiff()),
-        ("netcdf", super::netcdf::small_grid()),
-        ("shapefile", super::features::small_shapefile()),
+        ("geotiff", rasters::small_geotiff()),
+        ("netcdf", netcdf::small_grid()),
+        ("shapefile", features::small_shapefile()),
     ]
 }
 

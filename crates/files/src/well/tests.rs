@@ -300,9 +300,7 @@ fn tops_of_las_3_are_read_under_many_names_and_units() {
         (
             "in feet by their own unit",
             las_with(
-                &format!(
-                    "~TOPS_DEFINITION\nTOPT.FT : Top {{F}}\nTOPN. : Name {{S}}\n~TOPS_DATA | TOPS_DEFINITION\n1000 \"Top A\"\n2000 B\n"
-                ),
+                "~TOPS_DEFINITION\nTOPT.FT : Top {F}\nTOPN. : Name {S}\n~TOPS_DATA | TOPS_DEFINITION\n1000 \"Top A\"\n2000 B\n",
                 "SPACE",
                 "M",
             ),
@@ -342,9 +340,7 @@ fn tops_of_las_3_are_read_under_many_names_and_units() {
         (
             "many columns",
             las_with(
-                &format!(
-                    "~Tops_Definition[1]\nKID. : {{S}}\nID. : {{S}}\nTOPT.F : {{F}}\nTOPB.F : {{F}}\nRANK. : {{S}}\nTOPN. : {{S}}\nFORM. : {{S}}\n~Tops_Data[1] | Tops_Definition[1]\n# KID ID\n\"-999.25\",\"11\",4338.0,0.0,\"FORMATION\",\"Topeka\",\"Topeka Limestone\"\n\"-999.25\",\"12\",4454.0,0.0,\"GROUP\",\"Oread\",\"\"\n"
-                ),
+                "~Tops_Definition[1]\nKID. : {S}\nID. : {S}\nTOPT.F : {F}\nTOPB.F : {F}\nRANK. : {S}\nTOPN. : {S}\nFORM. : {S}\n~Tops_Data[1] | Tops_Definition[1]\n# KID ID\n\"-999.25\",\"11\",4338.0,0.0,\"FORMATION\",\"Topeka\",\"Topeka Limestone\"\n\"-999.25\",\"12\",4454.0,0.0,\"GROUP\",\"Oread\",\"\"\n",
                 "COMMA",
                 "F",
             ),
