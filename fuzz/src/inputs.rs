@@ -47,14 +47,92 @@ pub const WELL_FILES: &[(&str, &str)] = &[
     ),
     ("checkshot", "MD(m),OWT(s)\n25,0\n1000,0.41\n"),
     (
+        "tops",
+        "~Version\nVERS. 3.0 :\nDLM. COMMA :\n~Well\nSTRT.FT 1 :\n~Tops_Parameter\nTOPDR. Subsea :\n~Tops_Definition\nTOPN. : {S}\
+         \nTOPT.M : {F}\n~Tops_Data | Tops_Definition\n\"Top, A\",700\nB,900\n",
+    ),
+    (
         "las",
         "~Version\nVERS. 2.0 :\nWRAP. NO :\n~Well\nSTRT.M 100 :\nSTOP.M 101 :\nSTEP.M 0.5 :\nNULL. -999.25 :\
          \nWELL. A-1 :\n~Curve\nDEPT.M :\nGR.API : gamma\n~Ascii\n100 45.5\n100.5 -999.25\n101 47\n",
     ),
 ];
 
+/// Format and content of files that are not text: STL, a NumPy array, a TIFF, NetCDF, a shapefile.
+pub fn binary_files() -> Vec<(&'static str, Vec<u8>)> {
+    let doubles = |values: &[f64]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
+    let floats = |values: &[f32]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
+    let mut stl = vec![b' '; 80];
+    stl.extend(1_u32.to_le_bytes());
+    stl.extend(floats(&[0.0, 0.0, 1.0, 0.0, 0.0, 40.0, 50.0, 0.0, 44.0, 0.0, 50.0, 48.0]));
+    stl.extend([0, 0]);
+
+    let head = "{'descr': '<f4', 'fortran_order': False, 'shape': (12, 9), }\n";
+    let mut npy = b"\x93NUMPY\x01\0".to_vec();
+    npy.extend((head.len() as u16).to_le_bytes());
+    npy.extend(head.as_bytes());
+    npy.extend(floats(&[44.0; 12 * 9]));
+
+    // 3 by 2 pixels after the header, then the values of three tags, then the directory.
+    let mut tiff =
+        [b"II*\0".to_vec(), 104_u32.to_le_bytes().to_vec(), floats(&[40.0, 41.0, 42.0, 43.0, 44.0, 45.0])].concat();
+    tiff.extend(doubles(&[25.0, 25.0, 0.0, 0.0, 0.0, 0.0]));
+    tiff.extend([1_u16, 1, 0, 2, 1024, 0, 1, 1, 1025, 0, 1, 2].iter().flat_map(|v| v.to_le_bytes()));
+    let entries: [(u16, u16, u32, u32); 11] = [
+        (256, 3, 1, 3),
+        (257, 3, 1, 2),
+        (258, 3, 1, 32),
+        (259, 3, 1, 1),
+        (262, 3, 1, 1),
+        (273, 4, 1, 8),
+        (279, 4, 1, 24),
+        (339, 3, 1, 3),
+        (33550, 12, 3, 32),
+        (33922, 12, 6, 32),
+        (34735, 3, 12, 80),
+    ];
+    tiff.extend((entries.len() as u16).to_le_bytes());
+    for (tag, kind, count, value) in entries {
+        tiff.extend([&tag.to_le_bytes()[..], &kind.to_le_bytes(), &count.to_le_bytes(), &value.to_le_bytes()].concat());
+    }
+    tiff.extend([0; 4]);
+
+    let big = |values: &[u32]| values.iter().flat_map(|v| v.to_be_bytes()).collect::<Vec<u8>>();
+    let variable = |name: u8, axes: &[u32], begin: u32| {
+        [big(&[1]), vec![name, 0, 0, 0], big(&[axes.len() as u32]), big(axes), big(&[0, 0, 6, 16, begin])].concat()
+    };
+    let dimension = |name: u8| [big(&[1]), vec![name, 0, 0, 0], big(&[2])].concat();
+    let begin = 180;
+    let mut netcdf =
+        [b"CDF\x01".to_vec(), big(&[0, 10, 2]), dimension(b'y'), dimension(b'x'), big(&[0, 0, 11, 3])].concat();
+    netcdf.extend(variable(b'x', &[1], begin));
+    netcdf.extend(variable(b'y', &[0], begin + 16));
+    netcdf.extend(variable(b'z', &[0, 1], begin + 32));
+    netcdf.resize(begin as usize, 0);
+    netcdf.extend([0.0, 25.0, 0.0, 25.0, 40.0, 41.0, 42.0, 43.0_f64].iter().flat_map(|v| v.to_be_bytes()));
+
+    let mut shapefile = big(&[9994]);
+    shapefile.resize(100, 0);
+    shapefile.extend(big(&[1, 44]));
+    shapefile.extend([3_u32.to_le_bytes().to_vec(), vec![0; 32]].concat());
+    shapefile.extend([1_u32, 2, 0].iter().flat_map(|v| v.to_le_bytes()));
+    shapefile.extend(doubles(&[500.0, 500.0, 600.0, 700.0]));
+    shapefile.resize(100 + 8 + 88, 0);
+    vec![("stl", stl), ("npy", npy), ("geotiff", tiff), ("netcdf", netcdf), ("shapefile", shapefile)]
+}
+
 /// Format and content.
 pub const HAND_WRITTEN: &[(&str, &str)] = &[
+    ("obj", "o A\nv 0 0 40\nv 50 0 44\nv 0 50 48\nv 50 50 50\nf 1//1 2//1 3//1\nf -3 -1 -2\no B\nl 1 2 \\\n 3\n"),
+    (
+        "stl",
+        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 40\nvertex 50 0 44\nvertex 0 50 48\nendloop\nendfacet\nendsolid a\n",
+    ),
+    (
+        "gxf",
+        "#POINTS\n3\n#ROWS\n2\n#PTSEPARATION\n25\n#RWSEPARATION\n25\n#SENSE\n-2\n#DUMMY\n-1e12\n#GRID\n40 41 42\n43 -1e12 45\n",
+    ),
+    ("gxf", "#POINTS\n3\n#ROWS\n2\n#ROTATION\n30\n#GTYPE\n2\n#TRANSFORM\n0.1,0\n#GRID\n\"\"%(-.!!*+,,\n"),
     ("esri", "ncols 3\nnrows 2\nxllcorner 0\nyllcenter 0\ncellsize 25\nNODATA_value -9999\n40 41 42\n-9999 44 45\n"),
     ("surfer", "DSAA\n3 2\n0 50\n0 25\n40 45\n40 41 42\n1.70141e+38 44 45\n"),
     (

@@ -221,6 +221,19 @@ pub enum FormatError {
         /// Most depths at one place.
         limit: usize,
     },
+    /// An array has no places, and not the size of the lattice that would give it some.
+    #[error(
+        "{file}: an array of {} x {} x {} inlines, crosslines and samples has no places, and {}",
+        found[0], found[1], found[2], of_lattice(*lattice)
+    )]
+    OtherLattice {
+        /// The file.
+        file: PathBuf,
+        /// Its inlines, crosslines and samples.
+        found: [usize; 3],
+        /// Those of the project, if it has a lattice.
+        lattice: Option<[usize; 3]>,
+    },
     /// What would be made of the file does not fit into memory.
     #[error("{file} cannot be put on the survey: {source}")]
     Memory {
@@ -272,6 +285,15 @@ pub enum FormatError {
         /// What to do.
         instead: &'static str,
     },
+}
+
+/// What the lattice of a project lacks for an array.
+fn of_lattice(lattice: Option<[usize; 3]>) -> String {
+    match lattice {
+        Some([a, b, c]) => format!("the project has {a} x {b} x {c}: transpose it, or save that part of it"),
+        None => "the project has no lattice: create it with one (`create --bounds`, `--size`), or import SEG-Y first"
+            .to_owned(),
+    }
 }
 
 impl FormatError {

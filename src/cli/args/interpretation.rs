@@ -15,7 +15,7 @@ fn written_formats() -> String {
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ImportArgs {
-    /// SEG-Y file, or folder of a volume that a project or the Python package has stored
+    /// SEG-Y file, NumPy array on the project's lattice, or folder of a volume that a project or the Python package has stored
     pub(in crate::cli) survey: PathBuf,
     /// Project folder; created if it does not exist
     pub(in crate::cli) project: PathBuf,

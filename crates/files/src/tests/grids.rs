@@ -321,26 +321,3 @@ fn surfaces_without_a_name_are_selected_by_their_number() {
     let error = read_horizons(&path, &survey, &select("7")).unwrap_err().to_string();
     assert!(error.contains("it has: 1, 2"), "{error}");
 }
-
-#[test]
-fn archives_and_grids_of_other_kinds_are_named_with_what_to_export() {
-    for (start, word) in [
-        (&b"\x89HDF\r\n\x1a\n"[..], "HDF5"),
-        (b"CDF\x01\0\0", "NetCDF"),
-        (b"PK\x03\x04", "ZIP"),
-        (b"\x1f\x8b\x08", "gzip"),
-        (b"\xd0\xcf\x11\xe0", "Office"),
-        (b"-- a grid\nSPECGRID\n 3 3 3 1 F /\n", "GRDECL"),
-        (b"<?xml version=\"1.0\"?>\n<a>", "XML"),
-        (b"II*\0\x08\0\0\0", "GeoTIFF"),
-        (b"\0\0\x27\x0a\0\0", "shapefile"),
-    ] {
-        let content = [start, &vec![0; 5000][..]].concat();
-        let (_folder, path) = bytes("a.dat", &content);
-        let error = describe(&path, &ImportOptions::default()).unwrap_err();
-        assert!(
-            matches!(&error, FormatError::UnknownFormat { is_named: true, .. }) && error.to_string().contains(word),
-            "{error}"
-        );
-    }
-}

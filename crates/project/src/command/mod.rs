@@ -4,6 +4,7 @@
 //! It overwrites nothing and can fail at any point: [`crate::Project::apply`] then discards the draft. Undo needs
 //! nothing from a command, because every state is kept in the history.
 
+mod array_volume;
 mod attribute;
 mod contact;
 mod draw;
