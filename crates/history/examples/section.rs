@@ -1,7 +1,7 @@
 //! A vertical section of a history as a picture: `section FILE OUT.png [--map] [--at SHARE] [--stage PROGRESS]`.
 //!
-//! West to east through the middle of the block, or the map of its ground. One colour for each rock, with thin lines at a
-//! tenth of each bed so that one sees how the beds run.
+//! West to east through the middle of the block, or the map of its ground. One colour for each rock, with thin lines at
+//! fifths of each bed so that one sees how the beds run.
 
 use glam::DVec3;
 use history::{History, Place};
@@ -48,8 +48,8 @@ fn colour(history: &History, place: &Place) -> [u8; 3] {
         ("granite", [226, 150, 140]),
         ("marl", [168, 196, 150]),
         ("chalk", [222, 232, 214]),
-        ("salt", [236, 190, 220]),
         ("basalt", [74, 84, 74]),
+        ("salt", [236, 190, 220]),
         ("dolerite", [84, 96, 84]),
         ("conglomerate", [214, 160, 90]),
         ("dolostone", [130, 140, 200]),

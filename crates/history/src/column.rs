@@ -14,7 +14,7 @@ pub struct Stretch {
 }
 
 /// Steps of a vertical line; what is thinner than one and has the same above and below it may be missed.
-const STEPS: usize = 200;
+const STEPS: usize = 160;
 
 /// What tells one stretch from another.
 fn key(place: &Place) -> (Option<usize>, Option<usize>, Sides, bool) {
@@ -28,7 +28,7 @@ fn key(place: &Place) -> (Option<usize>, Option<usize>, Sides, bool) {
 }
 
 impl Stage<'_> {
-    /// The stretches along a vertical line of the block, from the top down; boundaries to a micrometre.
+    /// The stretches along a vertical line of the block, from the top down; boundaries to a hundredth of a millimetre.
     pub fn column(&self, map: DVec2) -> Vec<Stretch> {
         let base = self.history().size().z;
         let at = |z: f64| self.place(map.extend(z));
@@ -42,7 +42,7 @@ impl Stage<'_> {
             // Several boundaries may lie in one step.
             while key(&place) != key(&below) {
                 let (mut low, mut high) = (z, end);
-                while high - low > 1e-6 {
+                while high - low > 1e-5 {
                     let middle = 0.5 * (low + high);
                     if key(&at(middle)) == key(&place) { low = middle } else { high = middle }
                 }

@@ -26,6 +26,7 @@ mod place;
 mod rock;
 mod solve;
 mod stage;
+mod surfaces;
 
 pub use column::Stretch;
 pub use context::KnownRocks;
@@ -39,3 +40,4 @@ pub use kinds::{
 pub use place::{MOST_ACTS, Place, Rock, Sides};
 pub use rock::impedance;
 pub use stage::Stage;
+pub use surfaces::Interpretation;

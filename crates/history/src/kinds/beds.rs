@@ -130,7 +130,7 @@ impl Bed {
     }
 
     /// Whether it is cut into what lies below.
-    fn is_cut(&self) -> bool {
+    pub(crate) fn is_cut(&self) -> bool {
         matches!(self.thickness, Thickness::Channel { .. })
     }
 }

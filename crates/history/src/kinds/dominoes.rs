@@ -50,6 +50,17 @@ impl Dominoes {
         Self { rotation_deg: self.rotation_deg * share, ..*self }
     }
 
+    /// The corners of each fault afterwards, so far as faults lie within `reach` of `at`.
+    pub(crate) fn planes(&self, reach: f64) -> Vec<[DVec3; 4]> {
+        let (dip, spacing) = self.faults(true);
+        let most = (reach / spacing).ceil().min(MOST) as i32;
+        let plane = |n: i32| {
+            let corner = |v: f64, z: f64| self.frame.place(DVec3::new(f64::from(n) * spacing + z / dip.tan(), v, z));
+            [corner(-reach, -reach), corner(-reach, reach), corner(reach, reach), corner(reach, -reach)]
+        };
+        (-most..=most).map(plane).collect()
+    }
+
     /// Dip and spacing before, or after.
     fn faults(&self, is_after: bool) -> (f64, f64) {
         let (before, after) = (self.dip_deg.to_radians(), (self.dip_deg - self.rotation_deg).to_radians());

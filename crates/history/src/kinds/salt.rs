@@ -1,14 +1,14 @@
 //! Salt that rises: `kind = "salt"`.
 //!
-//! A **diapir** is a stem that widens to a head; beside it beds are dragged up, and farther away they sink into a ring, the
-//! minibasin:
+//! The salt comes out of a bed between two depths. What lies above the bed moves up by R(x, y), what lies below stays, and
+//! the bed between them swells or is drawn out in proportion.
 //!
 //! ```text
-//! z = z′ − U exp(−(d/w)²) + S exp(−((d − 2.2 w) / w)²)        d the distance from the stem, 0 within it
+//! pillow: R = H cos²(π r / 2)        diapir: R = U exp(−(d/w)²) − S exp(−((d − 2.2 w) / w)²)
 //! ```
 //!
-//! A **pillow** swells between two depths, `top` and `base` of the bed of salt: above the top beds are lifted by a bump
-//! of height H, below the base by nothing, and between them in proportion.
+//! A diapir is a stem that widens to a head; d is the distance from the stem, 0 within it: beside it beds are dragged up,
+//! and farther away they sink into a ring, the minibasin.
 
 use crate::context::Context;
 use crate::deformation::Deformation;
@@ -26,6 +26,8 @@ pub struct Salt {
     pub name: Option<String>,
     at: DVec3,
     form: Form,
+    /// Depths of the top and the base of the bed that the salt comes from.
+    source: [f64; 2],
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,10 +35,9 @@ enum Form {
     Diapir {
         stem: f64,
         head: f64,
-        /// Depths of the top, of the widest part and of the bottom.
+        /// Depths of the top and of the widest part.
         top: f64,
         neck: f64,
-        base: f64,
         drag: f64,
         sink: f64,
         width: f64,
@@ -44,8 +45,6 @@ enum Form {
     Pillow {
         half: DVec2,
         height: f64,
-        top: f64,
-        base: f64,
     },
 }
 
@@ -63,47 +62,54 @@ impl Salt {
         let at = fields.place("at", context.centre())?;
         let radius = fields.number("radius", Within::Positive, "the radius of its stem, or of the pillow, in m")?;
         let base = fields.or("base", Within::Any, context.size.z)?;
-        let form = match shape {
+        let unfit = || fields.unfit("base", "the salt's `base` must lie deeper than its `top`");
+        let (form, bed_m) = match shape {
             Shape::Diapir => {
                 let top = fields.or("top", Within::Any, 0.15 * context.size.z)?;
-                let head = fields.or("head", Within::Positive, 1.5 * radius)?;
-                let neck = fields.or("head_height", Within::Positive, 0.25 * (base - top).max(1.0))?;
-                let drag = fields.or("drag", Within::Any, 0.25 * (base - top))?;
+                let head = fields.or("head", Within::Positive, 1.5 * radius)?.max(radius);
+                let height = fields.or("head_height", Within::Positive, 0.25 * (base - top).max(1.0))?;
+                let drag = fields.or("drag", Within::Any, 0.2 * (base - top))?;
                 let width = fields.or("reach", Within::Positive, radius)?;
                 let sink = fields.or("sink", Within::Any, 0.3 * drag)?;
-                if base <= top {
-                    return Err(fields.unfit("base", "the salt's `base` must lie deeper than its `top`"));
+                let bed_m = fields.or("source", Within::Positive, (2.0 * sink).max(0.2 * (base - top)))?;
+                if sink >= 0.95 * bed_m || -drag >= 0.95 * bed_m {
+                    let said = "beds cannot sink farther than the bed of salt below them is thick; state a smaller `sink` \
+                                or a thicker `source`";
+                    return Err(fields.unfit("sink", said));
                 }
-                Form::Diapir { stem: radius, head: head.max(radius), top, neck: top + neck, base, drag, sink, width }
+                (Form::Diapir { stem: radius, head, top, neck: top + height, drag, sink, width }, bed_m)
             }
             Shape::Pillow => {
                 let top = fields.number("top", Within::Any, "the depth of the top of the bed of salt in m")?;
                 let height = fields.number("height", Within::Positive, "how far the pillow swells in m")?;
                 let length = fields.or("length", Within::Positive, 2.0 * radius)?;
-                if base <= top {
-                    return Err(fields.unfit("base", "the bed's `base` must lie deeper than its `top`"));
-                }
-                Form::Pillow { half: DVec2::new(radius, 0.5 * length), height, top, base }
+                (Form::Pillow { half: DVec2::new(radius, 0.5 * length), height }, base - top)
             }
         };
-        Ok(Self { rock, name, at, form })
+        let is_below = match form {
+            Form::Diapir { top, .. } => base > top,
+            Form::Pillow { .. } => bed_m > 0.0,
+        };
+        if is_below { Ok(Self { rock, name, at, form, source: [base - bed_m, base] }) } else { Err(unfit()) }
     }
 
     pub(crate) fn progressed(&self, share: f64) -> Self {
+        let base = self.source[1];
         let form = match self.form {
-            Form::Diapir { stem, head, top, neck, base, drag, sink, width } => {
+            Form::Diapir { stem, head, top, neck, drag, sink, width } => {
                 let rise = |depth: f64| base - share * (base - depth);
                 let (top, neck) = (rise(top), rise(neck));
-                Form::Diapir { stem, head, top, neck, base, drag: drag * share, sink: sink * share, width }
+                Form::Diapir { stem, head, top, neck, drag: drag * share, sink: sink * share, width }
             }
-            Form::Pillow { half, height, top, base } => Form::Pillow { half, height: height * share, top, base },
+            Form::Pillow { half, height } => Form::Pillow { half, height: height * share },
         };
         Self { form, ..self.clone() }
     }
 
     /// Whether a place lies in the diapir: its share of the way up.
     pub(crate) fn within(&self, p: DVec3) -> Option<f64> {
-        let Form::Diapir { stem, head, top, neck, base, .. } = self.form else { return None };
+        let Form::Diapir { stem, head, top, neck, .. } = self.form else { return None };
+        let base = self.source[1];
         if p.z < top || p.z > base || base <= top {
             return None;
         }
@@ -135,33 +141,26 @@ impl Salt {
 
 impl Deformation for Salt {
     fn undo(&self, p: DVec3, _: i8) -> DVec3 {
-        let rise = self.rise(p.truncate());
-        let z = match self.form {
-            Form::Diapir { .. } => p.z + rise,
-            Form::Pillow { top, base, .. } if p.z > top - rise => {
-                if p.z >= base {
-                    p.z
-                } else {
-                    base - (base - p.z) * (base - top) / (base - top + rise)
-                }
-            }
-            Form::Pillow { .. } => p.z + rise,
-        };
-        p.with_z(z)
+        let ([top, base], rise) = (self.source, self.rise(p.truncate()));
+        let swollen = (base - p.z) * (base - top) / (base - top + rise);
+        p.with_z(if p.z <= top - rise {
+            p.z + rise
+        } else if p.z < base {
+            base - swollen
+        } else {
+            p.z
+        })
     }
 
     fn apply(&self, q: DVec3, _: i8) -> DVec3 {
-        let rise = self.rise(q.truncate());
-        let z = match self.form {
-            Form::Pillow { top, base, .. } if q.z > top => {
-                if q.z >= base {
-                    q.z
-                } else {
-                    base - (base - q.z) * (base - top + rise) / (base - top)
-                }
-            }
-            _ => q.z - rise,
-        };
-        q.with_z(z)
+        let ([top, base], rise) = (self.source, self.rise(q.truncate()));
+        let swollen = (base - q.z) * (base - top + rise) / (base - top);
+        q.with_z(if q.z <= top {
+            q.z - rise
+        } else if q.z < base {
+            base - swollen
+        } else {
+            q.z
+        })
     }
 }

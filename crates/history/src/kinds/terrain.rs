@@ -112,15 +112,27 @@ impl Terrain {
     fn column(&self, map: DVec2, rock_at: &impl Fn(DVec3) -> Option<f64>) -> f64 {
         const STEPS: usize = 150;
         let step = self.size.z / STEPS as f64;
+        let at = |z: f64| rock_at(map.extend(z));
+        let cost = |hardness: Option<f64>| hardness.map_or(0.0, |hardness| hardness.powf(self.resistance));
         let mut left = self.work(map);
-        for n in 0..STEPS {
-            let z = n as f64 * step;
-            let Some(hardness) = rock_at(map.extend(z + 0.5 * step)) else { continue };
-            let cost = step * hardness.powf(self.resistance * 2.0);
-            if cost >= left {
-                return z + step * left / cost;
+        let (mut top, mut rock) = (0.0, at(0.0));
+        for n in 1..=STEPS {
+            let end = n as f64 * step;
+            let below = at(end);
+            // Where the rock changes within the step, its boundary.
+            let (mut low, mut high) = (top, end);
+            while rock != below && high - low > 1e-3 {
+                let middle = 0.5 * (low + high);
+                if at(middle) == rock { low = middle } else { high = middle }
             }
-            left -= cost;
+            for (rock, from, to) in [(rock, top, high), (below, high, end)] {
+                let rate = cost(rock);
+                if rate > 0.0 && rate * (to - from) >= left {
+                    return from + left / rate;
+                }
+                left -= rate * (to - from);
+            }
+            (top, rock) = (end, below);
         }
         self.size.z
     }
