@@ -24,6 +24,7 @@ mod names;
 mod noise;
 mod place;
 mod rock;
+mod seismic;
 mod solve;
 mod stage;
 mod surfaces;
