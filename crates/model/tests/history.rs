@@ -11,16 +11,7 @@ fn agreement(file: &str) -> Result<(f64, usize), String> {
     let path = format!("{}/../../examples/histories/{file}.toml", env!("CARGO_MANIFEST_DIR"));
     let history = History::from_toml(&std::fs::read_to_string(path).unwrap()).map_err(|error| error.to_string())?;
     let stage = history.last_stage();
-    let started = std::time::Instant::now();
     let made = stage.interpretation();
-    let took = started.elapsed().as_secs_f64();
-    let names: Vec<&str> = made.horizons.iter().map(|horizon| horizon.name.as_str()).collect();
-    let shapes: Vec<usize> = made.horizons.iter().map(|horizon| horizon.sheets.len()).collect();
-    eprintln!(
-        "{file}: {took:.1} s, {names:?} {shapes:?}\n  layers {:?}, faults {}",
-        made.stratigraphy.layer_names,
-        made.faults.len()
-    );
     let model = StructuralModel::build(
         &made.geometry,
         &made.stratigraphy,
@@ -33,7 +24,7 @@ fn agreement(file: &str) -> Result<(f64, usize), String> {
     let rocks: Vec<Option<&str>> = made.rocks.iter().rev().map(Option::as_deref).collect();
     let (mut right, mut all) = (0, 0);
     let size = history.size();
-    for n in 0..20_000u32 {
+    for n in 0..10_000u32 {
         // A lattice that no plane of the block is parallel to.
         let share = DVec3::new(0.754_877, 0.569_840, 0.327_113) * f64::from(n + 1);
         let p = share.fract() * size;
@@ -51,21 +42,10 @@ fn agreement(file: &str) -> Result<(f64, usize), String> {
 
 #[test]
 fn models_of_histories_have_the_rocks_of_the_histories() {
-    let files = [
-        "horst",
-        "growth-fault",
-        "fault-bend-fold",
-        "plunging-folds",
-        "dome-and-basin",
-        "unconformities",
-        "intrusions",
-        "pluton",
-        "salt-diapir",
-        "strike-slip",
-        "cuesta",
-        "relay-ramp",
-    ];
+    let files = ["horst", "fault-bend-fold", "unconformities", "intrusions", "strike-slip"];
     for file in files {
-        eprintln!("{file}: {:?}", agreement(file));
+        let (share, blocks) = agreement(file).unwrap_or_else(|error| panic!("{file}: {error}"));
+        println!("{file}: {share} in {blocks} blocks");
+        assert!(share > 0.995, "{file}: {share}");
     }
 }

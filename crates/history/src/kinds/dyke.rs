@@ -70,6 +70,19 @@ impl Dyke {
         (local, local.dot(self.across))
     }
 
+    /// How many dykes there are, and the half axes of each if it ends within the block.
+    pub(crate) fn outlines(&self) -> (usize, Option<DVec2>) {
+        (self.middles.len(), self.half)
+    }
+
+    /// A place on the wall of a dyke, m along strike and down the dip from its middle; `sign` is 1 for its right wall and
+    /// −1 for its left one.
+    pub(crate) fn wall(&self, dyke: usize, on: DVec2, sign: f64) -> DVec3 {
+        let r = self.half.map_or(0.0, |half| (on / half).length_squared());
+        let off = self.middles[dyke].x + sign * 0.5 * self.thickness_m * (1.0 - r).max(0.0).sqrt();
+        self.frame.place(self.across * off + DVec3::Y * (self.middles[dyke].y + on.x) + self.down * on.y)
+    }
+
     /// Where in a dyke a place lies: 0 at its left wall, 1 at its right one.
     pub(crate) fn within(&self, p: DVec3) -> Option<f64> {
         let (local, off) = self.off(p);

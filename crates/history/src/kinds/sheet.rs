@@ -76,6 +76,16 @@ impl IntrusiveSheet {
         (self.thickness(local.truncate()), self.slope * local.y - local.z)
     }
 
+    /// Its radius, if it does not go on as far as the block.
+    pub(crate) fn radius(&self) -> Option<f64> {
+        self.radius
+    }
+
+    /// A place on its floor (0) or its roof (1), m from its middle.
+    pub(crate) fn wall(&self, on: DVec2, height: f64) -> DVec3 {
+        self.frame.place(on.extend(self.slope * on.y - height * self.thickness(on)))
+    }
+
     /// Where in the sheet a place lies: 0 on its floor, 1 under its roof.
     pub(crate) fn within(&self, p: DVec3) -> Option<f64> {
         let (thickness, above) = self.above(p);

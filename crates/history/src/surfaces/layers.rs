@@ -12,7 +12,8 @@ impl Stage<'_> {
         let (mut names, mut rocks): (Vec<String>, Vec<Option<String>>) = (Vec::new(), Vec::new());
         for n in 0..=surfaces.len() {
             let above = n.checked_sub(1).map(|n| surfaces[n]);
-            let below = surfaces.get(n).copied().filter(|surface| !matches!(surface, Surface::Body(_)));
+            let is_bed = |surface: &&Surface| !matches!(surface, Surface::Body(_));
+            let below = surfaces[n..].iter().find(is_bed).copied();
             let unit = match (above, below) {
                 (None, _) if has_air => None,
                 (Some(Surface::Body(unit)), _) => Some(unit),
@@ -25,8 +26,10 @@ impl Stage<'_> {
             };
             // Above the top of the youngest bed there is hardly anything; it looks like the bed.
             let name = if names.contains(&unit.name) { format!("Above {}", unit.name) } else { unit.name.clone() };
-            let is_upper =
-                below.is_some_and(|below| matches!(below, Surface::Top(top) if self.history().units()[top] == *unit));
+            let is_body = matches!(above, Some(Surface::Body(_)));
+            let is_its_top =
+                |below: Surface| matches!(below, Surface::Top(top) if self.history().units()[top] == *unit);
+            let is_upper = !is_body && below.is_some_and(is_its_top);
             let name = if is_upper && name == unit.name { format!("Above {}", unit.name) } else { name };
             let name = if names.contains(&name) { format!("{name} {n}") } else { name };
             names.push(name);

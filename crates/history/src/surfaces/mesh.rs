@@ -30,8 +30,10 @@ impl Lattice {
     fn new(size: DVec3, beyond: usize) -> Self {
         let cells = (CELLS * size / size.max_element()).round().max(DVec3::splat(12.0));
         let step = size / cells;
-        let count = cells.to_array().map(|cells| cells as usize + 1 + 2 * beyond);
-        Self { origin: -step * beyond as f64, step, count }
+        // Off round numbers, on which surfaces lie: each would meet several edges in one place.
+        let shift = DVec3::new(0.137, 0.211, 0.173) * step;
+        let count = cells.to_array().map(|cells| cells as usize + 2 + 2 * beyond);
+        Self { origin: -step * beyond as f64 - shift, step, count }
     }
 
     fn place(&self, n: usize) -> DVec3 {
@@ -113,6 +115,9 @@ impl Stage<'_> {
 
     /// The closed outline of a body, just outside of the block's faces where it goes on there.
     pub(super) fn body_mesh(&self, unit: usize) -> TriangleMesh {
+        if let Some(laid) = self.laid_outline(self.history().units()[unit].act) {
+            return laid;
+        }
         let (lattice, size) = (Lattice::new(self.history().size(), 1), self.history().size());
         let rim = 0.4 * lattice.step;
         lattice.cut(|p| {

@@ -15,6 +15,7 @@
 mod faults;
 mod layers;
 mod mesh;
+mod outlines;
 
 use crate::history::Unit;
 use crate::kinds::{Act, Beds};
@@ -105,6 +106,7 @@ impl Stage<'_> {
             contact: match surface {
                 Surface::Top(_) => Contact::Conformable,
                 Surface::Ground | Surface::Base(_) | Surface::CutBase(_) => Contact::Erosional,
+                Surface::Body(unit) if self.is_laid(*unit) => Contact::Truncated,
                 Surface::Body(_) => Contact::Intrusive,
             },
         };
@@ -220,7 +222,8 @@ impl Stage<'_> {
         }
         let is_flat = |surface: &Surface| matches!(surface, Surface::Ground | Surface::Base(_));
         order.retain(|surface| seen.contains(surface) && (!is_flat(surface) || own.contains(surface)));
-        // What intrudes last is the youngest.
+        // What intrudes last is the youngest. A body whose outline is not cut by the ground stands below the erosion that cut
+        // it, others last.
         let acts = self.acts().iter().enumerate().rev();
         let bodies = acts.filter(|(_, act)| {
             matches!(act, Act::Dyke(_) | Act::Sheet(_) | Act::Salt(_) | Act::Body(_) | Act::Volcano(_))
@@ -229,9 +232,27 @@ impl Stage<'_> {
             let units = self.history().units().iter().enumerate();
             units.filter(move |(_, unit)| unit.act == n && unit.bed.is_none()).map(|(unit, _)| unit)
         });
-        let units: Vec<usize> = units.collect();
-        order.extend(units.into_iter().filter(|&unit| self.has_body(unit)).map(Surface::Body));
+        for unit in units.collect::<Vec<_>>() {
+            if self.is_laid(unit) {
+                let made = self.history().units()[unit].act;
+                let is_younger = |surface: &Surface| match *surface {
+                    Surface::Ground => true,
+                    Surface::Base(act) => act > made,
+                    Surface::CutBase(unit) | Surface::Body(unit) => self.history().units()[unit].act > made,
+                    Surface::Top(_) => false,
+                };
+                let at = order.iter().rposition(is_younger).map_or(0, |n| n + 1);
+                order.insert(at, Surface::Body(unit));
+            } else if self.has_body(unit) {
+                order.push(Surface::Body(unit));
+            }
+        }
         order
+    }
+
+    /// Whether a unit's outline is laid out as it formed.
+    fn is_laid(&self, unit: usize) -> bool {
+        self.is_laid_out(self.history().units()[unit].act)
     }
 
     /// Name of a surface.
