@@ -62,7 +62,7 @@ impl Bend {
             made.steepest = made.steepest.max(made.line(start).slope.abs());
         }
         made.steepest *= 1.01;
-        made.to_origin = made.from_start(0.0);
+        made.to_origin = made.length_to(0.0);
         made
     }
 
@@ -91,7 +91,7 @@ impl Bend {
         half * NODES.iter().map(|(t, w)| w * (rate(middle - half * t) + rate(middle + half * t))).sum::<f64>()
     }
 
-    fn from_start(&self, x: f64) -> f64 {
+    fn length_to(&self, x: f64) -> f64 {
         let reach = self.step * INTERVALS as f64;
         let (turns, inside) = if self.profile.is_periodic() {
             let turns = ((x - self.from) / reach).floor();
@@ -107,7 +107,7 @@ impl Bend {
 
     /// Length of the line from 0 to a place.
     fn length(&self, x: f64) -> f64 {
-        self.from_start(x) - self.to_origin
+        self.length_to(x) - self.to_origin
     }
 
     /// A place at the distance n below the line.
