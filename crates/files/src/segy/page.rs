@@ -155,7 +155,7 @@ fn write_statistics(page: &mut String, statistics: &Statistics) -> Result {
         s.non_finite,
         s.at_limits,
         share(s.at_limits),
-        if s.at_limits > 20 && share(s.at_limits) > 0.01 { ": the data are clipped" } else { "" }
+        if s.clipped > 20 && share(s.clipped) > 0.01 { ": the data are clipped" } else { "" }
     )?;
     write_histogram(page, &s.histogram)
 }

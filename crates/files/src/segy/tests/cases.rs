@@ -235,4 +235,26 @@ fn extended_text_in_ascii_under_an_ebcdic_header_ends_where_it_says() {
     built.extended = [block("((SEG: Location Data ver 1.0))"), block("((SEG: EndText))")].concat();
     let info = built.info();
     assert_eq!((info.traces, info.extended_text[0].as_str()), (9, "((SEG: Location Data ver 1.0))"));
+    // A stanza of a program's own, words behind its name, an end that is spelled otherwise and filled up with anything; of
+    // a revision that knows no such headers; in the other encoding; bytes that are no text between.
+    let filled = |text: &str, fill: u8| {
+        let mut block = text.as_bytes().to_vec();
+        block.resize(3200, fill);
+        block
+    };
+    let own = filled("((own: words ()(test1) ))first part", b' ');
+    let ebcdic = super::super::text::encode_ebcdic(&["((SEG: EndText))".to_owned()]);
+    let binary: Vec<u8> = (0..3200).map(|n| (n * 7 % 256) as u8).collect();
+    for (revision, blocks) in [
+        (0, vec![own.clone(), filled("second part", b' '), filled("((  seg: endTEXt  ))", b'3')]),
+        (0x0100, vec![own.clone(), filled("((SEG:ENDTEXT))", 0)]),
+        (0x0100, vec![own.clone(), ebcdic]),
+        (0x0200, vec![own, binary, filled("((SEG: EndText))", b' ')]),
+    ] {
+        built.binary(3501, revision);
+        let count = blocks.len();
+        built.extended = blocks.concat();
+        let info = built.info();
+        assert_eq!((info.traces, info.extended_text.len()), (9, 40 * count), "{:?}", info.warnings);
+    }
 }
