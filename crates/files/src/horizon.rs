@@ -4,6 +4,7 @@
 use super::columns::is_inside;
 use super::lattice::{self, FittedLattice};
 use super::options::{HorizonShape, ImportOptions};
+use super::orientations;
 use super::overturned_points::SeenSideways;
 use super::placement::{self, PlacedPoints, voxel_xy};
 use super::raster;
@@ -85,8 +86,9 @@ pub(super) fn build(
     }
     if let RawShape::Points(points) = &mut raw.shape {
         points.retain(|p| p.z.is_finite());
-        if geometry.vertical.unit == VerticalUnit::Metres {
-            points.iter_mut().for_each(|point| point.normal = point.normal.or(point.dip.map(normal_of)));
+        take_dips(points, geometry);
+        if let (Some(oriented), Some(from)) = (raw.orientations.take(), &options.orientations) {
+            raw.notes.push(orientations::join(from, points, *oriented, geometry, options)?);
         }
     }
     let [nu, nv, _] = geometry.size();
@@ -129,6 +131,13 @@ pub(super) fn build(
         of_map: nodes.of_map,
     };
     Ok((Horizon { name, sheets: nodes.sheets, surface: nodes.surface }, report))
+}
+
+/// Makes normals of dips, which are told of depths alone.
+pub(super) fn take_dips(points: &mut [RawPoint], geometry: &SurveyGeometry) {
+    if geometry.vertical.unit == VerticalUnit::Metres {
+        points.iter_mut().for_each(|point| point.normal = point.normal.or(point.dip.map(normal_of)));
+    }
 }
 
 /// The normal, in the directions of X, Y and depth, of beds with a dip, its direction and their polarity: towards the

@@ -80,6 +80,7 @@ mod neighbours;
 mod number;
 mod opendtect;
 mod options;
+mod orientations;
 mod outline;
 mod overturned_points;
 mod petrel;
@@ -477,14 +478,13 @@ fn built<T>(
     kind: SurfaceKind,
     build: Build<T>,
 ) -> Result<Vec<(T, ImportReport)>, FormatError> {
-    let (format, surfaces) = read_source(source, Some(geometry), options, kind)?;
+    let (format, mut surfaces) = read_source(source, Some(geometry), options, kind)?;
     let name = |raw: &RawSurface| name_of(raw, source, options);
-    let in_metres = |mut raw: RawSurface| {
-        raw.convert_places(options.xy_unit);
-        raw
-    };
-    let surfaces = surfaces.into_iter().map(in_metres);
-    surfaces.map(|raw| build(&source.path, name(&raw), format.clone(), raw, geometry, options)).collect()
+    surfaces.iter_mut().for_each(|raw| raw.convert_places(options.xy_unit));
+    if kind == SurfaceKind::Horizon {
+        orientations::attach(&mut surfaces, name, geometry, options)?;
+    }
+    surfaces.into_iter().map(|raw| build(&source.path, name(&raw), format.clone(), raw, geometry, options)).collect()
 }
 
 /// Writes a horizon under a temporary name, then renames the file. A rotated grid is resampled for formats

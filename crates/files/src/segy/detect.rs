@@ -280,7 +280,7 @@ impl FieldSearch<'_> {
             }
             _ => {
                 let others: Vec<Candidate> = others().collect();
-                refuse::two_dimensional(self.columns, std::slice::from_ref(&chosen))?;
+                refuse::two_dimensional(self.columns, self.options, std::slice::from_ref(&chosen))?;
                 Err(SegyProblem::StatedBytes { stated: Box::new(chosen), others })
             }
         }
@@ -456,7 +456,7 @@ impl FieldSearch<'_> {
             [] => match bins::find(self.columns, self.options, MIN_FILL_UNKNOWN) {
                 Ok(bins) => self.by_coordinates(&bins, candidates, findings),
                 Err(reason) => {
-                    refuse::two_dimensional(self.columns, &candidates)?;
+                    refuse::two_dimensional(self.columns, self.options, &candidates)?;
                     Err(if reason.is_empty() {
                         SegyProblem::NoLineNumbers { tried: candidates }
                     } else {

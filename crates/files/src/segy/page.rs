@@ -149,7 +149,7 @@ fn write_statistics(page: &mut String, statistics: &Statistics) -> Result {
     writeln!(page, "{}", percentiles.collect::<Vec<_>>().join("   "))?;
     writeln!(
         page,
-        "{:.2} % zero, {} traces zero throughout, {} samples no numbers (read as 0), {} at the smallest or largest value ({:.4} %{})",
+        "{:.2} % zero, {} traces zero throughout, {} samples no numbers (no data), {} at the smallest or largest value ({:.4} %{})",
         share(s.zero),
         s.zero_traces,
         s.non_finite,

@@ -51,7 +51,7 @@ pub struct Statistics {
     pub zero: u64,
     /// Traces that are 0 throughout, though they are not flagged dead.
     pub zero_traces: usize,
-    /// Samples that are NaN or infinite; they are read as 0.
+    /// Samples that are NaN or infinite in the file: no data.
     pub non_finite: u64,
     /// Samples that equal the smallest or largest one.
     pub at_limits: u64,
@@ -79,7 +79,7 @@ impl SegyFile {
             .par_chunks_mut(samples.max(1))
             .zip(&chosen)
             .map(|(trace, &place)| {
-                let non_finite = self.read_known(place / crosslines, place % crosslines, trace)?;
+                let non_finite = self.read_trace(place / crosslines, place % crosslines, trace)?;
                 progress.step(1).map_err(|cancelled| SegyProblem::from(cancelled).in_file(&self.path))?;
                 Ok((non_finite, trace.iter().all(|&value| value == 0.0 || value.is_nan())))
             })

@@ -69,7 +69,7 @@ pub(super) fn confirmed(
         return Ok(Err(Finding::of(&error)));
     }
     match ThreadPoolBuilder::new().num_threads(1).build() {
-        Ok(pool) => pool.install(look),
+        Ok(pool) => pool.install(|| look()),
         Err(_) => Ok(found),
     }
 }

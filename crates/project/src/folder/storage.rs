@@ -64,8 +64,8 @@ fn refuse_links_below(folder: &Path) -> Result<(), ProjectError> {
         Err(source) => return Err(fail(source)),
     };
     // Gathered first: a folder that is open while those below it are looked through takes a handle for each level.
-    let paths: Vec<PathBuf> = entries.map(|entry| Ok(entry.map_err(fail)?.path())).collect::<Result<_, _>>()?;
-    paths.into_iter().try_for_each(refuse_links_in)
+    let paths: io::Result<Vec<PathBuf>> = entries.map(|entry| Ok(entry?.path())).collect();
+    paths.map_err(fail)?.into_iter().try_for_each(refuse_links_in)
 }
 
 /// The path at which `file` is written until it is complete.

@@ -204,7 +204,7 @@ fn null_amplitudes_are_found_said_and_left_out() {
     for value in [1e30, -999.25, -9999.0, 1.701_41e38, -1e10] {
         let (file, out) = bytes_of(&null(5, value));
         assert!(
-            out[30..60].iter().all(|v| *v == 0.0) && out[29] == wave(14, 29) || out.iter().all(|v| *v == 0.0),
+            out[30..60].iter().all(|v| v.is_nan()) && out[29] == wave(14, 29) || out.iter().all(|v| *v == 0.0),
             "{value}"
         );
         let statistics = file.statistics(&Progress::silent()).unwrap();
@@ -217,6 +217,23 @@ fn null_amplitudes_are_found_said_and_left_out() {
     assert!(null(5, -999.25).read(&kept).unwrap().volume.samples().contains(&-999.25));
     let stated = SegyOptions { null: Some(NullAmplitude::At(-123.5)), ..SegyOptions::default() };
     assert!(!null(5, -123.5).read(&stated).unwrap().volume.samples().contains(&-123.5));
+    // Integers with a null are stored as floats, of which NaN is no data; without one they stay integers.
+    let whole = |v: f32, n: usize| (if (30..60).contains(&n) { -32_000.0 } else { v / 4.0 } as i16).to_be_bytes().to_vec();
+    let integers = volume(3, 100, whole);
+    for (null, stored) in [
+        (NullAmplitude::At(-32_000.0), survey::sample::SampleType::Float32),
+        (NullAmplitude::None, survey::sample::SampleType::Int16),
+    ] {
+        let options = SegyOptions { null: Some(null), ..SegyOptions::default() };
+        let file = integers.read(&options).unwrap();
+        let is_nothing = file.volume.trace(5, 5)[40].is_nan();
+        assert_eq!(is_nothing, stored == survey::sample::SampleType::Float32);
+        assert!(file.amplitudes.rms.is_finite(), "{:?}", file.amplitudes);
+        super::builder::with_file(&integers.bytes(), |path| {
+            let opened = super::super::SegyFile::open(path, &options, &Progress::silent()).unwrap();
+            assert_eq!(opened.sample_type(), stored);
+        });
+    }
     for (name, least) in [("40-null-amplitudes/null-1e30.sgy", 1e30), ("40-null-amplitudes/null-999.sgy", -999.25)] {
         let Some(file) = opened(name, &SegyOptions::default()) else { return };
         let said = file.info().assumptions.iter().any(|a| a.fact.contains(&format!("{least:e}")));
