@@ -31,14 +31,8 @@ pub(super) fn attach(
 ) -> Result<(), FormatError> {
     let Some(path) = &options.orientations else { return Ok(()) };
     // What is stated of columns and names is about the points.
-    let stated = ImportOptions {
-        format: None,
-        columns: None,
-        select: None,
-        name: None,
-        orientations: None,
-        ..options.clone()
-    };
+    let stated =
+        ImportOptions { format: None, columns: None, select: None, name: None, orientations: None, ..options.clone() };
     let (_, mut found) = read_source(&SourceFile::open(path)?, Some(geometry), &stated, SurfaceKind::Horizon)?;
     found.iter_mut().for_each(|oriented| oriented.convert_places(options.xy_unit));
     let called = |surface: &RawSurface| surface.name.as_deref().map(|name| name.trim().to_lowercase());
@@ -157,10 +151,11 @@ mod tests {
         let all = write("all.csv", "X,Y,Z,dip,azimuth,polarity\n500,500,350,5.7,90,1\n500,600,350,5.7,90,1\n");
         assert!(read(&all).iter().all(|(_, report)| report.notes.iter().any(|note| note.contains("2 orientations"))));
         assert!(matches!(
-            read_horizons(&points, &geometry, &ImportOptions {
-                orientations: Some(folder.path().join("none.csv")),
-                ..ImportOptions::default()
-            }),
+            read_horizons(
+                &points,
+                &geometry,
+                &ImportOptions { orientations: Some(folder.path().join("none.csv")), ..ImportOptions::default() }
+            ),
             Err(FormatError::Io { .. })
         ));
     }

@@ -119,10 +119,7 @@ pub(super) fn surfaces(
     if !layout.is_complete() {
         return Err(FormatError::Columns {
             file: source.path.clone(),
-            why: format!(
-                "the columns {} hold no Z with X, Y or inline, crossline",
-                called(&layout).join(", ")
-            ),
+            why: format!("the columns {} hold no Z with X, Y or inline, crossline", called(&layout).join(", ")),
             example: example_of(&layout),
         });
     }

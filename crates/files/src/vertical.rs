@@ -177,7 +177,8 @@ impl VerticalRule {
             .min_by(|a, b| rank(*a).total_cmp(&rank(*b)));
         // A bed may leave the block: then a part of it lies there, and nothing makes it fit better, or its unit and sign
         // are stated.
-        let is_stated = [&self.unit.source, &self.positive.source].into_iter().all(|source| *source == Provenance::Option);
+        let is_stated =
+            [&self.unit.source, &self.positive.source].into_iter().all(|source| *source == Provenance::Option);
         if !flat && (best.is_none() || is_stated) && fit(1.0) * LEAST_PARTS >= values.len() {
             return Ok(outside);
         }
@@ -310,7 +311,8 @@ mod tests {
     #[test]
     fn a_bed_that_leaves_the_block_is_taken_and_not_told_to_change_its_sign() {
         let depth = axis(0.0, 250, VerticalUnit::Metres);
-        let bed = |low: f64, high: f64| (0..=100).map(|n| low + (high - low) * f64::from(n) / 100.0).collect::<Vec<f64>>();
+        let bed =
+            |low: f64, high: f64| (0..=100).map(|n| low + (high - low) * f64::from(n) / 100.0).collect::<Vec<f64>>();
         let plain = ImportOptions::default();
         // Above it, below it, on both sides; 45, 30 and 12 % lie in it.
         for values in [bed(-900.0, 740.0), bed(-500.0, 2800.0), bed(-3800.0, 4500.0)] {

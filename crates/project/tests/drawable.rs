@@ -148,10 +148,28 @@ fn a_check_tells_what_render_would_refuse_of_colours_styles_scenes_and_figures()
         ("clip = 0.0", before.replace(&clip, "clip = 0.0")),
         ("clip = nan", before.replace(&clip, "clip = nan")),
         ("interval", before.replace("interval = 10.0", "interval = 1e-300")),
-        ("a layer", with(&before, "[[style.layers.styles]]\nlayer = \"above Upper\"\ncolour = \"#ffffff\"\nintervals = [{ k = [0.0, 1e-300], texture = \"sand\" }]")),
-        ("values", with(&before, "[[style.scalars]]\nvolume = \"north\"\nintervals = [{ range = [nan, 1.0], texture = \"sand\" }]")),
+        (
+            "a layer",
+            with(
+                &before,
+                "[[style.layers.styles]]\nlayer = \"above Upper\"\ncolour = \"#ffffff\"\nintervals = [{ k = [0.0, 1e-300], texture = \"sand\" }]",
+            ),
+        ),
+        (
+            "values",
+            with(
+                &before,
+                "[[style.scalars]]\nvolume = \"north\"\nintervals = [{ range = [nan, 1.0], texture = \"sand\" }]",
+            ),
+        ),
         ("a scene", with(&before, "[[scenes]]\nname = \"steep\"\n[scenes.scene]\nexaggeration = 1e-300")),
-        ("a medium", with(&before, "[[scenes]]\nname = \"cloud\"\n[[scenes.scene.media.surroundings]]\nvolume = \"north\"\nfunction = { domain = [1.0, 1.0], stops = [{ at = 0.0, colour = \"#ffffff\" }, { at = 1.0, colour = \"#ffffff\" }] }")),
+        (
+            "a medium",
+            with(
+                &before,
+                "[[scenes]]\nname = \"cloud\"\n[[scenes.scene.media.surroundings]]\nvolume = \"north\"\nfunction = { domain = [1.0, 1.0], stops = [{ at = 0.0, colour = \"#ffffff\" }, { at = 1.0, colour = \"#ffffff\" }] }",
+            ),
+        ),
         ("a figure", with(&before, "[[figures]]\nfile = \"block.doc\"")),
     ];
     for (what, edited) in edits {

@@ -178,7 +178,7 @@ const FEWEST_ON_A_LINE: usize = 8;
 
 /// Traces whose X and Y lead from the first to the last without turning back, straight or crooked. Those of a volume turn
 /// back with each of its lines.
-fn follow_one_line(columns: &Columns, options: &SegyOptions) -> Result<(), SegyProblem> {
+pub(super) fn follow_one_line(columns: &Columns, options: &SegyOptions) -> Result<(), SegyProblem> {
     let Some(coordinates) = varying(columns, options) else { return Ok(()) };
     let places: Vec<DVec2> = (0..columns.count()).filter_map(|trace| coordinates.of(trace)).collect();
     let (Some(first), Some(last)) = (places.first(), places.last()) else { return Ok(()) };

@@ -149,7 +149,7 @@ fn a_hint_that_names_columns_uses_those_of_the_file() {
         ("x\ty\tpick", "x, y, pick", "x,y,z"),
     ] {
         let cut = header.chars().find(|c| ",;\t".contains(*c)).unwrap().to_string();
-        let row = |n: i32| (0..header.split(&cut as &str).count()).map(|at| (n * 7 + at as i32).to_string());
+        let row = |n: i32| (0..header.split(&cut as &str).count()).map(move |at| (n * 7 + at as i32).to_string());
         let rows: String = (1..9).map(|n| row(n).collect::<Vec<_>>().join(&cut) + "\n").collect();
         match refused(&format!("{header}\n{rows}")) {
             FormatError::Columns { why, example: found, .. } => {

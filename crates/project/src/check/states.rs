@@ -226,7 +226,8 @@ impl States {
     /// Whether a file that cannot be read may name `text`. One whose bytes cannot be read at all may name anything.
     pub(super) fn may_be_named(&self, text: &str) -> bool {
         let doubtful = self.unreadable.iter().chain(&self.set_aside);
-        self.history_unread.is_some() || doubtful.into_iter().any(|unreadable| unreadable.text.as_ref().is_none_or(|all| all.contains(text)))
+        self.history_unread.is_some()
+            || doubtful.into_iter().any(|unreadable| unreadable.text.as_ref().is_none_or(|all| all.contains(text)))
     }
 
     /// Whether another process has changed the project since it was read.
@@ -307,7 +308,9 @@ pub(super) fn report(states: &States, report: &mut CheckReport) {
         && let Some(last) = states.way_back(present).last()
         && states.numbers().next().is_some_and(|first| first < last)
     {
-        report.notes.push(format!("undo ends at step {last}, because the step before it is missing, damaged or cannot be read"));
+        report.notes.push(format!(
+            "undo ends at step {last}, because the step before it is missing, damaged or cannot be read"
+        ));
     }
     if !states.set_aside.is_empty() {
         let names: Vec<&str> = states.set_aside.iter().map(|aside| aside.file.as_str()).collect();

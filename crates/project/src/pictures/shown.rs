@@ -41,11 +41,8 @@ pub(crate) fn refusals(facts: Facts<'_>) -> Vec<String> {
     if let Err(error) = compiled(&functions) {
         note(error.to_string());
     }
-    let mut scenes: Vec<(String, Result<Scene, ProjectError>)> = document
-        .scenes
-        .iter()
-        .map(|entry| (format!("scene \"{}\": ", entry.name), Ok(entry.scene.clone())))
-        .collect();
+    let mut scenes: Vec<(String, Result<Scene, ProjectError>)> =
+        document.scenes.iter().map(|entry| (format!("scene \"{}\": ", entry.name), Ok(entry.scene.clone()))).collect();
     if scenes.is_empty() {
         scenes.push(("the view by default: ".to_owned(), scene::choose(document, None)));
     }

@@ -218,7 +218,8 @@ fn null_amplitudes_are_found_said_and_left_out() {
     let stated = SegyOptions { null: Some(NullAmplitude::At(-123.5)), ..SegyOptions::default() };
     assert!(!null(5, -123.5).read(&stated).unwrap().volume.samples().contains(&-123.5));
     // Integers with a null are stored as floats, of which NaN is no data; without one they stay integers.
-    let whole = |v: f32, n: usize| (if (30..60).contains(&n) { -32_000.0 } else { v / 4.0 } as i16).to_be_bytes().to_vec();
+    let whole =
+        |v: f32, n: usize| (if (30..60).contains(&n) { -32_000.0 } else { v / 4.0 } as i16).to_be_bytes().to_vec();
     let integers = volume(3, 100, whole);
     for (null, stored) in [
         (NullAmplitude::At(-32_000.0), survey::sample::SampleType::Float32),
@@ -230,7 +231,7 @@ fn null_amplitudes_are_found_said_and_left_out() {
         assert_eq!(is_nothing, stored == survey::sample::SampleType::Float32);
         assert!(file.amplitudes.rms.is_finite(), "{:?}", file.amplitudes);
         super::builder::with_file(&integers.bytes(), |path| {
-            let opened = super::super::SegyFile::open(path, &options, &Progress::silent()).unwrap();
+            let opened = SegyFile::open(path, &options, &Progress::silent()).unwrap();
             assert_eq!(opened.sample_type(), stored);
         });
     }
