@@ -92,6 +92,7 @@ mod number;
 mod obj;
 mod opendtect;
 mod options;
+mod orientations;
 mod outline;
 mod overturned_points;
 mod petrel;
@@ -231,11 +232,13 @@ fn selected(
     options: &ImportOptions,
     kind: SurfaceKind,
 ) -> Result<Vec<RawSurface>, FormatError> {
-    let numbered = |surface: &RawSurface| surface.name.as_deref().is_none_or(|name| name.trim().is_empty());
-    if let Some(number) = options.select.as_ref().and_then(|wanted| wanted.parse::<usize>().ok())
+    // Those without a name are listed by their number, and selected by it; a name that is a number is a name first.
+    let unnamed = |surface: &RawSurface| surface.name.as_deref().is_none_or(|name| name.trim().is_empty());
+    if let Some(wanted) = &options.select
+        && let Ok(number @ 1..) = wanted.parse::<usize>()
         && surfaces.len() > 1
-        && surfaces.iter().all(numbered)
-        && (1..=surfaces.len()).contains(&number)
+        && surfaces.get(number - 1).is_some_and(unnamed)
+        && surfaces.iter().all(|surface| surface.name.as_ref() != Some(wanted))
     {
         return Ok(surfaces.into_iter().skip(number - 1).take(1).collect());
     }
@@ -244,9 +247,12 @@ fn selected(
         (None, Some(name)) if surfaces.len() > 1 => name,
         _ => return Ok(surfaces),
     };
-    let name = |(n, surface): (usize, &RawSurface)| surface.name.clone().unwrap_or_else(|| format!("{}", n + 1));
+    let name = |(n, surface): (usize, &RawSurface)| {
+        let own = surface.name.clone().filter(|_| !unnamed(surface));
+        own.unwrap_or_else(|| format!("{}", n + 1))
+    };
     let available = surfaces.iter().enumerate().map(name).collect::<Vec<_>>();
-    let found: Vec<_> = surfaces.into_iter().filter(|s| s.name.as_deref() == Some(wanted)).collect();
+    let found: Vec<_> = surfaces.into_iter().filter(|s| s.name.as_ref() == Some(wanted)).collect();
     if found.is_empty() {
         return Err(FormatError::NoSuchName {
             file: source.path.clone(),
@@ -311,14 +317,13 @@ fn built<T>(
     kind: SurfaceKind,
     build: Build<T>,
 ) -> Result<Vec<(T, ImportReport)>, FormatError> {
-    let (format, surfaces) = read_source(source, Some(geometry), options, kind)?;
+    let (format, mut surfaces) = read_source(source, Some(geometry), options, kind)?;
     let name = |raw: &RawSurface| name_of(raw, source, options);
-    let in_metres = |mut raw: RawSurface| {
-        raw.convert_places(options.xy_unit);
-        raw
-    };
-    let surfaces = surfaces.into_iter().map(in_metres);
-    surfaces.map(|raw| build(&source.path, name(&raw), format.clone(), raw, geometry, options)).collect()
+    surfaces.iter_mut().for_each(|raw| raw.convert_places(options.xy_unit));
+    if kind == SurfaceKind::Horizon {
+        orientations::attach(&mut surfaces, name, geometry, options)?;
+    }
+    surfaces.into_iter().map(|raw| build(&source.path, name(&raw), format.clone(), raw, geometry, options)).collect()
 }
 
 /// Writes a horizon under a temporary name, then renames the file. A rotated grid is resampled for formats

@@ -78,7 +78,7 @@ fn a_contact_and_a_horizon_on_which_others_rely_stay() {
     fs::write(&path, before.replace("contact = \"erosional\"", "contact = \"conformable\"")).unwrap();
     let found = project::check::check(project.root(), &Progress::silent()).unwrap();
     assert!(!found.is_well() && found.damage.is_empty(), "{found:?}");
-    assert_eq!(found.undrawable.as_deref(), Some(error.as_str()));
+    assert_eq!(found.undrawable, [error]);
     let mut project = Project::open(project.root()).unwrap();
     stick(&mut project, "F", around(60.0, 3, |_| 8.0)).unwrap();
     project
@@ -121,4 +121,79 @@ fn what_no_few_surfaces_fit_is_refused_and_changes_nothing() {
     let error = stick(&mut project, "Beside", beside).unwrap_err().to_string();
     assert!(error.contains("no part of fault \"Beside\" lies in the survey"), "{error}");
     assert_eq!(text(&project), before);
+}
+
+#[test]
+fn a_check_tells_what_render_would_refuse_of_colours_styles_scenes_and_figures() {
+    use project::command::ImportVolume;
+    use project::document::Polarity;
+    use project::pictures::load::{Request, load};
+    use project::pictures::scene;
+    let folder = tempfile::tempdir().unwrap();
+    let geometry = SurveyGeometry::regular(SIZE, 25.0, 10.0, VerticalUnit::Metres);
+    let (path, quiet) = (folder.path().join("north.sgy"), Progress::silent());
+    let samples = (0..SIZE.iter().product()).map(|n| (n as f32 * 0.3).sin()).collect();
+    let volume = survey::Volume::from_samples(SIZE, samples).unwrap();
+    files::segy::write(&path, &geometry, &volume, &files::segy::WriteOptions::default(), &quiet).unwrap();
+    let mut project = begun(folder.path());
+    let options = files::segy::SegyOptions::default();
+    let polarity = Polarity::default();
+    let import = ImportVolume { path, name: None, polarity, options, origin: None, memory_bytes: None, moved: false };
+    project.apply(&Command::Import(import), &quiet).unwrap();
+    draw(&mut project, "Upper", 120.0, 120.0).unwrap();
+    let (root, before) = (project.root().to_owned(), text(&project));
+    assert!(project::check::check(&root, &quiet).unwrap().is_well());
+    let clip = before.lines().find(|line| line.starts_with("clip = ")).unwrap().to_owned();
+    let edits: [(&str, String); 8] = [
+        ("clip = 0.0", before.replace(&clip, "clip = 0.0")),
+        ("clip = nan", before.replace(&clip, "clip = nan")),
+        ("interval", before.replace("interval = 10.0", "interval = 1e-300")),
+        (
+            "a layer",
+            with(
+                &before,
+                "[[style.layers.styles]]\nlayer = \"above Upper\"\ncolour = \"#ffffff\"\nintervals = [{ k = [0.0, 1e-300], texture = \"sand\" }]",
+            ),
+        ),
+        (
+            "values",
+            with(
+                &before,
+                "[[style.scalars]]\nvolume = \"north\"\nintervals = [{ range = [nan, 1.0], texture = \"sand\" }]",
+            ),
+        ),
+        ("a scene", with(&before, "[[scenes]]\nname = \"steep\"\n[scenes.scene]\nexaggeration = 1e-300")),
+        (
+            "a medium",
+            with(
+                &before,
+                "[[scenes]]\nname = \"cloud\"\n[[scenes.scene.media.surroundings]]\nvolume = \"north\"\nfunction = { domain = [1.0, 1.0], stops = [{ at = 0.0, colour = \"#ffffff\" }, { at = 1.0, colour = \"#ffffff\" }] }",
+            ),
+        ),
+        ("a figure", with(&before, "[[figures]]\nfile = \"block.doc\"")),
+    ];
+    for (what, edited) in edits {
+        assert_ne!(edited, before, "{what}");
+        fs::write(root.join("project.toml"), edited).unwrap();
+        let found = project::check::check(&root, &quiet).unwrap();
+        assert!(found.damage.is_empty() && !found.undrawable.is_empty(), "{what}: {found:?}");
+        // A picture says the same of what it shows.
+        let project = Project::open(&root).unwrap();
+        let name = project.document().scenes.first().map(|entry| entry.name.as_str());
+        let said = scene::choose(project.document(), name).and_then(|mut scene| {
+            scene::prepare(project.document(), &mut scene, &quiet)?;
+            load(project::Facts::of(&root, project.document()), &Request::new(&scene), &quiet).map(drop)
+        });
+        let said = said.err().map(|error| error.to_string());
+        let is_told = said.as_ref().is_none_or(|said| found.undrawable.iter().any(|told| told.contains(said)));
+        assert!(is_told, "{what}: {said:?}, not {:?}", found.undrawable);
+        assert!(said.is_some() || ["a medium", "a figure"].contains(&what), "{what} is drawn");
+    }
+    fs::write(root.join("project.toml"), &before).unwrap();
+    assert!(project::check::check(&root, &quiet).unwrap().is_well());
+}
+
+/// A state with a table at its end, in the format of before ids, which are not needed there.
+fn with(text: &str, table: &str) -> String {
+    format!("{text}\n{table}\n")
 }

@@ -245,7 +245,8 @@ pub(super) enum Action {
         /// Project folder
         project: PathBuf,
     },
-    /// Check that everything in a project is there and undamaged; the exit code is 1 if something is damaged
+    /// Check that everything in a project is there, undamaged and can be drawn; the exit code is 1 if something is not, or
+    /// cannot be read
     #[command(after_help = "Examples:\n  petroglyph check north.petro\n  petroglyph check north.petro --repair")]
     Check {
         /// Project folder

@@ -320,4 +320,13 @@ fn surfaces_without_a_name_are_selected_by_their_number() {
     assert!(worst(&horizon, |xy| plane_of_cases(xy) + 300.0).0 < 0.01);
     let error = read_horizons(&path, &survey, &select("7")).unwrap_err().to_string();
     assert!(error.contains("it has: 1, 2"), "{error}");
+    // One without a name among others; a name that is a number is a name.
+    let named = |name: &str, by: f64| set(by).replace("HEADER {\n", &format!("HEADER {{\nname:{name}\n"));
+    let (_folder, path) = file("b.vs", &(named("1", 0.0) + &set(300.0) + &named("B", 600.0)));
+    for (word, by) in [("1", 0.0), ("2", 300.0), ("B", 600.0)] {
+        let (horizon, _) = read_horizons(&path, &survey, &select(word)).unwrap().remove(0);
+        assert!(worst(&horizon, |xy| plane_of_cases(xy) + by).0 < 0.01, "{word}");
+    }
+    let error = read_horizons(&path, &survey, &select("3")).unwrap_err().to_string();
+    assert!(error.contains("it has: 1, 2, B"), "{error}");
 }

@@ -165,7 +165,7 @@ impl ImportVolume {
             ));
         }
         if non_finite > 0 {
-            progress.warn(format!("{non_finite} samples are not numbers (NaN or infinite) and are read as 0"));
+            progress.warn(format!("{non_finite} samples are not numbers (NaN or infinite): no data"));
         }
         Ok(done)
     }

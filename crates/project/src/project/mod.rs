@@ -194,7 +194,7 @@ impl Project {
     /// The steps of the history, oldest first; a step that cannot be read says so.
     pub fn history(&self) -> Vec<HistoryLine> {
         let mut lines = Vec::new();
-        for step in history::numbers(&self.root) {
+        for step in history::numbers(&self.root).unwrap_or_default() {
             let summary = match history::read(&self.root, step) {
                 Ok(Some(step)) => step.summary,
                 Ok(None) => continue,
