@@ -1,9 +1,9 @@
 //! GeoTIFF: a grid of heights, one band, as GDAL, QGIS and ArcGIS write it.
 //!
-//! Places are those of the tags ModelPixelScale and ModelTiepoint, or ModelTransformation; a pixel is an area, whose place
-//! is its outer corner, or a point (GTRasterType). Values of GDAL_NODATA and tiles that are not there are holes; scale,
-//! offset, name and unit of the band come from GDAL_METADATA. Neither the format nor, as a rule, the file states the sign:
-//! models of the ground are elevations, positive up.
+//! Places are those of the tags ModelPixelScale and ModelTiepoint, or ModelTransformation; a pixel is an area, whose
+//! place is its outer corner, or a point (GTRasterType). Values of GDAL_NODATA and tiles that are not there are holes;
+//! scale, offset, name and unit of the band come from GDAL_METADATA. Neither the format nor, as a rule, the file states
+//! the sign: models of the ground are elevations, positive up.
 //!
 //! # Memory
 //! The file, 8 bytes for each pixel, and one tile. A file has at most [`PIXELS_A_BYTE`] pixels for each of its bytes.

@@ -1,9 +1,10 @@
 //! GXF, the grid exchange format of Geosoft: lines `#KEY` with a value on the next line, then `#GRID` and the values.
 //!
-//! `#POINTS` values a row, `#ROWS` rows, `#PTSEPARATION` and `#RWSEPARATION` apart, `#XORIGIN` and `#YORIGIN` of the lower
-//! left corner, `#ROTATION` of the grid's bottom in degrees anticlockwise, `#SENSE` for the corner of the first value and the
-//! direction of rows, `#TRANSFORM` a scale and an offset, `#DUMMY` for none. Where `#GTYPE` is n, a value is n characters of
-//! base 90 from `%` on; `!` is none, `"` before a count and a value repeats it. Nothing states the sign.
+//! `#POINTS` values a row, `#ROWS` rows, `#PTSEPARATION` and `#RWSEPARATION` apart, `#XORIGIN` and `#YORIGIN` of the
+//! lower left corner, `#ROTATION` of the grid's bottom in degrees anticlockwise, `#SENSE` for the corner of the first
+//! value and the direction of rows, `#TRANSFORM` a scale and an offset, `#DUMMY` for none. Where `#GTYPE` is n, a value
+//! is n characters of base 90 from `%` on; `!` is none, `"` before a count and a value repeats it. Nothing states the
+//! sign.
 
 use super::grid::Scan;
 use super::number;

@@ -1,10 +1,10 @@
 //! NetCDF of the classic kind (`CDF` 1, 2 and 5): grids as GMT, GDAL and xarray write them.
 //!
-//! A header lists dimensions, attributes and variables; numbers are big-endian, names and values are filled up to 4 bytes.
-//! Every variable over two dimensions (further ones may have one value) that has coordinates is a horizon. Coordinates are
-//! those of variables with the names of the dimensions; in the old format of GMT they are `x_range`, `y_range`, `spacing`
-//! and `dimension`, with `z` in rows from the north. `scale_factor`, `add_offset`, `_FillValue`, `missing_value`, `units`
-//! and `positive` of a variable are followed. Degrees are refused.
+//! A header lists dimensions, attributes and variables; numbers are big-endian, names and values are filled up to 4
+//! bytes. Every variable over two dimensions (further ones may have one value) that has coordinates is a horizon.
+//! Coordinates are those of variables with the names of the dimensions; in the old format of GMT they are `x_range`,
+//! `y_range`, `spacing` and `dimension`, with `z` in rows from the north. `scale_factor`, `add_offset`, `_FillValue`,
+//! `missing_value`, `units` and `positive` of a variable are followed. Degrees are refused.
 //!
 //! # Memory
 //! The file, and twice 8 bytes for each value.

@@ -1,9 +1,9 @@
 //! NumPy arrays (`.npy`): horizons over the lattice of the survey, points, and volumes.
 //!
-//! `\x93NUMPY`, two bytes of version (1 to 3), the length of the header in 2 or 4 bytes, the header, which is a Python dict
-//! with `descr` (byte order, kind and bytes of a number), `fortran_order` and `shape`, then the numbers. An array has no
-//! places: one of two axes is a horizon, `[inline][crossline]` of the survey, one of rows of three is points X, Y, Z, and
-//! one of three axes a volume ([`NpyVolume`]), `[inline][crossline][sample]` of the survey. NaN is a hole.
+//! `\x93NUMPY`, two bytes of version (1 to 3), the length of the header in 2 or 4 bytes, the header, which is a Python
+//! dict with `descr` (byte order, kind and bytes of a number), `fortran_order` and `shape`, then the numbers. An array
+//! has no places: one of two axes is a horizon, `[inline][crossline]` of the survey, one of rows of three is points X,
+//! Y, Z, and one of three axes a volume ([`NpyVolume`]), `[inline][crossline][sample]` of the survey. NaN is a hole.
 //!
 //! # Memory
 //! Of a horizon, the file and twice 8 bytes for each value; of a volume, what is asked for.

@@ -1,9 +1,9 @@
-//! A volume in a NumPy array of three axes, `[inline][crossline][sample]`, in C or Fortran order, which has no places: those of
-//! the lattice that it is imported into.
+//! A volume in a NumPy array of three axes, `[inline][crossline][sample]`, in C or Fortran order, which has no places:
+//! those of the lattice that it is imported into.
 //!
-//! It is read in parts, for which it takes 16 bytes for each sample of an inline, or of a slice in Fortran order. Integers of
-//! up to two bytes stay what they are, other numbers become floats of four bytes. NaN and infinity are 0, and counted; a trace of
-//! nothing else is not live.
+//! It is read in parts, for which it takes 16 bytes for each sample of an inline, or of a slice in Fortran order.
+//! Integers of up to two bytes stay what they are, other numbers become floats of four bytes. NaN and infinity are 0,
+//! and counted; a trace of nothing else is not live.
 
 use super::FormatError;
 use super::binary::Word;

@@ -1,9 +1,9 @@
 //! Wavefront OBJ: surfaces of faces, lines of sticks, points.
 //!
-//! `v x y z`, `f a b c …` with the numbers of places from 1, or from the last one back where negative, each perhaps with
-//! those of texture and normal after slashes; `l` and `p` are lines and points. Each `o` is a surface, or each `g` where
-//! there is no `o`. All else (normals, textures, materials) is left out. Nothing states unit or sign; elevations, positive
-//! up, are usual, and Blender exports them along Y unless it is told otherwise.
+//! `v x y z`, `f a b c …` with the numbers of places from 1, or from the last one back where negative, each perhaps
+//! with those of texture and normal after slashes; `l` and `p` are lines and points. Each `o` is a surface, or each `g`
+//! where there is no `o`. All else (normals, textures, materials) is left out. Nothing states unit or sign; elevations,
+//! positive up, are usual, and Blender exports them along Y unless it is told otherwise.
 
 use super::columns::is_inside;
 use super::placement::voxel_xy;

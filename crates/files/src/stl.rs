@@ -1,8 +1,9 @@
 //! STL: triangles, as text or binary.
 //!
-//! Text: `solid NAME`, for each triangle `facet normal … / outer loop / vertex x y z` three times `/ endloop / endfacet`,
-//! `endsolid`; each solid is a surface. Binary: 80 bytes of anything, a count, then for each triangle 12 floats of 4 bytes,
-//! little-endian, of which the first three are a normal, and 2 bytes. Normals are left out. Nothing states unit or sign.
+//! Text: `solid NAME`, for each triangle `facet normal … / outer loop / vertex x y z` three times `/ endloop /
+//! endfacet`, `endsolid`; each solid is a surface. Binary: 80 bytes of anything, a count, then for each triangle 12
+//! floats of 4 bytes, little-endian, of which the first three are a normal, and 2 bytes. Normals are left out. Nothing
+//! states unit or sign.
 
 use super::binary::{BinaryCursor, Endian, Word};
 use super::raw::{RawShape, RawSurface, ReadContext};

@@ -1,11 +1,11 @@
 //! Features of maps, lines and points with properties, as GeoJSON, shapefiles and GeoPackages hold them: traces of faults
 //! with a dip, contacts, measurements of a dip.
 //!
-//! Features of one `name` (or `id`, `fault`, `formation` …) are one object. A line with heights is a stick. A line without
-//! is the trace of a fault at sea level: with `dip` and `dip_dir` (or `azimuth`, or `strike`, a right angle before) it
-//! becomes the surface that dips from there through the survey, and without them a vertical one, which is said. Heights are
-//! those of the corners, or else of a property (`z`, `elevation`, `depth_m`). Lines and points of a horizon with a dip and
-//! its direction have normals.
+//! Features of one `name` (or `id`, `fault`, `formation` …) are one object. A line with heights is a stick. A line
+//! without is the trace of a fault at sea level: with `dip` and `dip_dir` (or `azimuth`, or `strike`, a right angle
+//! before) it becomes the surface that dips from there through the survey, and without them a vertical one, which is
+//! said. Heights are those of the corners, or else of a property (`z`, `elevation`, `depth_m`). Lines and points of a
+//! horizon with a dip and its direction have normals.
 
 use super::column::{self, Column, NamedColumn};
 use super::crs::Crs;

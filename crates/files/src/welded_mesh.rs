@@ -21,8 +21,8 @@ impl WeldedMesh {
         })
     }
 
-    /// Adds a face of three corners or more, which is cut from its first one into triangles; those without three different
-    /// corners are left out.
+    /// Adds a face of three corners or more, which is cut from its first one into triangles; those without three
+    /// different corners are left out.
     pub(super) fn face(&mut self, corners: &[DVec3]) {
         let [first, rest @ ..] = corners else { return };
         let a = self.vertex(*first);

@@ -1,4 +1,5 @@
-//! Lines and points with properties: shapefiles, written by hand from the definition of the format, and what all features share.
+//! Lines and points with properties: shapefiles, written by hand from the definition of the format, and what all
+//! features share.
 
 use super::cases::survey_of_cases;
 use super::*;

@@ -1,5 +1,5 @@
-//! Grids in binary files of other programs: GeoTIFF, NumPy arrays, classic NetCDF; and GXF. Each is written here by hand, from
-//! the definition of its format.
+//! Grids in binary files of other programs: GeoTIFF, NumPy arrays, classic NetCDF; and GXF. Each is written here by
+//! hand, from the definition of its format.
 
 use super::cases::{plane_of_cases, survey_of_cases, worst};
 use super::*;
