@@ -2,8 +2,8 @@
 //! those of the lattice that it is imported into.
 //!
 //! It is read in parts, for which it takes 16 bytes for each sample of an inline, or of a slice in Fortran order.
-//! Integers of up to two bytes stay what they are, other numbers become floats of four bytes. NaN and infinity are 0,
-//! and counted; a trace of nothing else is not live.
+//! Integers of up to two bytes stay what they are, other numbers become floats of four bytes. NaN and infinity are no
+//! data, and counted; a trace of nothing else is not live.
 
 use super::FormatError;
 use super::binary::Word;
@@ -128,7 +128,16 @@ impl NpyVolume {
             return T::from_f32(value as f32);
         }
         self.non_finite += 1;
-        T::from_f32(0.0)
+        T::from_f32(f32::NAN)
+    }
+
+    /// Traces that are not live hold zeros, which take no room where they are stored.
+    fn empty_dead<T: Sample>(&self, block: &Block, out: &mut [T]) {
+        let (Some(live), [_, crosslines, samples]) = (&self.live, self.size) else { return };
+        let traces = block.inlines.clone().flat_map(|x| block.crosslines.clone().map(move |y| x * crosslines + y));
+        for (_, trace) in traces.zip(out.chunks_exact_mut(samples)).filter(|(at, _)| !live[*at]) {
+            trace.fill(T::from_f32(0.0));
+        }
     }
 
     fn fill<T: Sample>(&mut self, block: &Block, out: &mut [T], progress: &Progress) -> Result<(), SourceError> {
@@ -180,7 +189,11 @@ impl BlockSource for NpyVolume {
     }
 
     fn read_block(&mut self, block: &Block, out: SamplesMut<'_>, progress: &Progress) -> Result<(), SourceError> {
-        survey::of_any_type!(out, |samples| self.fill(block, samples, progress))
+        survey::of_any_type!(out, |samples| {
+            self.fill(block, samples, progress)?;
+            self.empty_dead(block, samples);
+            Ok(())
+        })
     }
 }
 
@@ -267,7 +280,8 @@ mod tests {
             let live = volume.live().unwrap().into_owned();
             assert_eq!((live.iter().filter(|live| !**live).count(), live[4]), (1, false));
             let samples = read(&mut volume, &Block { inlines: 0..4, crosslines: 0..3 });
-            assert_eq!((volume.non_finite(), samples[2 * 15 + 3], samples[2 * 15 + 4]), (6, 0.0, 204.0));
+            assert!(samples[2 * 15 + 3].is_nan() && samples[20..25] == [0.0; 5], "{samples:?}");
+            assert_eq!((volume.non_finite(), samples[2 * 15 + 4]), (6, 204.0));
         }
     }
 

@@ -287,7 +287,9 @@ pub enum ProjectError {
         source: history::HistoryError,
     },
     /// The project has something already, which a history would replace.
-    #[error("a history makes a whole block, and this project has horizons or faults already; create a new project for it")]
+    #[error(
+        "a history makes a whole block, and this project has horizons or faults already; create a new project for it"
+    )]
     HistoryOverBlock,
     /// The layers could not be parameterized.
     #[error(transparent)]

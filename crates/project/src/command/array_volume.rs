@@ -36,7 +36,7 @@ pub(super) fn execute(
     write_blocks(&new, &mut array, &info, memory_bytes, progress).map_err(cancelled_within)?;
     if array.non_finite() > 0 {
         let count = array.non_finite();
-        progress.warn(format!("{count} samples are not numbers (NaN or infinite) and are read as 0"));
+        progress.warn(format!("{count} samples are not numbers (NaN or infinite): no data"));
     }
     let size = array.size();
     let traces = array.live().map_or(size[0] * size[1], |live| live.iter().filter(|live| **live).count());

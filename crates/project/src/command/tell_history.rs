@@ -64,7 +64,9 @@ fn read(text: &str, patterns: &[&str]) -> Result<History, ProjectError> {
 
 impl TellHistory {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
-        if !(draft.document.horizons.is_empty() && draft.document.faults.is_empty() && draft.document.volumes.is_empty())
+        if !(draft.document.horizons.is_empty()
+            && draft.document.faults.is_empty()
+            && draft.document.volumes.is_empty())
         {
             return Err(ProjectError::HistoryOverBlock);
         }
