@@ -57,7 +57,9 @@ fn project(project: &Project) -> anyhow::Result<Report> {
         report.say("no survey geometry yet: import a volume");
     }
     if let Some(text) = &document.geological_history {
-        report.say("made from a geological history (geological_history in project.toml)").field("geological_history", text);
+        report
+            .say("made from a geological history (geological_history in project.toml)")
+            .field("geological_history", text);
     }
     for noun in [Noun::Volume, Noun::Horizon, Noun::Fault, Noun::Well, Noun::Layer] {
         let names = document.names(noun);

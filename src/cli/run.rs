@@ -129,7 +129,7 @@ pub(super) fn carry_out(request: Request, wait: Duration, progress: &Progress) -
         Request::Patterns { out, project } => patterns(&out, project.as_deref())?,
         Request::BenchSegy { side, folder } => told(bench::segy::run(side, &folder, progress)?),
         Request::Bench { sizes, dump } => told(bench::run(sizes, dump.as_deref(), progress)?),
-        Request::Create { project, geometry, history } => create(project, geometry, history.as_deref(), progress)?
+        Request::Create { project, geometry, history } => create(project, geometry, history.as_deref(), progress)?,
         Request::Change { project, command } => change(open(&project)?, &command, progress)?,
         Request::Evaluate { project, truth } => assembly::evaluate(&project, &truth, progress)?,
         Request::ProposeFaults { project, settings } => {
