@@ -1,7 +1,7 @@
 //! What cannot be drawn is refused by the command that brings it, and told by a check of a project that was edited so.
 
 use project::command::{DrawHorizon, PickFault, Remove, SetContact};
-use project::document::Drawn;
+use project::document::{Document, Drawn};
 use project::error::Noun;
 use project::{Command, Project, ProjectError};
 use std::fs;
@@ -144,33 +144,26 @@ fn a_check_tells_what_render_would_refuse_of_colours_styles_scenes_and_figures()
     let (root, before) = (project.root().to_owned(), text(&project));
     assert!(project::check::check(&root, &quiet).unwrap().is_well());
     let clip = before.lines().find(|line| line.starts_with("clip = ")).unwrap().to_owned();
+    let document = project.document().clone();
+    let changed = |change: &dyn Fn(&mut Document)| {
+        let mut document = document.clone();
+        change(&mut document);
+        document.to_text(&root.join("project.toml")).unwrap()
+    };
+    let in_layer = "layer = 'above Upper'\ncolour = '#ffffff'\nintervals = [{ k = [0.0, 1e-300], texture = 'sand' }]";
+    let by_values = "volume = 'seismic'\nintervals = [{ range = [nan, 1.0], texture = 'sand' }]";
+    let steep = "name = 'steep'\n[scene]\nexaggeration = 1e-300";
+    let cloud = "name = 'cloud'\n[[scene.media.surroundings]]\nvolume = 'seismic'\nfunction = { domain = [1.0, 1.0], stops = \
+                 [{ at = 0.0, colour = '#ffffff' }, { at = 1.0, colour = '#ffffff' }] }";
     let edits: [(&str, String); 8] = [
         ("clip = 0.0", before.replace(&clip, "clip = 0.0")),
         ("clip = nan", before.replace(&clip, "clip = nan")),
         ("interval", before.replace("interval = 10.0", "interval = 1e-300")),
-        (
-            "a layer",
-            with(
-                &before,
-                "[[style.layers.styles]]\nlayer = \"above Upper\"\ncolour = \"#ffffff\"\nintervals = [{ k = [0.0, 1e-300], texture = \"sand\" }]",
-            ),
-        ),
-        (
-            "values",
-            with(
-                &before,
-                "[[style.scalars]]\nvolume = \"north\"\nintervals = [{ range = [nan, 1.0], texture = \"sand\" }]",
-            ),
-        ),
-        ("a scene", with(&before, "[[scenes]]\nname = \"steep\"\n[scenes.scene]\nexaggeration = 1e-300")),
-        (
-            "a medium",
-            with(
-                &before,
-                "[[scenes]]\nname = \"cloud\"\n[[scenes.scene.media.surroundings]]\nvolume = \"north\"\nfunction = { domain = [1.0, 1.0], stops = [{ at = 0.0, colour = \"#ffffff\" }, { at = 1.0, colour = \"#ffffff\" }] }",
-            ),
-        ),
-        ("a figure", with(&before, "[[figures]]\nfile = \"block.doc\"")),
+        ("a layer", changed(&|document| document.style.layers.set(toml::from_str(in_layer).unwrap()))),
+        ("values", changed(&|document| document.style.scalars.push(toml::from_str(by_values).unwrap()))),
+        ("a scene", changed(&|document| document.scenes.push(toml::from_str(steep).unwrap()))),
+        ("a medium", changed(&|document| document.scenes.push(toml::from_str(cloud).unwrap()))),
+        ("a figure", changed(&|document| document.figures.push(toml::from_str("file = 'block.doc'").unwrap()))),
     ];
     for (what, edited) in edits {
         assert_ne!(edited, before, "{what}");
@@ -191,9 +184,4 @@ fn a_check_tells_what_render_would_refuse_of_colours_styles_scenes_and_figures()
     }
     fs::write(root.join("project.toml"), &before).unwrap();
     assert!(project::check::check(&root, &quiet).unwrap().is_well());
-}
-
-/// A state with a table at its end, in the format of before ids, which are not needed there.
-fn with(text: &str, table: &str) -> String {
-    format!("{text}\n{table}\n")
 }
