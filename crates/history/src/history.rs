@@ -64,7 +64,7 @@ impl History {
     ///
     /// ```
     /// let wrong = history::History::from_toml("size = [4000, 3000, 1500]\n[[events]]\nkind = \"fauld\"").unwrap_err();
-    /// assert_eq!((wrong.line, wrong.to_string().contains("did you mean fault?")), (3, true));
+    /// assert_eq!((wrong.line, wrong.to_string().contains("did you mean fault")), (3, true));
     /// ```
     pub fn from_toml(text: &str) -> Result<Self, HistoryError> {
         Self::with_rocks(text, &|_| Ok(()))

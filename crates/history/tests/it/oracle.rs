@@ -172,7 +172,7 @@ pub(crate) fn tipped(d: &mut Draws) -> Event {
             "[[events]]\nkind = \"fault\"\nat = [2000, 1500, 600]\ndip = {dip}\nslip = {slip}\nextent = [2000, 1200]\n"
         ),
         // The place before is that from which the slip leads here.
-        back: Box::new(move |p| Some((0..200).fold(p, |q, _| p - down * slip_at(q)))),
+        back: Box::new(move |p| Some((0..60).fold(p, |q, _| p - down * slip_at(q)))),
     }
 }
 
@@ -203,7 +203,7 @@ pub(crate) fn ramp(d: &mut Draws) -> Event {
             }
             let rad = f64::to_radians(dip);
             let mut q = p;
-            let steps = 4000;
+            let steps = 1500;
             for _ in 0..steps {
                 let way = if piece(q) == 1 { DVec3::new(rad.cos(), 0.0, rad.sin()) } else { DVec3::X };
                 q += way * slip / f64::from(steps);
@@ -237,7 +237,7 @@ pub(crate) fn parallel_fold(d: &mut Draws) -> Event {
             let (u, z) = (p.x - 2000.0, p.z - middle);
             let far = |x: f64| (u - x).powi(2) + (z - line(x)).powi(2);
             let (mut low, mut high) = (u - 500.0, u + 500.0);
-            for _ in 0..30 {
+            for _ in 0..16 {
                 let nearest = (0..=20)
                     .map(|n| low + (high - low) * f64::from(n) / 20.0)
                     .min_by(|a, b| far(*a).total_cmp(&far(*b)))
