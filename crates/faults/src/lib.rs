@@ -40,6 +40,9 @@ const GREATEST_THROW: i32 = 20;
 /// Least evidence of a fault, and of what may be one.
 const ACCEPTED: f32 = 0.08;
 const POSSIBLE: f32 = 0.045;
+/// Least throw of a fault, samples, on half of its surface, or on a tenth of it where it dies out: slopes that are off, as
+/// between two faults whose walls are dragged, pass for a smaller one.
+const LEAST_THROW: [f32; 2] = [2.5, 3.5];
 /// Least area, traces times samples.
 const AREA: f32 = 400.0;
 /// Traces by samples, or by those of a thinner volume, of a surface whose evidence counts as it is: that of a smaller one counts
@@ -69,7 +72,9 @@ impl FaultSurface {
 
     /// Whether it is a fault by all that was measured.
     pub fn is_accepted(&self) -> bool {
-        self.evidence >= ACCEPTED
+        let [half, tenth] = LEAST_THROW;
+        let is_offset = self.offsets.median.abs() >= half || self.offsets.upper_decile >= tenth;
+        self.evidence >= ACCEPTED && is_offset
     }
 
     /// Whether it may be one.

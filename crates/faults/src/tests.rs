@@ -104,6 +104,19 @@ fn what_is_no_fault_is_not_taken_for_one() {
     assert!(found(&Volume::filled([1, 60, 90], 1.0)).is_empty(), "one inline");
 }
 
+/// A throw of two samples everywhere is little, for slopes may be as far off: whatever its evidence it is listed apart, unless
+/// it grows to more than three somewhere.
+#[test]
+fn a_small_throw_is_only_possible() {
+    let mut fault = found(&faulted(5.0, 0.0)).remove(0);
+    for (median, upper_decile, is_accepted) in [(-2.0, 3.0, false), (2.0, 4.0, true), (-3.0, 3.0, true)] {
+        (fault.offsets.median, fault.offsets.upper_decile) = (median, upper_decile);
+        assert_eq!((fault.is_possible(), fault.is_accepted()), (true, is_accepted), "{median}, {upper_decile}");
+        let proposed = proposals(std::slice::from_ref(&fault), &[], &geometry([56, 48, 96]));
+        assert_eq!(proposed[0].is_minor, !is_accepted);
+    }
+}
+
 /// Other beds beyond a plane: no throw makes both sides match, so it is a cut, and says so. A fault is none.
 #[test]
 fn where_other_beds_begin_is_a_cut() {

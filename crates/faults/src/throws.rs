@@ -63,6 +63,8 @@ pub struct Offsets {
     pub greatest: f32,
     /// Median throw, samples.
     pub median: f32,
+    /// The throw, without its sign, that a tenth of them exceed, samples.
+    pub upper_decile: f32,
     /// Share of the throws near one that varies smoothly over the surface.
     pub constant: f32,
 }
@@ -239,6 +241,9 @@ impl Offsets {
         let mut throws: Vec<f32> = cells.iter().map(|cell| cell.throw).collect();
         throws.sort_by(f32::total_cmp);
         self.median = throws.get(throws.len() / 2).copied().unwrap_or(0.0);
+        let mut sizes: Vec<f32> = throws.iter().map(|throw| throw.abs()).collect();
+        sizes.sort_by(f32::total_cmp);
+        self.upper_decile = sizes.get(9 * sizes.len() / 10).copied().unwrap_or(0.0);
         let share = |is: &dyn Fn(f32) -> bool| throws.iter().filter(|&&t| is(t)).count() as f32 / count;
         self.one_sign = share(&|t| t >= 2.0).max(share(&|t| t <= -2.0));
         let points: Vec<[f64; 4]> = (0..self.cells.len())
