@@ -1,8 +1,8 @@
 //! What the reader of an event knows of the block so far: its size, where its beds lie, and which names rocks have.
 
+use crate::deformation::Deformation;
 use crate::error::{HistoryError, Problem};
 use crate::fields::Fields;
-use crate::kinds::Act;
 use glam::{DVec2, DVec3};
 
 /// Says of a name whether a rock is called so, or which rocks have names like it.
@@ -29,21 +29,23 @@ impl<'a> Context<'a> {
         Self { size, zone: [0.0, size.z], rocks, marks: Vec::new() }
     }
 
-    /// What an event does to the beds.
-    pub(crate) fn follow(&mut self, act: &Act) {
-        if let Some(map) = act.deformation() {
-            self.marks.iter_mut().for_each(|mark| *mark = map.apply(*mark, map.side_before(*mark)));
+    /// What moves rock carries the beds along.
+    pub(crate) fn moved(&mut self, map: &dyn Deformation) {
+        self.marks.iter_mut().for_each(|mark| *mark = map.apply(*mark, map.side_before(*mark)));
+        self.measure();
+    }
+
+    /// Beds are laid down; `between` gives the depths of their top and of their bounded base at a place of the map.
+    pub(crate) fn laid(&mut self, between: impl Fn(DVec2) -> [f64; 2]) {
+        for n in 0..MARKS * MARKS {
+            let share = DVec2::new(f64::from(n / MARKS), f64::from(n % MARKS)) / f64::from(MARKS - 1);
+            let map = share * self.size.truncate();
+            self.marks.extend(between(map).map(|depth| map.extend(depth)));
         }
-        if let Act::Beds(beds) = act {
-            for n in 0..MARKS * MARKS {
-                let share = DVec2::new(f64::from(n / MARKS), f64::from(n % MARKS)) / f64::from(MARKS - 1);
-                let map = share * self.size.truncate();
-                let [top, base] = beds.bounded_zone(map);
-                // A bed alone has no base; it is as thick as it states.
-                let base = if base > top { base } else { top + beds.thickness_at(map) };
-                self.marks.extend([map.extend(top), map.extend(base)]);
-            }
-        }
+        self.measure();
+    }
+
+    fn measure(&mut self) {
         let depths = self.marks.iter().map(|mark| mark.z);
         let (top, base) = depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(z), high.max(z)));
         self.zone = if base > top { [top, base.min(self.size.z).max(top + 1.0)] } else { [0.0, self.size.z] };

@@ -98,7 +98,12 @@ impl History {
             }
             let acts = (kind.read)(&table, &context)?;
             table.finish()?;
-            acts.iter().for_each(|act| context.follow(act));
+            for act in &acts {
+                match act {
+                    Act::Beds(beds) => context.laid(|map| beds.bounded_zone(map)),
+                    other => other.deformation().into_iter().for_each(|map| context.moved(map)),
+                }
+            }
             events.push(Event { kind: kind.word, line: table.line(), acts });
         }
         let found = events.iter().map(|event| event.acts.len()).sum();

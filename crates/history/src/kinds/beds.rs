@@ -220,9 +220,11 @@ impl Beds {
         self.k_below(bed, self.top_of(bed, map), self.beds[bed].thickness_at(map), p.z)
     }
 
-    /// Depths of the top of all beds and of the base that is bounded: the top of the lowest one.
+    /// Depths of the top of all beds and of the base that is bounded, the top of the lowest one. A bed alone has no base; it
+    /// is as thick as it states.
     pub(crate) fn bounded_zone(&self, map: DVec2) -> [f64; 2] {
-        [self.top_m, self.top_of(0, map)]
+        let base = self.top_of(0, map);
+        [self.top_m, if base > self.top_m { base } else { self.top_m + self.thickness_at(map) }]
     }
 }
 

@@ -93,7 +93,8 @@ impl Terrain {
         (self.share * (self.depth_m - self.hills_m * self.waves.at(map) + self.valley_m * valley)).max(0.0)
     }
 
-    /// Carves the ground on a lattice of so many nodes along the longer edge; `rock_at` gives the hardness of rock at a place, 1 for middling, and none for air.
+    /// Carves the ground on a lattice of so many nodes along the longer edge; `rock_at` gives the hardness of rock at a
+    /// place, 1 for middling, and none for air.
     pub(crate) fn carved(&self, nodes: usize, rock_at: impl Fn(DVec3) -> Option<f64> + Sync) -> Self {
         use rayon::prelude::*;
         let longest = self.size.x.max(self.size.y);

@@ -4,7 +4,8 @@
 //! afterwards, measured along its normal, and slides along its neighbours so that it keeps its length:
 //!
 //! ```text
-//! p = C(x) + n N(x)        u = s(x) − n θ(x)        C = (x, r(x)),  θ = atan r′,  N = (−sin θ, cos θ),  s = ∫ √(1 + r′²) dx
+//! p = C(x) + n N(x)        u = s(x) − n θ(x)
+//! C = (x, r(x)),  θ = atan r′,  N = (−sin θ, cos θ),  s = ∫ √(1 + r′²) dx
 //! ```
 //!
 //! since ds_n = (1 − n θ′) ds along the line at distance n. Going back needs the foot of the perpendicular, a monotone
