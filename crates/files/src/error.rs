@@ -209,6 +209,14 @@ pub enum FormatError {
         /// What is wrong.
         why: String,
     },
+    /// The file contradicts itself, or has what its format does not allow.
+    #[error("{file} is damaged, or not of its format: {why}")]
+    Damaged {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong.
+        why: String,
+    },
     /// More depths at one place than a horizon has: triangles or points without order.
     #[error(
         "{file}: '{name}' has more than {limit} depths at one place; it is not the surface of a horizon, so add it as a fault or write one surface to a file"

@@ -74,6 +74,8 @@ pub enum Format {
     NetCdf,
     /// Shapefiles of lines and points.
     Shapefile,
+    /// GeoPackages of lines and points.
+    GeoPackage,
 }
 
 /// The kind of surface that a file holds, or that is to be read from it.
@@ -156,6 +158,7 @@ pub(super) const CODECS: &[Codec] = &[
     super::netcdf::CODEC,
     super::geotiff::CODEC,
     super::shapefile::CODEC,
+    super::geopackage::CODEC,
     super::stl::CODEC,
     super::esri::CODEC,
     super::gxf::CODEC,

@@ -1,6 +1,6 @@
 //! Files that are known but not read: archives, documents of offices, databases, grids of other kinds.
 
-use super::text;
+use super::{geopackage, text};
 use std::path::Path;
 
 /// The bytes that a kind of file begins with, and what to export instead.
@@ -10,7 +10,8 @@ const STARTS: [(&[u8], &str); 24] = [
     (b"GOCAD ", "of GOCAD's objects TSurf, VSet and PLine are read: export it as one of these"),
     (
         b"SQLite format 3",
-        "it is a database such as a GeoPackage: export the layer as a shapefile or GeoJSON (ogr2ogr), or as csv with x, y, z",
+        "it is a database (SQLite), such as SpatiaLite or MBTiles, and no GeoPackage: export the layer as one (ogr2ogr), \
+         or as csv with x, y, z",
     ),
     (b"\x1f\x8b", "it is a gzip archive: unpack it first"),
     (b"BZh", "it is a bzip2 archive: unpack it first"),
@@ -73,6 +74,9 @@ pub(super) fn by_name(path: &Path, bytes: &[u8]) -> Option<&'static str> {
     }
     if bytes.starts_with(b"AC10") && bytes.get(6) == Some(&0) {
         return Some("it is a DWG drawing: save it as ASCII DXF");
+    }
+    if geopackage::is_one(path, bytes) {
+        return None;
     }
     if let Some((_, what)) = STARTS.iter().find(|(start, _)| bytes.starts_with(start)) {
         return Some(what);

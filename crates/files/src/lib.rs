@@ -50,7 +50,7 @@
 //! | Esri ASCII, Surfer (DSAA, DSBB, DSRB) | ✓ | | | |
 //! | GeoTIFF, GXF, NetCDF (classic), NumPy arrays | ✓ | | | |
 //! | OBJ, STL | ✓ | ✓ | | |
-//! | GeoJSON, shapefile | points | traces with a dip, sticks | | |
+//! | GeoJSON, shapefile, GeoPackage | points | traces with a dip, sticks | | |
 //! | ZMAP+ points, RMS points (CSV/XYZ with 999 separators or attributes), polygons with ids | ✓ | outlines, sticks | | |
 //!
 //! To add a format: one file with a `CODEC`; in `format.rs` one variant of [`Format`] and one line in `CODECS`.
@@ -73,6 +73,7 @@ mod export;
 mod fault;
 mod format;
 mod geojson;
+mod geopackage;
 mod geotiff;
 mod grid;
 mod gxf;
@@ -107,6 +108,7 @@ mod scatter;
 pub mod segy;
 mod shapefile;
 mod sheets;
+mod sqlite;
 mod sticks;
 mod stl;
 mod surface_kind;

@@ -25,6 +25,11 @@ impl ReadContext<'_> {
     pub(crate) fn domain(&self) -> Option<Domain> {
         self.geometry.map(|g| Domain::of(g.vertical.unit))
     }
+
+    /// Whether the user names that surface.
+    pub(crate) fn asks_for(&self, name: &str) -> bool {
+        [&self.options.select, &self.options.name].into_iter().flatten().any(|wanted| wanted == name)
+    }
 }
 
 /// A point of a table.

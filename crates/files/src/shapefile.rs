@@ -72,7 +72,7 @@ fn shape(source: &SourceFile, rest: &mut BinaryCursor<'_>, length: usize) -> Res
         1 if kind != 31 => {
             let [x, y] = rest.numbers(Word::F64)?;
             let z = if has_z { rest.number(Word::F64)? } else { f64::NAN };
-            return Ok(vec![vec![corner(x, y, z)]].into_iter().filter(|line| is_line(line)).collect());
+            return Ok(vec![vec![corner(x, y, z)]].into_iter().filter(|line| traces::is_line(line)).collect());
         }
         // Patches of triangles have a kind for each part.
         1 | 3 | 5 => {
@@ -105,15 +105,11 @@ fn shape(source: &SourceFile, rest: &mut BinaryCursor<'_>, length: usize) -> Res
     let corners: Vec<DVec3> = pairs.map(|([x, y], z)| corner(*x, *y, *z)).collect();
     let ends = parts.iter().skip(1).copied().chain([count]);
     let line = |(start, end): (&usize, usize)| corners.get(*start..end).unwrap_or_default().to_vec();
-    Ok(parts.iter().zip(ends).map(line).filter(|line| is_line(line)).collect())
+    Ok(parts.iter().zip(ends).map(line).filter(|line| traces::is_line(line)).collect())
 }
 
 fn corner(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, if z > NO_DATA { z } else { f64::NAN })
-}
-
-fn is_line(line: &[DVec3]) -> bool {
-    !line.is_empty() && line.iter().all(|p| p.truncate().is_finite() && p.truncate().abs().max_element() < 1e12)
 }
 
 /// The columns of a `.dbf` that say something of a feature, and its rows.

@@ -91,6 +91,11 @@ impl SourceFile {
         FormatError::BadGrid { file: self.path.clone(), why: why.into() }
     }
 
+    /// An error of a file that contradicts itself.
+    pub(crate) fn damaged(&self, why: impl Into<String>) -> FormatError {
+        FormatError::Damaged { file: self.path.clone(), why: why.into() }
+    }
+
     /// An error where places are angles; the evidence says why.
     pub(crate) fn degrees(&self, kind: SurfaceKind, evidence: &str) -> FormatError {
         self.empty(

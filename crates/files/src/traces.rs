@@ -46,7 +46,7 @@ impl Feature {
         self.properties.iter().find(|(name, value)| name.eq_ignore_ascii_case(key) && !value.is_null()).map(|(_, v)| v)
     }
 
-    fn name(&self) -> Option<String> {
+    pub(super) fn name(&self) -> Option<String> {
         NAMES.iter().filter_map(|key| self.property(key)).find_map(|value| match value {
             Value::String(text) => Some(text.trim().to_owned()).filter(|text| !text.is_empty()),
             Value::Number(number) => Some(number.to_string()),
@@ -80,6 +80,19 @@ impl Feature {
 pub(super) fn is_known(name: &str) -> bool {
     let mut known = NAMES.into_iter().chain(DIPS).chain(DIRECTIONS).chain([STRIKE, POLARITY]);
     known.any(|known| known.eq_ignore_ascii_case(name)) || column::of_name(name).column == Column::Z
+}
+
+/// Whether all corners have places, and there are any.
+pub(super) fn is_line(line: &[DVec3]) -> bool {
+    !line.is_empty() && line.iter().all(|p| p.truncate().is_finite() && p.truncate().abs().max_element() < 1e12)
+}
+
+/// What a note says of features that are left out.
+pub(super) fn reason(error: &FormatError) -> String {
+    match error {
+        FormatError::Empty { why, .. } => why.clone(),
+        other => other.to_string(),
+    }
 }
 
 /// A number, which some programs write as a text.
@@ -156,12 +169,30 @@ pub(super) fn surfaces(
         return Err(source.degrees(context.kind, "none is beyond 360 and 90"));
     }
     let mut surfaces = Vec::with_capacity(found.len());
+    let (mut left_out, mut refused) = (Vec::new(), None);
     for (name, lines) in found {
-        let mut made = surface(source, name, &lines, context)?;
-        crs.state(&mut made);
-        surfaces.push(made);
+        match surface(source, name.clone(), &lines, context) {
+            Ok(mut made) => {
+                crs.state(&mut made);
+                surfaces.push(made);
+            }
+            Err(error) if name.as_deref().is_some_and(|name| context.asks_for(name)) => return Err(error),
+            Err(error) => {
+                let name = name.map_or_else(|| "what has no name".to_owned(), |name| format!("'{name}'"));
+                left_out.push(format!("{name} is left out: {}", reason(&error)));
+                refused.get_or_insert(error);
+            }
+        }
     }
-    Ok(surfaces)
+    // A map has layers of several kinds: what is no horizon, or no fault, does not stand in the way of what is.
+    match refused.filter(|_| surfaces.is_empty()) {
+        Some(error) => Err(error),
+        None => {
+            left_out.truncate(4);
+            surfaces.iter_mut().for_each(|surface| surface.notes.extend(left_out.iter().cloned()));
+            Ok(surfaces)
+        }
+    }
 }
 
 fn surface(

@@ -6,6 +6,7 @@ mod drawings;
 mod faults;
 mod features;
 mod foreign;
+mod geopackages;
 mod grids;
 mod known;
 mod meshes;

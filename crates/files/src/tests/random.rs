@@ -95,6 +95,7 @@ fn binary_files() -> Vec<(&'static str, Vec<u8>)> {
         ("geotiff", rasters::small_geotiff()),
         ("netcdf", netcdf::small_grid()),
         ("shapefile", features::small_shapefile()),
+        ("geopackage", geopackages::small_geopackage()),
     ]
 }
 
