@@ -78,11 +78,11 @@ fn surface_seeds(corpus: &Path) -> Done {
             write_horizon(&folder.join("horizon"), &horizon, &geometry, format).is_ok(),
             write_fault(&folder.join("fault"), &fault, &geometry, format).is_ok(),
         ];
-        for (name, text) in crate::HAND_WRITTEN {
-            if *name == format.name() {
-                fs::write(folder.join("hand-written"), text)?;
-                fs::write(detected.join(*name), text)?;
-            }
+        let texts = crate::HAND_WRITTEN.iter().map(|(name, text)| (*name, text.as_bytes().to_vec()));
+        let all = texts.chain(crate::inputs::binary_files()).filter(|(name, _)| *name == format.name());
+        for (n, (name, content)) in all.enumerate() {
+            fs::write(folder.join(format!("hand-written-{n}")), &content)?;
+            fs::write(detected.join(format!("{name}-{n}")), &content)?;
         }
         for (name, is_written) in ["horizon", "fault"].into_iter().zip(own) {
             if is_written {

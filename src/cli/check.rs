@@ -6,7 +6,8 @@ use project::error::Noun;
 use std::path::Path;
 use system::command_line::CommandLine;
 
-/// What a check found, for people and programs. The exit code is that of a failure while something is damaged.
+/// What a check found, for people and programs. The exit code is that of a failure while something is damaged, cannot be
+/// read or cannot be drawn.
 pub(super) fn report(found: &CheckReport) -> Report {
     let project = found.project.display();
     let repair = CommandLine::new("check").value(&found.project).flag("--repair");
@@ -20,9 +21,20 @@ pub(super) fn report(found: &CheckReport) -> Report {
     for damage in &found.damage {
         say_damage(&mut report, damage, &found.project);
     }
-    if let Some(reason) = &found.undrawable {
-        let undo = CommandLine::new("undo").value(&found.project);
+    for unread in &found.unread {
+        report.say(format!("cannot be read now: {} ({}): {}", unread.file, unread.what, unread.reason));
+    }
+    if !found.unread.is_empty() {
+        report.say(
+            "  what to do: it may be whole, and nothing is removed for it; see to what stands in the way (permissions, \
+             open files, memory, disk, network, a path that is no UTF-8), then check again",
+        );
+    }
+    for reason in &found.undrawable {
         report.say(format!("cannot be drawn: {reason}"));
+    }
+    if !found.undrawable.is_empty() {
+        let undo = CommandLine::new("undo").value(&found.project);
         report.say(format!("  what to do: that, or go back with `{undo}`"));
     }
     for leftover in &found.leftovers {
@@ -43,6 +55,7 @@ pub(super) fn report(found: &CheckReport) -> Report {
     }
     let remaining = found.damage.iter().filter(|damage| !damage.repaired).count();
     report.say(match (remaining, found.damage.len()) {
+        (0, _) if !found.unread.is_empty() => "nothing that could be read is damaged".to_owned(),
         (0, 0) => "nothing is damaged".to_owned(),
         (0, _) => "nothing is damaged any more".to_owned(),
         (1, _) => "1 file or folder is damaged".to_owned(),

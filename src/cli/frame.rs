@@ -86,6 +86,7 @@ mod tests {
     fn typed(bounds: &str, size: &str) -> CreateArgs {
         CreateArgs {
             project: "a.petro".into(),
+            history: None,
             bounds: Some(bounds.into()),
             size: Some(size.into()),
             inlines: None,

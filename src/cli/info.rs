@@ -56,6 +56,11 @@ fn project(project: &Project) -> anyhow::Result<Report> {
     } else {
         report.say("no survey geometry yet: import a volume");
     }
+    if let Some(text) = &document.geological_history {
+        report
+            .say("made from a geological history (geological_history in project.toml)")
+            .field("geological_history", text);
+    }
     for noun in [Noun::Volume, Noun::Horizon, Noun::Fault, Noun::Well, Noun::Layer] {
         let names = document.names(noun);
         if !names.is_empty() {

@@ -14,12 +14,19 @@ const LARGEST: u64 = file::MAX_INTERPRETATION_BYTES;
 
 /// Describes a horizon, fault or well file; `None` if it is none of them (then it may be SEG-Y).
 pub(super) fn describe(path: &Path, options: &ImportOptions) -> anyhow::Result<Option<Report>> {
+    if let Some(error) = known_at_length(path) {
+        return Err(error.into());
+    }
     if options.format.is_none() && is_volume(path) {
         return Ok(None);
     }
     if options.format.is_none() {
         let unreadable = |source| FormatError::Io { action: "read", file: path.to_owned(), source };
-        let text = String::from_utf8_lossy(&file::read(path, LARGEST).map_err(unreadable)?).into_owned();
+        let bytes = file::read(path, LARGEST).map_err(unreadable)?;
+        if let Some(error) = files::known_but_not_read(path, &bytes) {
+            return Err(error.into());
+        }
+        let text = String::from_utf8_lossy(&bytes).into_owned();
         if let Some(found) = well::describe(path, &text)? {
             return Ok(Some(well_file(&found)));
         }
@@ -32,6 +39,14 @@ pub(super) fn describe(path: &Path, options: &ImportOptions) -> anyhow::Result<O
         Err(FormatError::UnknownFormat { is_named: false, .. }) if may_be_segy(path) => Ok(None),
         Err(error) => Err(error.into()),
     }
+}
+
+/// What a file too long for an interpretation is, if it is an archive or another kind that is known and not read.
+fn known_at_length(path: &Path) -> Option<FormatError> {
+    let mut start = vec![0; 1 << 16];
+    file::ordinary(path).ok().filter(|facts| facts.len() > LARGEST)?;
+    File::open(path).and_then(|mut file| file.read_exact(&mut start)).ok()?;
+    files::known_but_not_read(path, &start)
 }
 
 /// Whether a file is a volume rather than an interpretation, judged by its extension, its length or the first bytes of

@@ -102,6 +102,7 @@ pub(super) fn import_options(typed: ReadingArgs) -> Result<ImportOptions, Usage>
         place_by: typed.place_by.as_deref().map(|t| word("--place-by", t, &places)).transpose()?,
         gap_m: typed.gap_m,
         shape: typed.shape.as_deref().map(|t| word("--shape", t, &shapes)).transpose()?,
+        orientations: None,
         value_order: typed.value_order.as_deref().map(|t| word("--value-order", t, &orders)).transpose()?,
     })
 }
@@ -129,7 +130,7 @@ fn add_horizon(typed: HorizonAddArgs) -> Result<Request, Usage> {
         name: typed.name,
         contact: typed.contact.as_deref().map(|t| contact("--contact", t)).transpose()?.unwrap_or_default(),
         age,
-        options: import_options(typed.reading)?,
+        options: ImportOptions { orientations: typed.orientations, ..import_options(typed.reading)? },
     };
     Ok(Request::Change { project: typed.project, command: Command::AddHorizon(command) })
 }

@@ -50,7 +50,7 @@ pub(super) enum Request {
     /// Import or link a volume; the project is created if it does not exist.
     Import { project: PathBuf, command: Command },
     /// Create a project.
-    Create { project: PathBuf, geometry: Option<SurveyGeometry> },
+    Create { project: PathBuf, geometry: Option<SurveyGeometry>, history: Option<PathBuf> },
     /// Change a project.
     Change { project: PathBuf, command: Command },
     /// Measure an extraction against a truth.
@@ -217,7 +217,9 @@ impl TryFrom<Action> for Request {
                     None => Self::Bench { sizes, dump: typed.dump },
                 }
             }
-            Action::Create(typed) => Self::Create { geometry: frame(&typed)?, project: typed.project },
+            Action::Create(typed) => {
+                Self::Create { geometry: frame(&typed)?, project: typed.project, history: typed.history }
+            }
             Action::Velocity { project, velocity_m_s } => {
                 change(project, Command::SetVelocity(SetVelocity { velocity_m_s }))
             }

@@ -11,7 +11,7 @@ use project::Project;
 use project::ProjectError;
 use project::chains::demo::{self, survey_files};
 use project::chains::illustrate;
-use project::command::{AddScene, Command, Effect, ProposeFaults, SetParameterization, SetRaw};
+use project::command::{AddScene, Command, Effect, ProposeFaults, SetParameterization, SetRaw, TellHistory};
 use project::folder::refuse_inside_project;
 use project::pictures::load::Stage;
 use project::pictures::{load, scene};
@@ -19,7 +19,7 @@ use project::{derived, styles};
 use render::Scene;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use survey::Progress;
+use survey::{Progress, SurveyGeometry};
 use synth::SynthSettings;
 use system::file;
 use ttf::{TextureLibrary, contact_sheet};
@@ -129,12 +129,7 @@ pub(super) fn carry_out(request: Request, wait: Duration, progress: &Progress) -
         Request::Patterns { out, project } => patterns(&out, project.as_deref())?,
         Request::BenchSegy { side, folder } => told(bench::segy::run(side, &folder, progress)?),
         Request::Bench { sizes, dump } => told(bench::run(sizes, dump.as_deref(), progress)?),
-        Request::Create { project, geometry } => {
-            Project::create(&project, geometry)?.publish()?;
-            let mut report = Report::line(format!("created {}", project.display()));
-            report.field("project", project);
-            report
-        }
+        Request::Create { project, geometry, history } => create(project, geometry, history.as_deref(), progress)?,
         Request::Change { project, command } => change(open(&project)?, &command, progress)?,
         Request::Evaluate { project, truth } => assembly::evaluate(&project, &truth, progress)?,
         Request::ProposeFaults { project, settings } => {
@@ -186,6 +181,32 @@ fn change(mut project: Project, command: &Command, progress: &Progress) -> anyho
     option::name_in(effect.notes_mut());
     let mut report = Report::text(effect.to_string().trim_end());
     report.fields(&effect);
+    Ok(report)
+}
+
+/// Creates a project; with the file of a history, the block that it tells of.
+fn create(
+    path: PathBuf,
+    geometry: Option<SurveyGeometry>,
+    history: Option<&Path>,
+    progress: &Progress,
+) -> anyhow::Result<Report> {
+    // What is wrong with the text is known before anything is written.
+    let text = history.map(|file| {
+        let text = file::read_text(file, file::MAX_DOCUMENT_BYTES);
+        text.with_context(|| format!("{} could not be read", file.display()))
+    });
+    let text = text.transpose()?;
+    let mut new = Project::create(&path, geometry)?;
+    let told = text.map(|text| new.project().apply(&Command::TellHistory(TellHistory { text }), progress)).transpose();
+    let told = told.with_context(|| history.map_or_else(String::new, |file| file.display().to_string()))?;
+    new.publish()?;
+    let mut report = Report::line(format!("created {}", path.display()));
+    if let Some(effect) = told {
+        report.say_text(effect.to_string().trim_end());
+        report.fields(&effect);
+    }
+    report.field("project", path);
     Ok(report)
 }
 

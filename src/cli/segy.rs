@@ -47,11 +47,7 @@ pub(super) fn segy_options(typed: &SegyArgs) -> Result<SegyOptions, Usage> {
 
 /// A null amplitude, or `none`.
 fn null(text: &str) -> Result<NullAmplitude, Usage> {
-    if text.eq_ignore_ascii_case("none") {
-        return Ok(NullAmplitude::None);
-    }
-    let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-    number.map(NullAmplitude::At).ok_or_else(|| format!("--null-amplitude {text}: expected a number or none"))
+    text.parse().map_err(|()| format!("--null-amplitude {text}: expected a number or none"))
 }
 
 /// Parses a word, if one was given.

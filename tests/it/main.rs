@@ -22,6 +22,7 @@ mod fault_extent;
 mod figure;
 mod foreign;
 mod help;
+mod history;
 mod hostile;
 mod imported_parameterization;
 mod kill;

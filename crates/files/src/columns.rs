@@ -33,6 +33,8 @@ pub(super) fn quality_of(word: &str) -> Option<Quality> {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ColumnLayout {
     pub columns: Vec<Column>,
+    /// What the file calls them; none without a header.
+    pub names: Vec<String>,
     pub unit: Option<(ZUnit, String)>,
     pub domain: Option<(Domain, String)>,
     pub positive: Option<(ZPositive, String)>,
@@ -44,7 +46,8 @@ pub(super) struct ColumnLayout {
 impl ColumnLayout {
     /// Columns whose names state nothing about the vertical axis.
     pub(crate) fn plain(columns: Vec<Column>) -> Self {
-        Self { columns, unit: None, domain: None, positive: None, horizontal: None, notes: Vec::new() }
+        let (names, notes) = (Vec::new(), Vec::new());
+        Self { columns, names, unit: None, domain: None, positive: None, horizontal: None, notes }
     }
 
     /// Whether a point can be placed: Z, and lines or X, Y.
@@ -69,6 +72,7 @@ pub(super) fn from_header(names: &[&str], domain: Option<Domain>) -> ColumnLayou
         let other_z = name.column == Column::Z && Some(n) != z;
         layout.columns.push(if again || other_z { Column::Other } else { name.column });
     }
+    layout.names = names.iter().map(|name| name.trim().trim_matches('"').to_owned()).collect();
     let x = layout.columns.iter().position(|column| *column == Column::X);
     layout.horizontal = x.and_then(|x| Some((named[x].unit?, format!("column '{}'", names[x].trim()))));
     if let Some(z) = z {
@@ -97,7 +101,11 @@ pub(super) fn by_fit(
     let unclear = |why: String| FormatError::Columns {
         file: source.path.clone(),
         why,
-        example: if width >= 5 { "inline,crossline,x,y,z" } else { "x,y,z" }.into(),
+        example: format!(
+            "{}{}",
+            if named { "name," } else { "" },
+            if width >= 5 { "inline,crossline,x,y,z" } else { "x,y,z" }
+        ),
     };
     if width < 3 {
         return Err(unclear(format!("there is no header and only {width} numbers a line")));

@@ -9,11 +9,12 @@
 //!
 //! Written in columns from the north, five values per line.
 
+use super::grid::{self, NodeOrder};
 use super::options::ValueOrder;
 use super::raw::{RawShape, RawSurface, ReadContext};
 use super::text::{self, SourceFile};
 use super::write::WriteFailure;
-use super::zmap::{from_columns, in_columns, unrotated};
+use super::zmap::in_columns;
 use super::{Codec, Format, FormatError, HorizonWriter, irap};
 use crate::number;
 use std::io::Write;
@@ -57,21 +58,17 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
             }
             word if word.starts_with("FS") => {}
             word if word.starts_with("->") => name = Some(line.text[2..].trim().to_string()),
-            _ => {
-                for field in &fields {
-                    values.push(source.grid_value(line.number, field.text)?);
-                }
-            }
+            _ => values.extend(source.grid_values(std::iter::once(line))?),
         }
     }
     let (Some([x, y]), Some(counts)) = (limits, counts) else {
         return Err(source.bad_grid("there is no FSLIMI or no FSNROW line"));
     };
-    let grid = unrotated(source, counts, x, y)?;
+    let grid = grid::unrotated(source, counts, x, y)?;
     source.check_values(grid.count, values.len())?;
     let file: Vec<f64> = values.into_iter().map(|v| if number::is_null(v, null) { f64::NAN } else { v }).collect();
-    let columns = from_columns(&file, grid.count);
-    let rows = irap::transposed(&file, grid.count);
+    let columns = NodeOrder::ColumnsFromNorth.sorted(&file, grid.count);
+    let rows = NodeOrder::Rows.sorted(&file, grid.count);
     let (usual, other) = (roughness(&columns, grid.count[1]), roughness(&rows, grid.count[1]));
     let evidence = format!(
         "the mean bend from node to node is {usual:.4} in columns from the north, {other:.4} in rows from the south"

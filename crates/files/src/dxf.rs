@@ -9,12 +9,11 @@
 
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext};
 use super::text::{self, SourceFile};
+use super::welded_mesh::WeldedMesh;
 use super::{Codec, Format, FormatError};
 use crate::number;
 use glam::DVec3;
 use indexmap::IndexMap;
-use std::collections::HashMap;
-use survey::mesh::TriangleMesh;
 
 pub(super) const CODEC: Codec =
     Codec { read_horizon: Some(read), read_fault: Some(read), ..Codec::of(Format::Dxf, "dxf", "dxf", detect) };
@@ -60,28 +59,8 @@ struct Entity<'a> {
 /// A layer of the drawing.
 #[derive(Default)]
 struct DxfLayer {
-    mesh: TriangleMesh,
-    index: HashMap<[u64; 3], u32>,
+    faces: WeldedMesh,
     points: Vec<RawPoint>,
-}
-
-impl DxfLayer {
-    fn vertex(&mut self, at: DVec3) -> u32 {
-        let mesh = &mut self.mesh;
-        *self.index.entry(at.to_array().map(f64::to_bits)).or_insert_with(|| {
-            mesh.vertices.push(at);
-            mesh.vertices.len() as u32 - 1
-        })
-    }
-
-    fn face(&mut self, corners: [DVec3; 4]) {
-        let [a, b, c, d] = corners.map(|corner| self.vertex(corner));
-        for triangle in [[a, b, c], [a, c, d]] {
-            if triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0] {
-                self.mesh.triangles.push(triangle);
-            }
-        }
-    }
 }
 
 /// The layers in order of appearance, and the lines so far.
@@ -149,8 +128,7 @@ impl DxfDrawing {
         let wrong = |expected: &str| Err(source.syntax(entity.line, expected, entity.kind));
         match entity.kind {
             "3DFACE" => match given {
-                4 => self.layer(entity.layer).face(corners),
-                3 => self.layer(entity.layer).face([corners[0], corners[1], corners[2], corners[2]]),
+                3 | 4 => self.layer(entity.layer).faces.face(&corners[..given]),
                 _ => return wrong("a 3DFACE with three or four corners"),
             },
             "POLYLINE" => {
@@ -171,7 +149,7 @@ impl DxfDrawing {
                         );
                     };
                     let layer = self.layer(&polyline.layer);
-                    faces.into_iter().for_each(|face| layer.face(face));
+                    faces.iter().for_each(|face| layer.faces.face(face));
                 }
             }
             "LWPOLYLINE" => {
@@ -202,7 +180,7 @@ impl DxfDrawing {
                     return wrong("a face with three or four places of its mesh (codes 71 to 74)");
                 };
                 let layer = mesh.layer.clone();
-                self.layer(&layer).face(face);
+                self.layer(&layer).faces.face(&face);
             }
             (_, None) => return wrong("a VERTEX with X, Y and Z"),
             (Some(mesh), Some(at)) if entity.flags & CONTROL == 0 => mesh.places.push(at),
@@ -255,8 +233,8 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     drawing.add(source, &entity)?;
     let mut surfaces = Vec::new();
     for (name, layer) in drawing.layers {
-        let is_surface = !layer.mesh.triangles.is_empty();
-        let shape = if is_surface { RawShape::Mesh(layer.mesh) } else { RawShape::Points(layer.points) };
+        let is_surface = !layer.faces.mesh.triangles.is_empty();
+        let shape = if is_surface { RawShape::Mesh(layer.faces.mesh) } else { RawShape::Points(layer.points) };
         let name = Some(name).filter(|name| !name.is_empty());
         surfaces.push(RawSurface::new(name, shape));
     }

@@ -209,6 +209,14 @@ pub enum FormatError {
         /// What is wrong.
         why: String,
     },
+    /// The file contradicts itself, or has what its format does not allow.
+    #[error("{file} is damaged, or not of its format: {why}")]
+    Damaged {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong.
+        why: String,
+    },
     /// More depths at one place than a horizon has: triangles or points without order.
     #[error(
         "{file}: '{name}' has more than {limit} depths at one place; it is not the surface of a horizon, so add it as a fault or write one surface to a file"
@@ -220,6 +228,19 @@ pub enum FormatError {
         name: String,
         /// Most depths at one place.
         limit: usize,
+    },
+    /// An array has no places, and not the size of the lattice that would give it some.
+    #[error(
+        "{file}: an array of {} x {} x {} inlines, crosslines and samples has no places, and {}",
+        found[0], found[1], found[2], of_lattice(*lattice)
+    )]
+    OtherLattice {
+        /// The file.
+        file: PathBuf,
+        /// Its inlines, crosslines and samples.
+        found: [usize; 3],
+        /// Those of the project, if it has a lattice.
+        lattice: Option<[usize; 3]>,
     },
     /// What would be made of the file does not fit into memory.
     #[error("{file} cannot be put on the survey: {source}")]
@@ -272,6 +293,15 @@ pub enum FormatError {
         /// What to do.
         instead: &'static str,
     },
+}
+
+/// What the lattice of a project lacks for an array.
+fn of_lattice(lattice: Option<[usize; 3]>) -> String {
+    match lattice {
+        Some([a, b, c]) => format!("the project has {a} x {b} x {c}: transpose it, or save that part of it"),
+        None => "the project has no lattice: create it with one (`create --bounds`, `--size`), or import SEG-Y first"
+            .to_owned(),
+    }
 }
 
 impl FormatError {

@@ -4,10 +4,10 @@
 //! `NODATA_value`, a line each in any order, then the values. A value lies in the middle of its cell. The format states
 //! neither unit nor sign: models of the ground are elevations, positive up.
 
+use super::grid::{self, NodeOrder};
 use super::number;
-use super::raw::{RawShape, RawSurface, ReadContext};
+use super::raw::{RawSurface, ReadContext};
 use super::text::{self, SourceFile};
-use super::zmap::unrotated;
 use super::{Codec, Format, FormatError};
 use std::collections::HashMap;
 
@@ -38,9 +38,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
             header.insert(key, value.ok_or_else(|| source.syntax(line.number, "a name and a number", line.text))?);
             continue;
         }
-        for token in tokens {
-            values.push(source.grid_value(line.number, token)?);
-        }
+        values.extend(source.grid_values(std::iter::once(line))?);
     }
     let get = |key: &str| header.get(key).copied();
     let need = |key: &str| get(key).ok_or_else(|| source.bad_grid(format!("it has no {key}")));
@@ -55,12 +53,10 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     };
     let (x, y) = (low("x", step[0])?, low("y", step[1])?);
     let far = |low: f64, count: f64, step: f64| [low, low + (count - 1.0) * step];
-    let grid = unrotated(source, counts, far(x, counts[0], step[0]), far(y, counts[1], step[1]))?;
-    source.check_values(grid.count, values.len())?;
+    let grid = grid::unrotated(source, counts, far(x, counts[0], step[0]), far(y, counts[1], step[1]))?;
     let null = get("nodata_value").unwrap_or(USUAL_NULL);
-    let [nu, nv] = grid.count;
-    let at = |u: usize, v: usize| values[(nv - 1 - v) * nu + u];
-    let z = (0..nu * nv).map(|n| at(n / nv, n % nv)).map(|v| if number::is_null(v, Some(null)) { f64::NAN } else { v });
-    let notes = vec![format!("the file's null is {null}")];
-    Ok(vec![RawSurface { notes, ..RawSurface::new(None, RawShape::Grid { grid, z: z.collect() }) }])
+    let is_null = |v| number::is_null(v, Some(null));
+    let mut surface = grid::surface(source, None, grid, (values, NodeOrder::RowsFromNorth), is_null)?;
+    surface.notes.push(format!("the file's null is {null}"));
+    Ok(vec![surface])
 }

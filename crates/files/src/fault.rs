@@ -114,6 +114,7 @@ pub(super) fn build(
         notes,
         warnings,
         off_map: None,
+        of_map: Vec::new(),
     };
     Ok((Fault::new(name, mesh), report))
 }

@@ -4,6 +4,7 @@
 use super::columns::is_inside;
 use super::lattice::{self, FittedLattice};
 use super::options::{HorizonShape, ImportOptions};
+use super::orientations;
 use super::overturned_points::SeenSideways;
 use super::placement::{self, PlacedPoints, voxel_xy};
 use super::raster;
@@ -48,13 +49,16 @@ struct GriddedSheets {
     surface: Option<TriangleMesh>,
     /// Points far off a map through their neighbours.
     off_map: Option<(usize, Note)>,
+    /// What is said of the map through scattered points alone.
+    of_map: Vec<String>,
 }
 
 impl GriddedSheets {
     /// Sheets of which there is nothing more to say.
     fn of(sheets: Vec<Sheet>, gridding: Gridding, outside: usize) -> Self {
         let (notes, warnings) = (Vec::new(), Vec::new());
-        Self { sheets, gridding, outside, multivalued: 0, notes, warnings, surface: None, off_map: None }
+        let (surface, off_map, of_map) = (None, None, Vec::new());
+        Self { sheets, gridding, outside, multivalued: 0, notes, warnings, surface, off_map, of_map }
     }
 
     /// A surface that is no height field, as it was given.
@@ -82,8 +86,9 @@ pub(super) fn build(
     }
     if let RawShape::Points(points) = &mut raw.shape {
         points.retain(|p| p.z.is_finite());
-        if geometry.vertical.unit == VerticalUnit::Metres {
-            points.iter_mut().for_each(|point| point.normal = point.normal.or(point.dip.map(normal_of)));
+        take_dips(points, geometry);
+        if let (Some(oriented), Some(from)) = (raw.orientations.take(), &options.orientations) {
+            raw.notes.push(orientations::join(from, points, *oriented, geometry, options)?);
         }
     }
     let [nu, nv, _] = geometry.size();
@@ -123,8 +128,16 @@ pub(super) fn build(
         notes,
         warnings,
         off_map: nodes.off_map,
+        of_map: nodes.of_map,
     };
     Ok((Horizon { name, sheets: nodes.sheets, surface: nodes.surface }, report))
+}
+
+/// Makes normals of dips, which are told of depths alone.
+pub(super) fn take_dips(points: &mut [RawPoint], geometry: &SurveyGeometry) {
+    if geometry.vertical.unit == VerticalUnit::Metres {
+        points.iter_mut().for_each(|point| point.normal = point.normal.or(point.dip.map(normal_of)));
+    }
 }
 
 /// The normal, in the directions of X, Y and depth, of beds with a dip, its direction and their polarity: towards the
@@ -163,11 +176,12 @@ fn from_points(
 ) -> Result<GriddedSheets, FormatError> {
     let mut placed = placement::place(file, name, points, geometry, options.place_by)?;
     let mut notes: Vec<String> = placed.note.take().into_iter().collect();
+    let mut of_map: Vec<String> = Vec::new();
     if points.iter().all(|p| p.normal.is_some()) && options.shape != Some(HorizonShape::Map) {
         if let Some(found) = through_normals(file, name, points, &placed, geometry, options)? {
             return Ok(GriddedSheets { notes: notes.into_iter().chain(found.notes).collect(), ..found });
         }
-        notes.push("its normals are not used: it is a map".to_owned());
+        of_map.push("its normals are not used: it is a map".to_owned());
     }
     let is_any = options.shape == Some(HorizonShape::Any);
     let any_shape = |notes: Vec<String>, note: Option<&str>| {
@@ -197,16 +211,18 @@ fn from_points(
             }
             let gridded = scatter::grid(&pairs, geometry, options.gap_m, tolerance).map_err(|_| crowded(file, name))?;
             if gridded.repeated > 0 {
-                notes.push(format!(
+                of_map.push(format!(
                     "{} points share their place with another of the same depth and were averaged with it",
                     gridded.repeated
                 ));
             }
             let off_map = gridded.outliers.map(|o| (o.count, Note::from(o.sentence(geometry.vertical.unit))));
             let mut warnings: Vec<Note> = off_map.iter().map(|(_, note)| note.clone()).collect();
+            notes.extend(of_map.iter().cloned());
             if told == SeenSideways::Unclear {
                 let fact = "its points are taken as a map, but seen from aside some of them seem to lie upside down, as on an \
                             overturned limb";
+                of_map.push(fact.to_owned());
                 warnings.push(Note::unless(fact, Setting::Shape.stated_as("any")));
             }
             let count = |q| gridded.sheets.iter().flat_map(|s| &s.quality).filter(|k| **k == q).count();
@@ -218,6 +234,7 @@ fn from_points(
                 warnings,
                 surface: any_shape(Vec::new(), None).surface,
                 off_map,
+                of_map,
                 ..GriddedSheets::of(gridded.sheets, gridding, placed.outside)
             });
         };
@@ -234,6 +251,7 @@ fn from_points(
     system::memory::check("its sheets", &[nu, nv, told as usize + 1], BYTES_A_TRACE)
         .map_err(|source| FormatError::Memory { file: file.to_path_buf(), source })?;
     let (sheets, multivalued, twice) = on_lattice(&lattice, points, tolerance).map_err(|_| crowded(file, name))?;
+    notes.extend(of_map);
     if twice > 0 {
         notes.push(format!("{twice} points repeat the depth of another at the same node and were averaged with it"));
     }

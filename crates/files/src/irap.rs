@@ -5,7 +5,8 @@
 //! the rotation in degrees anticlockwise; a negative YINC mirrors. XMAX and YMAX are those of the unrotated grid and
 //! not used. Values from 9999900 on are undefined. The format states neither unit nor sign.
 
-use super::raw::{RawShape, RawSurface, ReadContext};
+use super::grid::{self, GridHeader, NodeOrder};
+use super::raw::{RawSurface, ReadContext};
 use super::text::{self, SourceFile};
 use super::write::WriteFailure;
 use super::{Codec, Format, FormatError, HorizonWriter};
@@ -31,44 +32,6 @@ fn detect(source: &SourceFile) -> Option<String> {
     (text.split_whitespace().next()? == "-996").then(|| "it begins with -996".to_string())
 }
 
-/// The numbers of an Irap header, ASCII or binary.
-pub(super) struct IrapHeader {
-    pub count: [i64; 2],
-    pub step: [f64; 2],
-    pub rotation_deg: f64,
-    pub origin: DVec2,
-}
-
-impl IrapHeader {
-    /// The grid, u along XINC and v along YINC.
-    pub(crate) fn grid(&self, source: &SourceFile) -> Result<NodeGrid, FormatError> {
-        let [nu, nv] = self.count;
-        if nu < 1 || nv < 1 || nu.checked_mul(nv).is_none_or(|n| n > 1 << 32) {
-            return Err(source.bad_grid(format!("{nu} columns and {nv} rows")));
-        }
-        let numbers = [self.step[0], self.step[1], self.rotation_deg, self.origin.x, self.origin.y];
-        if numbers.iter().any(|v| !v.is_finite() || v.abs() > 1e12) || self.step[0] == 0.0 || self.step[1] == 0.0 {
-            return Err(source.bad_grid(format!(
-                "steps {} and {}, rotation {}, origin {}, {}",
-                self.step[0], self.step[1], self.rotation_deg, self.origin.x, self.origin.y
-            )));
-        }
-        let along = DVec2::from_angle(self.rotation_deg.to_radians());
-        Ok(NodeGrid {
-            origin: self.origin,
-            u_step: along * self.step[0],
-            v_step: along.perp() * self.step[1],
-            count: [nu as usize, nv as usize],
-        })
-    }
-}
-
-/// Values in file order (u fastest) to `[u][v]`.
-pub(super) fn transposed(file: &[f64], count: [usize; 2]) -> Vec<f64> {
-    let [nu, nv] = count;
-    (0..nu * nv).map(|n| file[n % nv * nu + n / nv]).collect()
-}
-
 fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
     let text = source.text();
     let mut tokens =
@@ -81,24 +44,18 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     if header[0] != -996.0 {
         return Err(source.syntax(1, "-996, the mark of an Irap grid", &header[0].to_string()));
     }
-    let header = IrapHeader {
-        count: [header[8] as i64, header[1] as i64],
+    let header = GridHeader {
+        count: [header[8], header[1]],
         step: [header[2], header[3]],
         rotation_deg: header[9],
         origin: DVec2::new(header[10], header[11]),
     };
     let grid = header.grid(source)?;
-    let expected = grid.count[0] * grid.count[1];
-    // The header may announce more values than there are; memory grows only with those that are there.
-    let mut values = Vec::with_capacity(expected.min(source.bytes.len() / 2));
+    let mut values = Vec::new();
     for (line, token) in tokens {
-        let value = source.grid_value(line, token)?;
-        values.push(if value.abs() >= UNDEFINED { f64::NAN } else { value });
+        values.push(source.grid_value(line, token)?);
     }
-    source.check_values(grid.count, values.len())?;
-    let z = transposed(&values, grid.count);
-    let shape = RawShape::Grid { grid, z };
-    Ok(vec![RawSurface::new(None, shape)])
+    Ok(vec![grid::surface(source, None, grid, (values, NodeOrder::Rows), |v| v.abs() >= UNDEFINED)?])
 }
 
 /// All sheets as one, which is possible if they lie on one grid and no node has two depths.

@@ -48,16 +48,20 @@
 //! | EarthVision, Petrel points and well tops | ✓ | points | | |
 //! | Charisma | ✓ | sticks | | |
 //! | Esri ASCII, Surfer (DSAA, DSBB, DSRB) | ✓ | | | |
-//! | GeoJSON | points | traces with a dip, sticks | | |
+//! | GeoTIFF, GXF, NetCDF (classic), NumPy arrays | ✓ | | | |
+//! | OBJ, STL | ✓ | ✓ | | |
+//! | GeoJSON, shapefile, GeoPackage | points | traces with a dip, sticks | | |
 //! | ZMAP+ points, RMS points (CSV/XYZ with 999 separators or attributes), polygons with ids | ✓ | outlines, sticks | | |
 //!
-//! To add a format: one file with a `CODEC`, one variant of [`Format`], one line in `CODECS`.
+//! To add a format: one file with a `CODEC`; in `format.rs` one variant of [`Format`] and one line in `CODECS`.
 
+mod binary;
 mod block_fit;
 mod charisma;
 mod column;
 mod columns;
 mod cps3;
+mod crs;
 mod csv;
 mod describe;
 mod dug;
@@ -67,7 +71,12 @@ mod error;
 mod esri;
 mod export;
 mod fault;
+mod format;
 mod geojson;
+mod geopackage;
+mod geotiff;
+mod grid;
+mod gxf;
 mod horizon;
 mod iesx;
 mod ijxyz;
@@ -77,9 +86,14 @@ mod known;
 mod lattice;
 mod mesh_sticks;
 mod neighbours;
+mod netcdf;
+mod npy;
+mod npy_volume;
 mod number;
+mod obj;
 mod opendtect;
 mod options;
+mod orientations;
 mod outline;
 mod overturned_points;
 mod petrel;
@@ -92,15 +106,20 @@ mod report;
 mod resampling;
 mod scatter;
 pub mod segy;
+mod shapefile;
 mod sheets;
+mod sqlite;
 mod sticks;
+mod stl;
 mod surface_kind;
 mod surfer;
 mod table;
 mod text;
+mod traces;
 mod tsurf;
 mod unit;
 mod vertical;
+mod welded_mesh;
 pub mod well;
 mod write;
 mod zmap;
@@ -111,18 +130,18 @@ pub use column::Column;
 pub use describe::{FileDescription, SurfaceDescription, describe};
 pub use error::{FormatError, HorizontalExtent};
 pub use export::{ExportOptions, ExportReport, WhenRotated};
+pub use format::{Format, SurfaceKind};
 pub use mesh_sticks::{axis_along, extent_along, planes_along, stick_along_cut, sticks_on_sections, strike};
+pub use npy_volume::NpyVolume;
 pub use options::{HorizonShape, ImportOptions, PlaceBy, ValueOrder};
 pub use report::{Gridding, ImportReport, Provenance, Settled};
 pub use scatter::grid_points;
 pub use unit::{ZPositive, ZUnit};
 
+use format::{CODECS, Codec, HorizonWriter, names};
 use glam::DVec3;
 use raw::{RawSurface, ReadContext};
-use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
-use std::fmt;
-use std::io::Write;
 use std::path::Path;
 use survey::fault::Fault;
 use survey::geometry::SurveyGeometry;
@@ -133,200 +152,6 @@ use unit::words::HeaderUnits;
 
 #[cfg(test)]
 mod tests;
-
-/// A file format of horizons or faults.
-///
-/// ```
-/// # use files::Format;
-/// assert_eq!(Format::from_name("TSurf"), Some(Format::Tsurf));
-/// assert!(Format::all().all(|format| Format::from_name(format.name()) == Some(format)));
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Format {
-    /// CSV or XYZ, with or without a header line.
-    Csv,
-    /// Irap classic ASCII grid.
-    Irap,
-    /// OpendTect ASCII horizons and fault sticks.
-    OpendTect,
-    /// GOCAD TSurf.
-    Tsurf,
-    /// Irap binary grid.
-    #[serde(rename = "irapbin")]
-    IrapBinary,
-    /// ZMAP+ grid.
-    Zmap,
-    /// CPS-3 ASCII grid.
-    Cps3,
-    /// EarthVision ASCII points.
-    EarthVision,
-    /// Petrel points with attributes.
-    Petrel,
-    /// Charisma horizon lines and fault sticks.
-    Charisma,
-    /// IJXYZ of OpenWorks.
-    Ijxyz,
-    /// PetroMod binary map.
-    PetroMod,
-    /// GeoFrame IESX (3d_ci7m).
-    Iesx,
-    /// DUG Insight points.
-    Dug,
-    /// ZMAP+ points and polygons.
-    ZmapPoints,
-    /// DXF drawings.
-    Dxf,
-    /// Esri ASCII grid.
-    Esri,
-    /// Surfer grids: ASCII, binary 6 and 7.
-    Surfer,
-    /// GeoJSON lines and points.
-    GeoJson,
-}
-
-/// The kind of surface that a file holds, or that is to be read from it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum SurfaceKind {
-    /// A horizon.
-    Horizon,
-    /// A fault.
-    Fault,
-}
-
-impl fmt::Display for SurfaceKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Horizon => "horizon",
-            Self::Fault => "fault",
-        })
-    }
-}
-
-type Reader = fn(&SourceFile, &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError>;
-type WriteHorizon = fn(&mut dyn Write, &Horizon, &SurveyGeometry) -> Result<(), write::WriteFailure>;
-type FaultWriter = fn(&mut dyn Write, &Fault, &SurveyGeometry) -> Result<(), write::WriteFailure>;
-
-/// How a format writes horizons.
-#[derive(Clone, Copy)]
-struct HorizonWriter {
-    write: WriteHorizon,
-    /// Whether its grids lie along X and Y: others are resampled.
-    is_unrotated: bool,
-    /// Whether it holds horizons that are no maps, with several depths over one place.
-    holds_any_shape: bool,
-    /// Whether it says which nodes were filled or extrapolated.
-    tells_quality: bool,
-}
-
-impl HorizonWriter {
-    /// Of maps on grids of any direction.
-    const fn of(write: WriteHorizon) -> Self {
-        Self { write, is_unrotated: false, holds_any_shape: false, tells_quality: false }
-    }
-}
-
-/// The capabilities of a format.
-struct Codec {
-    format: Format,
-    /// The word of the `--format` option.
-    name: &'static str,
-    /// The usual extension.
-    extension: &'static str,
-    /// The evidence that a file is of this format.
-    detect: fn(&SourceFile) -> Option<String>,
-    read_horizon: Option<Reader>,
-    read_fault: Option<Reader>,
-    write_horizon: Option<HorizonWriter>,
-    write_fault: Option<FaultWriter>,
-}
-
-impl Codec {
-    /// A format that is only recognised.
-    const fn of(
-        format: Format,
-        name: &'static str,
-        extension: &'static str,
-        detect: fn(&SourceFile) -> Option<String>,
-    ) -> Self {
-        let (read_horizon, read_fault, write_horizon, write_fault) = (None, None, None, None);
-        Self { format, name, extension, detect, read_horizon, read_fault, write_horizon, write_fault }
-    }
-}
-
-/// Every format, in the order in which signatures are tried: those that cannot be mistaken first.
-const CODECS: &[Codec] = &[
-    tsurf::CODEC,
-    irap_binary::CODEC,
-    petromod::CODEC,
-    surfer::CODEC,
-    esri::CODEC,
-    geojson::CODEC,
-    irap::CODEC,
-    cps3::CODEC,
-    zmap::CODEC,
-    zmap_points::CODEC,
-    petrel::CODEC,
-    charisma::CODEC,
-    earthvision::CODEC,
-    iesx::CODEC,
-    dug::CODEC,
-    dxf::CODEC,
-    ijxyz::CODEC,
-    opendtect::CODEC,
-    csv::CODEC,
-];
-
-impl Format {
-    fn codec(self) -> &'static Codec {
-        // Every variant has its line in the table, which a test verifies.
-        CODECS.iter().find(|c| c.format == self).unwrap_or(&csv::CODEC)
-    }
-
-    /// Every format.
-    pub fn all() -> impl Iterator<Item = Self> {
-        CODECS.iter().map(|c| c.format)
-    }
-
-    /// The word for the format, as options and reports have it.
-    pub fn name(self) -> &'static str {
-        self.codec().name
-    }
-
-    /// The usual extension of its files, without the dot.
-    pub fn extension(self) -> &'static str {
-        self.codec().extension
-    }
-
-    /// Whether surfaces of that kind can be written in it.
-    pub fn writes(self, kind: SurfaceKind) -> bool {
-        match kind {
-            SurfaceKind::Horizon => self.codec().write_horizon.is_some(),
-            SurfaceKind::Fault => self.codec().write_fault.is_some(),
-        }
-    }
-
-    /// Whether a horizon's file in it says which nodes were filled or extrapolated.
-    pub fn tells_quality(self) -> bool {
-        self.codec().write_horizon.is_some_and(|writer| writer.tells_quality)
-    }
-
-    /// The format of that word.
-    pub fn from_name(name: &str) -> Option<Self> {
-        CODECS.iter().find(|c| c.name.eq_ignore_ascii_case(name)).map(|c| c.format)
-    }
-}
-
-impl fmt::Display for Format {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-fn names(select: impl Fn(&Codec) -> bool) -> String {
-    CODECS.iter().filter(|c| select(c)).map(|c| c.name).collect::<Vec<_>>().join(", ")
-}
 
 /// Determines the format of a file in memory and reads the selected surfaces without conversion.
 fn read_source(
@@ -340,19 +165,10 @@ fn read_source(
         Some(format) => Settled { value: format, source: Provenance::Option },
         None => {
             // What is known by its first bytes is no table, even where its rows look like one.
-            let known = known::by_name(&source.bytes);
+            let known = known::by_name(path, &source.bytes);
             let mut open = CODECS.iter().filter(|c| known.is_none() || c.format != Format::Csv);
             let found = open.find_map(|c| Some((c.format, (c.detect)(source)?)));
-            let (value, evidence) = found.ok_or_else(|| {
-                let start = String::from_utf8_lossy(&source.bytes[..source.bytes.len().min(80)]);
-                let begins = || {
-                    let first = text::lines(&start).next();
-                    first.map_or_else(|| "it is empty".into(), |l| format!("it begins with {}", text::excerpt(l.text)))
-                };
-                let found = known.map_or_else(begins, str::to_owned);
-                let (file, is_named) = (path.to_path_buf(), known.is_some());
-                FormatError::UnknownFormat { file, found, is_named, known: names(|_| true) }
-            })?;
+            let (value, evidence) = found.ok_or_else(|| unknown(path, &source.bytes))?;
             Settled { value, source: Provenance::File(evidence) }
         }
     };
@@ -370,6 +186,32 @@ fn read_source(
     let survey = geometry.map(|geometry| Domain::of(geometry.vertical.unit));
     surfaces.iter_mut().for_each(|surface| surface.take_units(&header, survey));
     Ok((format, surfaces))
+}
+
+/// The error of a file of which no reader knows the format.
+fn unknown(path: &Path, bytes: &[u8]) -> FormatError {
+    let known = known::by_name(path, bytes);
+    let start = String::from_utf8_lossy(&bytes[..bytes.len().min(80)]);
+    let begins = || {
+        let first = text::lines(&start).next();
+        first.map_or_else(|| "it is empty".into(), |l| format!("it begins with {}", text::excerpt(l.text)))
+    };
+    let found = known.map_or_else(begins, str::to_owned);
+    FormatError::UnknownFormat { file: path.to_path_buf(), found, is_named: known.is_some(), known: names(|_| true) }
+}
+
+/// The error of a file that is known by name but not read, such as an archive, from its bytes or the first of them: what it
+/// is, and what to export instead.
+///
+/// ```
+/// let error = files::known_but_not_read("a.gz".as_ref(), b"\x1f\x8b\x08").unwrap();
+/// assert!(error.to_string().contains("unpack it"));
+/// assert!(files::known_but_not_read("a.csv".as_ref(), b"x,y,z").is_none());
+/// ```
+pub fn known_but_not_read(path: &Path, start: &[u8]) -> Option<FormatError> {
+    // Of GOCAD's objects some are read.
+    let known = known::by_name(path, start).filter(|_| !start.starts_with(b"GOCAD "));
+    known.map(|_| unknown(path, start))
 }
 
 /// The comments at the beginning of a text file, which may state units.
@@ -392,11 +234,13 @@ fn selected(
     options: &ImportOptions,
     kind: SurfaceKind,
 ) -> Result<Vec<RawSurface>, FormatError> {
-    let numbered = |surface: &RawSurface| surface.name.as_deref().is_none_or(|name| name.trim().is_empty());
-    if let Some(number) = options.select.as_ref().and_then(|wanted| wanted.parse::<usize>().ok())
+    // Those without a name are listed by their number, and selected by it; a name that is a number is a name first.
+    let unnamed = |surface: &RawSurface| surface.name.as_deref().is_none_or(|name| name.trim().is_empty());
+    if let Some(wanted) = &options.select
+        && let Ok(number @ 1..) = wanted.parse::<usize>()
         && surfaces.len() > 1
-        && surfaces.iter().all(numbered)
-        && (1..=surfaces.len()).contains(&number)
+        && surfaces.get(number - 1).is_some_and(unnamed)
+        && surfaces.iter().all(|surface| surface.name.as_ref() != Some(wanted))
     {
         return Ok(surfaces.into_iter().skip(number - 1).take(1).collect());
     }
@@ -405,9 +249,12 @@ fn selected(
         (None, Some(name)) if surfaces.len() > 1 => name,
         _ => return Ok(surfaces),
     };
-    let name = |(n, surface): (usize, &RawSurface)| surface.name.clone().unwrap_or_else(|| format!("{}", n + 1));
+    let name = |(n, surface): (usize, &RawSurface)| {
+        let own = surface.name.clone().filter(|_| !unnamed(surface));
+        own.unwrap_or_else(|| format!("{}", n + 1))
+    };
     let available = surfaces.iter().enumerate().map(name).collect::<Vec<_>>();
-    let found: Vec<_> = surfaces.into_iter().filter(|s| s.name.as_deref() == Some(wanted)).collect();
+    let found: Vec<_> = surfaces.into_iter().filter(|s| s.name.as_ref() == Some(wanted)).collect();
     if found.is_empty() {
         return Err(FormatError::NoSuchName {
             file: source.path.clone(),
@@ -472,14 +319,13 @@ fn built<T>(
     kind: SurfaceKind,
     build: Build<T>,
 ) -> Result<Vec<(T, ImportReport)>, FormatError> {
-    let (format, surfaces) = read_source(source, Some(geometry), options, kind)?;
+    let (format, mut surfaces) = read_source(source, Some(geometry), options, kind)?;
     let name = |raw: &RawSurface| name_of(raw, source, options);
-    let in_metres = |mut raw: RawSurface| {
-        raw.convert_places(options.xy_unit);
-        raw
-    };
-    let surfaces = surfaces.into_iter().map(in_metres);
-    surfaces.map(|raw| build(&source.path, name(&raw), format.clone(), raw, geometry, options)).collect()
+    surfaces.iter_mut().for_each(|raw| raw.convert_places(options.xy_unit));
+    if kind == SurfaceKind::Horizon {
+        orientations::attach(&mut surfaces, name, geometry, options)?;
+    }
+    surfaces.into_iter().map(|raw| build(&source.path, name(&raw), format.clone(), raw, geometry, options)).collect()
 }
 
 /// Writes a horizon under a temporary name, then renames the file. A rotated grid is resampled for formats

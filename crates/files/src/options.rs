@@ -15,6 +15,7 @@ use super::Format;
 use super::column::Column;
 use super::unit::{ZPositive, ZUnit};
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// Whether line numbers or coordinates place a point that has both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -86,6 +87,9 @@ pub struct ImportOptions {
     /// What a horizon is made into; `None` = a map, unless its triangles or points are overturned or closed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<HorizonShape>,
+    /// Points of a horizon: a file with orientations of its beds (dip and azimuth, or normals), by the name of the horizon.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub orientations: Option<PathBuf>,
     /// CPS-3: the order of the values; `None` = the smoother of the two, with the evidence in the report.
     pub value_order: Option<ValueOrder>,
 }
@@ -105,6 +109,7 @@ impl Default for ImportOptions {
             place_by: None,
             gap_m: None,
             shape: None,
+            orientations: None,
             value_order: None,
         }
     }

@@ -32,6 +32,7 @@ pub(super) fn split(surface: RawSurface) -> Vec<RawSurface> {
             shape: RawShape::Mesh(mesh),
             vertical: surface.vertical.clone(),
             horizontal: surface.horizontal.clone(),
+            orientations: None,
             notes: surface
                 .notes
                 .iter()

@@ -5,8 +5,9 @@
 //! big-endian f32, Y fastest. The origin is turned about the rotation origin by the angle, degrees
 //! anticlockwise. `DataUnitZ` is a code of the program's own and not interpreted.
 
-use super::irap::IrapHeader;
-use super::raw::{RawShape, RawSurface, ReadContext};
+use super::binary::{Endian, Word};
+use super::grid::{self, GridHeader, NodeOrder};
+use super::raw::{RawSurface, ReadContext};
 use super::text::SourceFile;
 use super::{Codec, Format, FormatError};
 use crate::number;
@@ -36,19 +37,17 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     let origin = DVec2::new(number("OriginX")?, number("OriginY")?);
     let pivot = DVec2::new(or("RotationOriginX", origin.x), or("RotationOriginY", origin.y));
     let rotation_deg = or("RotationAngle", 0.0);
-    let header = IrapHeader {
-        count: [number("GridNoX")? as i64, number("GridNoY")? as i64],
+    let header = GridHeader {
+        count: [number("GridNoX")?, number("GridNoY")?],
         step: [number("GridStepX")?, number("GridStepY")?],
         rotation_deg,
         origin: pivot + DVec2::from_angle(rotation_deg.to_radians()).rotate(origin - pivot),
     };
     let grid = header.grid(source)?;
-    let values = body[end + 1..].as_chunks::<4>().0;
-    source.check_values(grid.count, values.len())?;
+    let values = Word::F32.values(&body[end + 1..], Endian::Big);
     let undefined = or("Undefined", 99_999.0);
-    let z = values.iter().map(|w| f64::from(f32::from_be_bytes(*w)));
-    let z = z.map(|v| if (v - undefined).abs() <= 1e-6 * undefined.abs() { f64::NAN } else { v }).collect();
-    let notes = facts.get("DataUnitZ").map(|code| format!("the file's DataUnitZ={code} is not interpreted"));
-    let shape = RawShape::Grid { grid, z };
-    Ok(vec![RawSurface { notes: notes.into_iter().collect(), ..RawSurface::new(None, shape) }])
+    let is_undefined = |v: f64| (v - undefined).abs() <= 1e-6 * undefined.abs();
+    let mut surface = grid::surface(source, None, grid, (values, NodeOrder::Columns), is_undefined)?;
+    surface.notes.extend(facts.get("DataUnitZ").map(|code| format!("the file's DataUnitZ={code} is not interpreted")));
+    Ok(vec![surface])
 }

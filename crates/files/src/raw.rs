@@ -25,6 +25,11 @@ impl ReadContext<'_> {
     pub(crate) fn domain(&self) -> Option<Domain> {
         self.geometry.map(|g| Domain::of(g.vertical.unit))
     }
+
+    /// Whether the user names that surface.
+    pub(crate) fn asks_for(&self, name: &str) -> bool {
+        [&self.options.select, &self.options.name].into_iter().flatten().any(|wanted| wanted == name)
+    }
 }
 
 /// A point of a table.
@@ -98,6 +103,8 @@ pub(super) struct RawSurface {
     pub vertical: VerticalFacts,
     /// The unit of X and Y that the file states, with its words.
     pub horizontal: Option<(ZUnit, String)>,
+    /// Orientations of it from a file of their own.
+    pub orientations: Option<Box<RawSurface>>,
     pub notes: Vec<String>,
     /// What the user should check.
     pub warnings: Vec<Note>,
@@ -106,8 +113,8 @@ pub(super) struct RawSurface {
 impl RawSurface {
     /// A surface of which the file says nothing more.
     pub(crate) fn new(name: Option<String>, shape: RawShape) -> Self {
-        let vertical = VerticalFacts::default();
-        Self { name, shape, vertical, horizontal: None, notes: Vec::new(), warnings: Vec::new() }
+        let (vertical, notes, warnings) = (VerticalFacts::default(), Vec::new(), Vec::new());
+        Self { name, shape, vertical, horizontal: None, orientations: None, notes, warnings }
     }
 
     /// Takes what the header of the file states about units where the surface's own part of it is silent, and shows both

@@ -165,6 +165,10 @@ pub struct ImportReport {
     /// How many scattered points lie far off a map through their neighbours, and the warning that says so.
     #[serde(skip)]
     pub off_map: Option<(usize, Note)>,
+    /// Of the notes and warnings, those about a map through scattered points: they are untrue where the points themselves
+    /// become the horizon.
+    #[serde(skip)]
+    pub of_map: Vec<String>,
 }
 
 impl ImportReport {

@@ -1,7 +1,7 @@
 //! Reads the rows of a text table as points, once its columns are known.
 
 use super::FormatError;
-use super::column::Column;
+use super::column::{self, Column};
 use super::columns::{self, ColumnLayout};
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Field, Line, SourceFile};
@@ -119,11 +119,8 @@ pub(super) fn surfaces(
     if !layout.is_complete() {
         return Err(FormatError::Columns {
             file: source.path.clone(),
-            why: format!(
-                "the columns {} hold no Z with X, Y or inline, crossline",
-                layout.columns.iter().map(|c| format!("{c:?}").to_lowercase()).collect::<Vec<_>>().join(", ")
-            ),
-            example: example_of(&layout.columns),
+            why: format!("the columns {} hold no Z with X, Y or inline, crossline", called(&layout).join(", ")),
+            example: example_of(&layout),
         });
     }
     let last = layout.columns.iter().rposition(|&c| c != Column::Other).unwrap_or(0);
@@ -208,17 +205,31 @@ fn settle_levels(rows: &[Line<'_>], cut: LineCut, layout: &mut ColumnLayout) {
     }
 }
 
-/// A list of columns that reads the file: its own, with the last one that is not known as Z.
-fn example_of(columns: &[Column]) -> String {
+/// The columns as the file calls them, otherwise what they are.
+fn called(layout: &ColumnLayout) -> Vec<String> {
+    let kinds = || layout.columns.iter().map(|c| format!("{c:?}").to_lowercase()).collect();
+    if layout.names.len() == layout.columns.len() { layout.names.clone() } else { kinds() }
+}
+
+/// A list of columns that reads the file: its own, with one that is not known as Z: the last whose name has a word for depth
+/// or time in it, otherwise the last.
+fn example_of(layout: &ColumnLayout) -> String {
+    let columns = &layout.columns;
     let mut words: Vec<String> = columns
         .iter()
         .map(|c| if *c == Column::Other { "-".to_owned() } else { format!("{c:?}").to_lowercase() })
         .collect();
     let has = |c| columns.contains(&c);
+    let is_unknown = |n: &usize| columns[*n] == Column::Other;
+    let is_vertical = |n: &usize| {
+        let name = layout.names.get(*n).map_or("", String::as_str);
+        name.split(|c: char| !c.is_alphanumeric()).any(|word| column::of_name(word).column == Column::Z)
+    };
+    let unknown = || (0..columns.len()).rev().filter(is_unknown);
     if !has(Column::Z)
-        && let Some(last) = columns.iter().rposition(|c| *c == Column::Other)
+        && let Some(vertical) = unknown().find(is_vertical).or(unknown().next())
     {
-        words[last] = "z".to_owned();
+        words[vertical] = "z".to_owned();
     }
     let placed = (has(Column::X) && has(Column::Y)) || (has(Column::Inline) && has(Column::Crossline));
     if placed && words.contains(&"z".to_owned()) { words.join(",") } else { "x,y,z".to_owned() }
@@ -317,6 +328,7 @@ pub(super) fn settle_columns(
             let width = rows.first().map_or(0, |line| cut.fields(line.text).len());
             if named && !layout.columns.contains(&Column::Name) && width == layout.columns.len() + 1 {
                 layout.columns.insert(0, Column::Name);
+                layout.names.insert(0, "name".to_owned());
             }
             Ok(layout)
         }

@@ -59,6 +59,17 @@ impl SourceFile {
         value.ok_or_else(|| self.syntax(line, "a grid value", token))
     }
 
+    /// The values of a grid in the fields of lines; NaN where they are missing.
+    pub(crate) fn grid_values<'a>(&self, lines: impl Iterator<Item = Line<'a>>) -> Result<Vec<f64>, FormatError> {
+        let mut values = Vec::new();
+        for line in lines {
+            for token in line.text.split_whitespace() {
+                values.push(self.grid_value(line.number, token)?);
+            }
+        }
+        Ok(values)
+    }
+
     /// An error of counts.
     pub(crate) fn length(&self, what: &'static str, expected: usize, found: usize) -> FormatError {
         FormatError::Length { file: self.path.clone(), what, expected, found }
@@ -78,6 +89,19 @@ impl SourceFile {
     /// An error in a grid header.
     pub(crate) fn bad_grid(&self, why: impl Into<String>) -> FormatError {
         FormatError::BadGrid { file: self.path.clone(), why: why.into() }
+    }
+
+    /// An error of a file that contradicts itself.
+    pub(crate) fn damaged(&self, why: impl Into<String>) -> FormatError {
+        FormatError::Damaged { file: self.path.clone(), why: why.into() }
+    }
+
+    /// An error where places are angles; the evidence says why.
+    pub(crate) fn degrees(&self, kind: SurfaceKind, evidence: &str) -> FormatError {
+        self.empty(
+            kind,
+            format!("its coordinates are degrees ({evidence}): project them to the survey's coordinate system"),
+        )
     }
 }
 

@@ -27,6 +27,9 @@ pub(super) struct VerticalRule {
     null: Option<f64>,
 }
 
+/// One value in so many must lie in the survey.
+const LEAST_PARTS: usize = 10;
+
 /// What was found during conversion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct VerticalCounts {
@@ -172,6 +175,13 @@ impl VerticalRule {
             .copied()
             .filter(|&f| is_enough(f) && largest * f.abs() > 2.0 * slack && (!flat || f.abs() > 1.0))
             .min_by(|a, b| rank(*a).total_cmp(&rank(*b)));
+        // A bed may leave the block: then a part of it lies there, and nothing makes it fit better, or its unit and sign
+        // are stated.
+        let is_stated =
+            [&self.unit.source, &self.positive.source].into_iter().all(|source| *source == Provenance::Option);
+        if !flat && (best.is_none() || is_stated) && fit(1.0) * LEAST_PARTS >= values.len() {
+            return Ok(outside);
+        }
         let (hint, remedy) = match best {
             Some(factor) => (format!("It would fit when multiplied by {factor:.5}"), self.remedy(factor)),
             None => (
@@ -296,6 +306,29 @@ mod tests {
         let depth = axis(0.0, 200, VerticalUnit::Metres);
         let heights: Vec<f64> = (0..=140).map(|n| 300.0 - 10.0 * f64::from(n)).collect();
         assert!(hint(&heights, &ImportOptions::default(), &depth).contains("sign of depths up"));
+    }
+
+    #[test]
+    fn a_bed_that_leaves_the_block_is_taken_and_not_told_to_change_its_sign() {
+        let depth = axis(0.0, 250, VerticalUnit::Metres);
+        let bed =
+            |low: f64, high: f64| (0..=100).map(|n| low + (high - low) * f64::from(n) / 100.0).collect::<Vec<f64>>();
+        let plain = ImportOptions::default();
+        // Above it, below it, on both sides; 45, 30 and 12 % lie in it.
+        for values in [bed(-900.0, 740.0), bed(-500.0, 2800.0), bed(-3800.0, 4500.0)] {
+            read(&values, &plain, &depth).unwrap();
+        }
+        // Where it may be in feet, that is said, and a unit and a sign that are stated are believed.
+        let deep = bed(550.0, 1550.0);
+        assert!(hint(&deep, &plain, &depth).contains("vertical unit ft"));
+        let stated = ImportOptions {
+            z_unit: Some(ZUnit::Metres),
+            z_positive: Some(ZPositive::Down),
+            ..ImportOptions::default()
+        };
+        read(&deep, &stated, &depth).unwrap();
+        // None of it there is a mistake all the same.
+        hint(&bed(20_000.0, 30_000.0), &stated, &depth);
     }
 
     #[test]

@@ -7,12 +7,12 @@
 //! Written with fields of 20 characters and 7 decimals, null −99999 (or, where depths come near it,
 //! −9.99e+29).
 
-use super::raw::{RawShape, RawSurface, ReadContext};
+use super::grid::{self, NodeOrder};
+use super::raw::{RawSurface, ReadContext};
 use super::text::{self, Line, SourceFile};
 use super::write::{self, WriteFailure};
 use super::{Codec, Format, FormatError, HorizonWriter, SurfaceKind, irap};
 use crate::number;
-use glam::DVec2;
 use std::io::Write;
 use survey::geometry::SurveyGeometry;
 use survey::horizon::{Horizon, NodeGrid};
@@ -32,35 +32,6 @@ fn detect(source: &SourceFile) -> Option<String> {
     let first = text::lines(&text).find(|l| !is_comment(l.text))?.text;
     (first.starts_with('@') && first.to_ascii_uppercase().contains("GRID"))
         .then(|| "its header is @ … GRID".to_string())
-}
-
-/// An unrotated grid between two corners; refuses counts and corners that do not make one.
-pub(super) fn unrotated(
-    source: &SourceFile,
-    counts: [f64; 2],
-    x: [f64; 2],
-    y: [f64; 2],
-) -> Result<NodeGrid, FormatError> {
-    let [nx, ny] = counts;
-    if !(nx >= 2.0 && ny >= 2.0 && nx * ny < 4e9 && nx.fract() == 0.0 && ny.fract() == 0.0) {
-        return Err(source.bad_grid(format!("{nx} columns and {ny} rows; a grid needs two of each")));
-    }
-    let step = DVec2::new((x[1] - x[0]) / (nx - 1.0), (y[1] - y[0]) / (ny - 1.0));
-    if !(step.is_finite() && step.min_element() > 0.0 && x[0].abs() < 1e12 && y[0].abs() < 1e12) {
-        return Err(source.bad_grid(format!("X {} to {}, Y {} to {}", x[0], x[1], y[0], y[1])));
-    }
-    Ok(NodeGrid {
-        origin: DVec2::new(x[0], y[0]),
-        u_step: DVec2::new(step.x, 0.0),
-        v_step: DVec2::new(0.0, step.y),
-        count: [nx as usize, ny as usize],
-    })
-}
-
-/// Values in the order of ZMAP+ and CPS-3 (columns from the west, each from the north) to `[u][v]`.
-pub(super) fn from_columns(file: &[f64], count: [usize; 2]) -> Vec<f64> {
-    let nv = count[1];
-    (0..file.len()).map(|n| file[n / nv * nv + (nv - 1 - n % nv)]).collect()
 }
 
 /// The depths of a sheet on an unrotated grid in the order of ZMAP+ and CPS-3, column by column.
@@ -127,7 +98,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     else {
         return Err(source.syntax(line.number, "NROW, NCOL, XMIN, XMAX, YMIN, YMAX", line.text));
     };
-    let grid = unrotated(source, [ncol, nrow], [x0, x1], [y0, y1])?;
+    let grid = grid::unrotated(source, [ncol, nrow], [x0, x1], [y0, y1])?;
     let data: Vec<Line<'_>> = rows.skip_while(|l| l.text != "@").skip(1).collect();
     let expected = grid.count[0] * grid.count[1];
     let values = match values(source, &data, None) {
@@ -137,14 +108,14 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
             _ => return Err(source.length("grid values", expected, free?.len())),
         },
     };
-    let file: Vec<f64> = values.into_iter().map(|v| if number::is_null(v, null) { f64::NAN } else { v }).collect();
     let name = title.text.trim_start_matches('@').split(',').next().unwrap_or("").trim();
     let name = name.trim_end_matches("HEADER").trim();
-
-    let notes = null.map(|n| format!("the file's null is {n}")).into_iter().collect();
-    let shape = RawShape::Grid { grid, z: from_columns(&file, grid.count) };
     let generic = name.is_empty() || name.eq_ignore_ascii_case("GRIDFILE");
-    Ok(vec![RawSurface { notes, ..RawSurface::new((!generic).then(|| name.into()), shape) }])
+    let name = (!generic).then(|| name.into());
+    let is_null = |v| number::is_null(v, null);
+    let mut surface = grid::surface(source, name, grid, (values, NodeOrder::ColumnsFromNorth), is_null)?;
+    surface.notes.extend(null.map(|n| format!("the file's null is {n}")));
+    Ok(vec![surface])
 }
 
 /// The values of all lines, cut by blanks or into fields of `width`.

@@ -280,6 +280,17 @@ pub enum ProjectError {
     /// The interpretation does not make a solid model.
     #[error(transparent)]
     Model(#[from] model::ModelError),
+    /// The text tells no geological history.
+    #[error("the history cannot be read: {source}")]
+    History {
+        /// What is wrong, and its line.
+        source: history::HistoryError,
+    },
+    /// The project has something already, which a history would replace.
+    #[error(
+        "a history makes a whole block, and this project has horizons or faults already; create a new project for it"
+    )]
+    HistoryOverBlock,
     /// The layers could not be parameterized.
     #[error(transparent)]
     Param(#[from] param::ParamError),

@@ -1,7 +1,7 @@
 //! What cannot be drawn is refused by the command that brings it, and told by a check of a project that was edited so.
 
 use project::command::{DrawHorizon, PickFault, Remove, SetContact};
-use project::document::Drawn;
+use project::document::{Document, Drawn};
 use project::error::Noun;
 use project::{Command, Project, ProjectError};
 use std::fs;
@@ -78,7 +78,7 @@ fn a_contact_and_a_horizon_on_which_others_rely_stay() {
     fs::write(&path, before.replace("contact = \"erosional\"", "contact = \"conformable\"")).unwrap();
     let found = project::check::check(project.root(), &Progress::silent()).unwrap();
     assert!(!found.is_well() && found.damage.is_empty(), "{found:?}");
-    assert_eq!(found.undrawable.as_deref(), Some(error.as_str()));
+    assert_eq!(found.undrawable, [error]);
     let mut project = Project::open(project.root()).unwrap();
     stick(&mut project, "F", around(60.0, 3, |_| 8.0)).unwrap();
     project
@@ -121,4 +121,67 @@ fn what_no_few_surfaces_fit_is_refused_and_changes_nothing() {
     let error = stick(&mut project, "Beside", beside).unwrap_err().to_string();
     assert!(error.contains("no part of fault \"Beside\" lies in the survey"), "{error}");
     assert_eq!(text(&project), before);
+}
+
+#[test]
+fn a_check_tells_what_render_would_refuse_of_colours_styles_scenes_and_figures() {
+    use project::command::ImportVolume;
+    use project::document::Polarity;
+    use project::pictures::load::{Request, load};
+    use project::pictures::scene;
+    let folder = tempfile::tempdir().unwrap();
+    let geometry = SurveyGeometry::regular(SIZE, 25.0, 10.0, VerticalUnit::Metres);
+    let (path, quiet) = (folder.path().join("north.sgy"), Progress::silent());
+    let samples = (0..SIZE.iter().product()).map(|n| (n as f32 * 0.3).sin()).collect();
+    let volume = survey::Volume::from_samples(SIZE, samples).unwrap();
+    files::segy::write(&path, &geometry, &volume, &files::segy::WriteOptions::default(), &quiet).unwrap();
+    let mut project = begun(folder.path());
+    let options = files::segy::SegyOptions::default();
+    let polarity = Polarity::default();
+    let import = ImportVolume { path, name: None, polarity, options, origin: None, memory_bytes: None, moved: false };
+    project.apply(&Command::Import(import), &quiet).unwrap();
+    draw(&mut project, "Upper", 120.0, 120.0).unwrap();
+    let (root, before) = (project.root().to_owned(), text(&project));
+    assert!(project::check::check(&root, &quiet).unwrap().is_well());
+    let clip = before.lines().find(|line| line.starts_with("clip = ")).unwrap().to_owned();
+    let document = project.document().clone();
+    let changed = |change: &dyn Fn(&mut Document)| {
+        let mut document = document.clone();
+        change(&mut document);
+        document.to_text(&root.join("project.toml")).unwrap()
+    };
+    let in_layer = "layer = 'above Upper'\ncolour = '#ffffff'\nintervals = [{ k = [0.0, 1e-300], texture = 'sand' }]";
+    let by_values = "volume = 'seismic'\nintervals = [{ range = [nan, 1.0], texture = 'sand' }]";
+    let steep = "name = 'steep'\n[scene]\nexaggeration = 1e-300";
+    let cloud = "name = 'cloud'\n[[scene.media.surroundings]]\nvolume = 'seismic'\nfunction = { domain = [1.0, 1.0], stops = \
+                 [{ at = 0.0, colour = '#ffffff' }, { at = 1.0, colour = '#ffffff' }] }";
+    let edits: [(&str, String); 8] = [
+        ("clip = 0.0", before.replace(&clip, "clip = 0.0")),
+        ("clip = nan", before.replace(&clip, "clip = nan")),
+        ("interval", before.replace("interval = 10.0", "interval = 1e-300")),
+        ("a layer", changed(&|document| document.style.layers.set(toml::from_str(in_layer).unwrap()))),
+        ("values", changed(&|document| document.style.scalars.push(toml::from_str(by_values).unwrap()))),
+        ("a scene", changed(&|document| document.scenes.push(toml::from_str(steep).unwrap()))),
+        ("a medium", changed(&|document| document.scenes.push(toml::from_str(cloud).unwrap()))),
+        ("a figure", changed(&|document| document.figures.push(toml::from_str("file = 'block.doc'").unwrap()))),
+    ];
+    for (what, edited) in edits {
+        assert_ne!(edited, before, "{what}");
+        fs::write(root.join("project.toml"), edited).unwrap();
+        let found = project::check::check(&root, &quiet).unwrap();
+        assert!(found.damage.is_empty() && !found.undrawable.is_empty(), "{what}: {found:?}");
+        // A picture says the same of what it shows.
+        let project = Project::open(&root).unwrap();
+        let name = project.document().scenes.first().map(|entry| entry.name.as_str());
+        let said = scene::choose(project.document(), name).and_then(|mut scene| {
+            scene::prepare(project.document(), &mut scene, &quiet)?;
+            load(project::Facts::of(&root, project.document()), &Request::new(&scene), &quiet).map(drop)
+        });
+        let said = said.err().map(|error| error.to_string());
+        let is_told = said.as_ref().is_none_or(|said| found.undrawable.iter().any(|told| told.contains(said)));
+        assert!(is_told, "{what}: {said:?}, not {:?}", found.undrawable);
+        assert!(said.is_some() || ["a medium", "a figure"].contains(&what), "{what} is drawn");
+    }
+    fs::write(root.join("project.toml"), &before).unwrap();
+    assert!(project::check::check(&root, &quiet).unwrap().is_well());
 }

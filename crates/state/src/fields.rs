@@ -20,6 +20,7 @@ pub fn field(setting: Setting) -> Option<&'static str> {
         Setting::LineNumbers => "Line numbers",
         Setting::Duplicates => "Repeated traces",
         Setting::TraceWeight => "Trace weight",
+        Setting::NullAmplitude => "No-data amplitude",
         Setting::ZPositive => "Sign",
         Setting::ZFactor => "Factor",
         Setting::Format => "Format",
@@ -35,7 +36,6 @@ pub fn field(setting: Setting) -> Option<&'static str> {
         Setting::WellInFile => "Name in the files",
         Setting::Checkshot => "Checkshots",
         Setting::SampleFormat
-        | Setting::NullAmplitude
         | Setting::CoordinateType
         | Setting::LineType
         | Setting::ScalarByte

@@ -70,6 +70,13 @@ impl Notice {
     pub fn checked(place: Place, found: &CheckReport) -> Self {
         const TOLD: usize = 3;
         let damage: Vec<_> = found.damage.iter().filter(|damage| !damage.repaired).collect();
+        if damage.is_empty() && !found.is_well() {
+            let unread =
+                found.unread.iter().map(|unread| format!("{} cannot be read now: {}", unread.what, unread.reason));
+            let undrawn = found.undrawable.iter().map(|reason| format!("cannot be drawn: {reason}"));
+            let told: Vec<String> = unread.chain(undrawn).take(TOLD).collect();
+            return Self { failed: true, ..Self::note(place, format!("nothing is damaged, but {}", told.join("; "))) };
+        }
         if damage.is_empty() {
             let count = found.data_files + found.derived_files;
             return Self::note(

@@ -75,7 +75,10 @@ fn io_error(source: &std::io::Error, action: FileAction, path: &Path, array: &st
 
 /// The library's view of a folder.
 fn file_store(group: &Path, action: FileAction) -> Result<Arc<FilesystemStore>, StoreError> {
-    FilesystemStore::new(group).map(Arc::new).map_err(|error| StoreError::array(group, action, error.to_string()))
+    FilesystemStore::new(group).map(Arc::new).map_err(|error| match group.to_str() {
+        None => StoreError::NoText { path: group.to_owned() },
+        Some(_) => StoreError::array(group, action, error.to_string()),
+    })
 }
 
 /// Writes a group's metadata; `name` is empty for the folder itself.
@@ -439,7 +442,13 @@ impl StoredArray {
         for n in 0..counts.iter().product() {
             let index = grid_index(n, &counts);
             let key = index.iter().zip(&first).map(|(&i, &f)| (i + f).to_string()).collect::<Vec<_>>().join("/");
-            let facts = std::fs::metadata(self.path().join("c").join(&key)).ok().filter(std::fs::Metadata::is_file);
+            let file = self.path().join("c").join(&key);
+            let facts = match std::fs::metadata(&file) {
+                Err(source) if system::file::says_nothing(&source) => {
+                    return Err(StoreError::io(FileAction::Read, &file, source));
+                }
+                facts => facts.ok().filter(std::fs::Metadata::is_file),
+            };
             let whole = facts.ok_or_else(|| "it is missing".to_owned());
             whole.and_then(|facts| capacity::check_content(facts.len(), &edge, bytes_each)).map_err(|fact| {
                 let reason = format!("the file c/{key}: {fact}");

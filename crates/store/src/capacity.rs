@@ -7,7 +7,7 @@
 use super::array::StoredArray;
 use super::error::StoreError;
 use std::fs;
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::path::Path;
 use system::file::FileAction;
 
@@ -30,7 +30,14 @@ pub(super) fn check_count(group: &Path, name: &str, shape: &[usize], counts: &[u
     };
     // A few may be missing, which is said when they are needed; most of them may not.
     let most_missing = needed / 2 + FEW;
-    let found = count_files(&group.join(name).join("c"), counts.len(), needed.saturating_sub(most_missing));
+    let files = group.join(name).join("c");
+    let found = match count_files(&files, counts.len(), needed.saturating_sub(most_missing)) {
+        Err(source) if system::file::says_nothing(&source) => {
+            return Err(StoreError::io(FileAction::Read, &files, source));
+        }
+        // There is no such folder.
+        found => found.unwrap_or(0),
+    };
     if found < needed.saturating_sub(most_missing) {
         return Err(damaged(format!("its shape {shape:?} needs {needed} files, and {found} are there")));
     }
@@ -52,15 +59,23 @@ pub(super) fn check_metadata(path: &Path) -> Result<(), StoreError> {
 }
 
 /// Counts the files `depth` folders down, up to `most`.
-fn count_files(folder: &Path, depth: usize, most: u64) -> u64 {
+fn count_files(folder: &Path, depth: usize, most: u64) -> io::Result<u64> {
     let mut found = 0;
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+    for entry in fs::read_dir(folder)? {
         if found >= most {
             break;
         }
-        found += if depth > 1 { count_files(&entry.path(), depth - 1, most - found) } else { 1 };
+        let path = entry?.path();
+        if depth <= 1 {
+            found += 1;
+            continue;
+        }
+        found += match count_files(&path, depth - 1, most - found) {
+            Err(error) if !system::file::says_nothing(&error) => 0,
+            counted => counted?,
+        };
     }
-    found
+    Ok(found)
 }
 
 /// Checks that a file of so many bytes can hold a chunk of `shape` with elements of `bytes_each`.

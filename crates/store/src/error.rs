@@ -173,6 +173,12 @@ pub enum StoreError {
         /// The system's reason.
         source: io::Error,
     },
+    /// A folder whose path is no text, which the array library takes no path from.
+    #[error("{} is a path that is no UTF-8, at which arrays are neither read nor written; rename the folder", path.display())]
+    NoText {
+        /// The group.
+        path: PathBuf,
+    },
     /// The array library refused what it was asked to do.
     #[error("{} could not be {action}: {reason}", path.display())]
     Array {
@@ -210,6 +216,19 @@ impl StoreError {
     /// An array of a group whose content does not fit.
     pub(crate) fn damaged(group: &Path, array: &str, reason: impl Into<String>) -> Self {
         Self::Damaged { path: group.to_owned(), array: array.to_owned(), reason: reason.into() }
+    }
+
+    /// Whether data that were to be read may be whole: they could not be looked at now, or not by this program.
+    pub fn says_nothing(&self) -> bool {
+        match self {
+            Self::Io { source, .. } => system::file::says_nothing(source),
+            Self::NoText { .. }
+            | Self::Memory { .. }
+            | Self::NewerVersion { .. }
+            | Self::Remote { .. }
+            | Self::WithoutRemote { .. } => true,
+            _ => false,
+        }
     }
 
     /// A failure of the file system while `path` was being read, written or flushed.

@@ -14,40 +14,50 @@ const TOLD: usize = 4;
 
 /// What is damaged in the arrays of a group, in their order.
 #[derive(Debug, Default)]
-pub(super) struct DamageFindings(Vec<(String, String)>);
+pub(super) struct DamageFindings {
+    damaged: Vec<(String, String)>,
+    /// The first failure that says nothing of what a file holds.
+    unread: Option<StoreError>,
+}
 
 impl DamageFindings {
-    /// Notes damage, and files that cannot be read.
+    /// Notes damage, and that a file cannot be read now.
     ///
     /// # Errors
     /// Any other error, such as that the user cancelled.
     fn note(&mut self, array: &StoredArray, error: StoreError) -> Result<(), StoreError> {
         let reason = match error {
             StoreError::Damaged { reason, .. } => reason,
+            error if error.says_nothing() => {
+                self.unread.get_or_insert(error);
+                return Ok(());
+            }
             error @ StoreError::Io { .. } => match std::error::Error::source(&error) {
                 Some(cause) => format!("{error}: {cause}"),
                 None => error.to_string(),
             },
             other => return Err(other),
         };
-        self.0.push((array.name().to_owned(), reason));
+        self.damaged.push((array.name().to_owned(), reason));
         Ok(())
     }
 
     /// # Errors
-    /// [`StoreError::Damaged`] with how many places are damaged, and the first of them, if there are any.
+    /// [`StoreError::Damaged`] with how many places are damaged, and the first of them, if there are any; otherwise why a
+    /// file could not be read.
     pub(super) fn into_result(self, group: &Path) -> Result<(), StoreError> {
-        let Some((first, reason)) = self.0.first() else { return Ok(()) };
-        let reason = if self.0.len() == 1 {
+        let damaged = &self.damaged;
+        let Some((first, reason)) = damaged.first() else { return self.unread.map_or(Ok(()), Err) };
+        let reason = if damaged.len() == 1 {
             reason.clone()
         } else {
-            let told = self.0.iter().take(TOLD).map(|(array, reason)| match array == first {
+            let told = damaged.iter().take(TOLD).map(|(array, reason)| match array == first {
                 true => reason.clone(),
                 false => format!("array \"{array}\": {reason}"),
             });
-            let more = self.0.len().saturating_sub(TOLD);
+            let more = damaged.len().saturating_sub(TOLD);
             let rest = if more == 0 { String::new() } else { format!("; and {more} more") };
-            format!("{} bricks or files are damaged: {}{rest}", self.0.len(), told.collect::<Vec<_>>().join("; "))
+            format!("{} bricks or files are damaged: {}{rest}", damaged.len(), told.collect::<Vec<_>>().join("; "))
         };
         Err(StoreError::damaged(group, first, reason))
     }

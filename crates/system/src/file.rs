@@ -59,6 +59,28 @@ pub fn ordinary(path: &Path) -> io::Result<fs::Metadata> {
     Err(io::Error::new(io::ErrorKind::InvalidInput, format!("it is {kind}, not an ordinary file")))
 }
 
+/// Whether a failure to read says nothing of what a file holds: it could not be looked at now, for want of a permission,
+/// of handles or of memory, or because the disk or the network failed. That something is missing, of another kind or cut
+/// off is known.
+///
+/// ```
+/// use std::io::{Error, ErrorKind};
+/// assert!(system::file::says_nothing(&Error::from(ErrorKind::PermissionDenied)));
+/// # #[cfg(unix)]
+/// assert!(system::file::says_nothing(&Error::from_raw_os_error(24)), "too many open files");
+/// assert!(!system::file::says_nothing(&Error::from(ErrorKind::NotFound)));
+/// assert!(!system::file::says_nothing(&Error::other("a checksum does not fit")));
+/// ```
+pub fn says_nothing(error: &io::Error) -> bool {
+    use io::ErrorKind::{IsADirectory, NotADirectory, NotFound, OutOfMemory, PermissionDenied, UnexpectedEof};
+    match error.kind() {
+        NotFound | NotADirectory | IsADirectory | UnexpectedEof => false,
+        PermissionDenied | OutOfMemory => true,
+        // What only a decoder or this program says has no code of the system.
+        _ => error.raw_os_error().is_some(),
+    }
+}
+
 /// Bytes that whoever runs this may still write to the disk of a folder, which may yet have to be made; `None` where the
 /// system does not tell.
 #[cfg(unix)]

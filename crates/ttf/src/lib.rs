@@ -56,7 +56,7 @@ pub use library::{Pattern, TextureLibrary};
 pub use preset::Preset;
 pub use raster::{TILE_ENDINGS, read_svg};
 pub use rgba::{RgbaFunction, RgbaStop, symmetric_clip};
-pub use rock::{RockPattern, rock};
+pub use rock::{RockPattern, rock, rocks_like};
 pub use scalar::{ScalarInterval, ScalarTtf};
 pub use shade::{FlatFootprint, LayerPoint, ShadePoint, blend_raw, shade};
 pub use sheet::{TileBeside, contact_sheet, contact_sheet_beside};

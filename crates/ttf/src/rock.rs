@@ -59,7 +59,11 @@ fn common() -> impl Iterator<Item = (&'static str, &'static str)> {
 }
 
 /// The names of rocks that are most like a name, best first; none where no name is like it.
-pub(crate) fn rocks_like(name: &str) -> Vec<&'static str> {
+///
+/// ```
+/// assert_eq!(ttf::rocks_like("sandston")[0], "sandstone");
+/// ```
+pub fn rocks_like(name: &str) -> Vec<&'static str> {
     alike(name, terms().map(|term| term.name).chain(common().map(|(name, _)| name)))
 }
 

@@ -15,7 +15,7 @@ fn written_formats() -> String {
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ImportArgs {
-    /// SEG-Y file, or folder of a volume that a project or the Python package has stored
+    /// SEG-Y file, NumPy array on the project's lattice, or folder of a volume that a project or the Python package has stored
     pub(in crate::cli) survey: PathBuf,
     /// Project folder; created if it does not exist
     pub(in crate::cli) project: PathBuf,
@@ -207,6 +207,10 @@ pub(in crate::cli) struct HorizonAddArgs {
     /// Put it just below this horizon [default: by its depth]
     #[arg(long, value_name = "HORIZON")]
     pub(in crate::cli) below: Option<String>,
+    /// Orientations of its beds in a table of their own (dip and azimuth, or normals), where a surface of any shape is
+    /// fitted through points
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) orientations: Option<PathBuf>,
     #[command(flatten)]
     pub(in crate::cli) reading: ReadingArgs,
 }

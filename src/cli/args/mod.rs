@@ -84,7 +84,7 @@ pub(super) enum Action {
     },
     /// Create a project without seismic
     #[command(
-        after_help = "Example:\n  petroglyph create sketch.petro --bounds 0,5000,0,4000,0,2000 --size 201x161x101 --z-unit m\n  petroglyph create lines.petro --bounds 0,5000,0,4000,0,2000 --inlines 1001,1201 --crosslines 2000,2320,2"
+        after_help = "Example:\n  petroglyph create sketch.petro --bounds 0,5000,0,4000,0,2000 --size 201x161x101 --z-unit m\n  petroglyph create lines.petro --bounds 0,5000,0,4000,0,2000 --inlines 1001,1201 --crosslines 2000,2320,2\n  petroglyph create horst.petro --history horst.toml"
     )]
     Create(CreateArgs),
     /// Read a SEG-Y volume into a project
@@ -245,7 +245,8 @@ pub(super) enum Action {
         /// Project folder
         project: PathBuf,
     },
-    /// Check that everything in a project is there and undamaged; the exit code is 1 if something is damaged
+    /// Check that everything in a project is there, undamaged and can be drawn; the exit code is 1 if something is not, or
+    /// cannot be read
     #[command(after_help = "Examples:\n  petroglyph check north.petro\n  petroglyph check north.petro --repair")]
     Check {
         /// Project folder
@@ -267,6 +268,9 @@ pub(super) enum Action {
 pub(super) struct CreateArgs {
     /// Project folder to create, usually NAME.petro
     pub(super) project: PathBuf,
+    /// A text file that tells the block as events: beds, tilt, folds, faults, erosion (docs/history.md)
+    #[arg(long, value_name = "FILE.toml", conflicts_with = "bounds")]
+    pub(super) history: Option<PathBuf>,
     /// World bounds X0,X1,Y0,Y1,Z0,Z1: X and Y in metres, Z in the vertical unit, positive down
     #[arg(long, value_name = "X0,X1,Y0,Y1,Z0,Z1", allow_hyphen_values = true)]
     pub(super) bounds: Option<String>,

@@ -46,6 +46,8 @@ const LABELS: f32 = 118.0;
 pub struct Import {
     path: PathBuf,
     options: SegyOptions,
+    /// What is typed for the amplitude that stands for no data.
+    null: String,
     name: String,
     polarity: Polarity,
     root: String,
@@ -113,6 +115,7 @@ impl Import {
     fn form(&mut self, ui: &mut Ui) {
         let options = &mut self.options;
         let name = &mut self.name;
+        let null = &mut self.null;
         let polarity = &mut self.polarity;
         self.reading.with(|found| {
             let found = found.map(|(_, found)| found);
@@ -139,11 +142,12 @@ impl Import {
                 let field = TextEdit::singleline(name).hint_text("seismic").desired_width(160.0);
                 form::row(ui, "Name", |ui| ui.add(field));
             });
-            CollapsingHeader::new("More").open(is_refused.then_some(true)).show(ui, |ui| more(ui, options));
+            CollapsingHeader::new("More").open(is_refused.then_some(true)).show(ui, |ui| more(ui, options, null));
             if *options != SegyOptions::default()
                 && ui.button("Detect again").on_hover_text("Forget what was typed").clicked()
             {
                 *options = SegyOptions::default();
+                null.clear();
             }
             if let Some(info) = info {
                 ui.add_space(10.0);
@@ -248,7 +252,7 @@ fn byte(ui: &mut Ui, setting: Setting, option: &mut Option<u16>, found: Option<u
 }
 
 /// Settings that seldom need to be stated.
-fn more(ui: &mut Ui, options: &mut SegyOptions) {
+fn more(ui: &mut Ui, options: &mut SegyOptions, null: &mut String) {
     Grid::new("more").num_columns(2).min_col_width(LABELS - ui.spacing().indent).spacing([12.0, 7.0]).show(ui, |ui| {
         form::number(ui, Setting::Interval, &mut options.interval);
         form::number(ui, Setting::Start, &mut options.start);
@@ -272,6 +276,14 @@ fn more(ui: &mut Ui, options: &mut SegyOptions) {
             (TraceWeight::Ignore, "ignore it"),
         ];
         form::one_of(ui, Setting::TraceWeight, &mut options.trace_weight, &weights);
+        let field = TextEdit::singleline(null).hint_text(AS_FOUND).desired_width(110.0);
+        let typed = form::row(ui, form::name_of(Setting::NullAmplitude), |ui| {
+            ui.add(field).on_hover_text("The amplitude that stands for no data, or none")
+        });
+        if typed.changed() {
+            // What is no number yet states nothing.
+            options.null = null.parse().ok();
+        }
     });
 }
 

@@ -136,8 +136,9 @@ fn middle_inline(file: &SegyFile) -> Result<RgbaImage, files::segy::SegyError> {
     let colours = RgbaFunction::centred(ColourMap::Grey, clip);
     Ok(RgbaImage::from_fn(columns as u32, rows as u32, |column, row| {
         let value = section[column as usize * samples + row as usize * samples / rows];
-        let [r, g, b, _] = colours.evaluate(value).map(|channel| (channel * 255.0 + 0.5) as u8);
-        Rgba([r, g, b, 255])
+        let [r, g, b, opacity] = colours.evaluate(value).map(|channel| (channel * 255.0 + 0.5) as u8);
+        // Where there are no data there is no colour.
+        Rgba([r, g, b, opacity])
     }))
 }
 

@@ -15,10 +15,11 @@ const TRACES_TOGETHER: usize = 128;
 
 impl SegyFile {
     /// The smallest type that holds the samples exactly: integers of one and two bytes as they are, all
-    /// others (IBM and IEEE floats, wider integers as far as float32 holds them, weighted traces) as floats.
+    /// others (IBM and IEEE floats, wider integers as far as float32 holds them, weighted traces) as floats. Where an
+    /// amplitude stands for no data, floats, too: NaN is none.
     pub fn sample_type(&self) -> SampleType {
         match self.info().sample_format {
-            _ if self.is_weighted() => SampleType::Float32,
+            _ if self.is_weighted() || self.has_null() => SampleType::Float32,
             SampleFormat::Int8 => SampleType::Int8,
             SampleFormat::Uint8 => SampleType::Uint8,
             SampleFormat::Int16 => SampleType::Int16,
@@ -33,7 +34,7 @@ impl SegyFile {
     }
 
     /// Reads the samples of a block, `[inline][crossline][sample]`, 0 where there is no trace, by `decode` of
-    /// one trace; returns how many of them were NaN or infinite and became 0. Memory: 32 bytes per trace, and
+    /// one trace; returns how many of them were NaN or infinite. Memory: 32 bytes per trace, and
     /// 256 KiB or a trace per thread.
     fn read_traces<T: Sample>(
         &self,
@@ -87,7 +88,7 @@ pub struct SegyBlocks<'a> {
 }
 
 impl SegyBlocks<'_> {
-    /// Samples of the blocks read so far that were no numbers and became 0.
+    /// Samples of the blocks read so far that were no numbers: no data.
     pub fn non_finite(&self) -> u64 {
         self.non_finite
     }

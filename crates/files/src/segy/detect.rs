@@ -60,6 +60,9 @@ const MIN_FILL_UNKNOWN: f64 = 0.25;
 /// The same for a pair that no convention knows in a file without X and Y, which would confirm it.
 const MIN_FILL_UNCONFIRMED: f64 = 0.95;
 
+/// So few lines that X and Y contradict may be the traces of one shot point.
+const FEW_LINES: usize = 3;
+
 /// The reading that was chosen.
 #[derive(Debug)]
 pub(super) struct Detected {
@@ -280,7 +283,7 @@ impl FieldSearch<'_> {
             }
             _ => {
                 let others: Vec<Candidate> = others().collect();
-                refuse::two_dimensional(self.columns, std::slice::from_ref(&chosen))?;
+                refuse::two_dimensional(self.columns, self.options, std::slice::from_ref(&chosen))?;
                 Err(SegyProblem::StatedBytes { stated: Box::new(chosen), others })
             }
         }
@@ -451,12 +454,17 @@ impl FieldSearch<'_> {
         }
         // Lines that X and Y contradict are still lines, if nothing else is there: coordinates may be wrong.
         let contradicted = candidates.iter().find(|c| is_contradicted(c)).cloned();
+        if let Some(reading) = contradicted.as_ref().filter(|_| readings.is_empty())
+            && [reading.inlines, reading.crosslines].into_iter().flatten().any(|lines| lines.count <= FEW_LINES)
+        {
+            refuse::follow_one_line(self.columns, self.options)?;
+        }
         readings.splice(0..0, contradicted);
         match readings.as_slice() {
             [] => match bins::find(self.columns, self.options, MIN_FILL_UNKNOWN) {
                 Ok(bins) => self.by_coordinates(&bins, candidates, findings),
                 Err(reason) => {
-                    refuse::two_dimensional(self.columns, &candidates)?;
+                    refuse::two_dimensional(self.columns, self.options, &candidates)?;
                     Err(if reason.is_empty() {
                         SegyProblem::NoLineNumbers { tried: candidates }
                     } else {

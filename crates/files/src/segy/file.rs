@@ -139,8 +139,8 @@ impl SegyFile {
     }
 
     /// Decodes the trace at inline index `x`, crossline index `y` into `out`, whose length must be the count
-    /// of samples. Samples that the file does not hold become 0. So do NaN and infinite values, whose count
-    /// is returned.
+    /// of samples. Samples that the file does not hold become 0. Null amplitudes are no data and become NaN; so do
+    /// infinite values, whose count is returned with that of what is NaN in the file.
     ///
     /// # Errors
     /// [`SegyProblem::Shortened`] and [`SegyProblem::Unreadable`] where the trace cannot be read.
@@ -152,19 +152,6 @@ impl SegyFile {
         let mut non_finite = 0;
         self.read_in_order(&mut [(trace, out)], &mut Vec::new(), |trace, bytes, out| {
             non_finite = self.decode(trace, bytes, out);
-        })?;
-        Ok(non_finite)
-    }
-
-    /// The same, with NaN where a null amplitude is.
-    pub(super) fn read_known(&self, x: usize, y: usize, out: &mut [f32]) -> Result<usize, SegyError> {
-        let Some(trace) = self.trace_at(x, y) else {
-            out.fill(0.0);
-            return Ok(0);
-        };
-        let mut non_finite = 0;
-        self.read_in_order(&mut [(trace, out)], &mut Vec::new(), |trace, bytes, out| {
-            non_finite = self.decode_with(trace, bytes, out, f32::NAN);
         })?;
         Ok(non_finite)
     }
@@ -192,13 +179,13 @@ impl SegyFile {
         Ok(())
     }
 
-    /// Decodes the samples of a trace; returns how many were NaN or infinite and became 0.
-    pub(super) fn decode(&self, trace: usize, bytes: &[u8], out: &mut [f32]) -> usize {
-        self.decode_with(trace, bytes, out, 0.0)
+    /// Whether a value stands for no data: then samples are floats, of which NaN is none.
+    pub(super) fn has_null(&self) -> bool {
+        self.null.is_some()
     }
 
-    /// The same, where null amplitudes become `nothing`.
-    pub(super) fn decode_with(&self, trace: usize, bytes: &[u8], out: &mut [f32], nothing: f32) -> usize {
+    /// Decodes the samples of a trace, NaN where there are no data; returns how many were NaN or infinite in the file.
+    pub(super) fn decode(&self, trace: usize, bytes: &[u8], out: &mut [f32]) -> usize {
         let shift = self.shifts.as_ref().map_or(0, |shifts| shifts[trace] as usize).min(out.len());
         let (before, rest) = out.split_at_mut(shift);
         let recorded = rest.len().min(self.frame.samples);
@@ -222,10 +209,12 @@ impl SegyFile {
         let mut non_finite = 0;
         if values.iter().fold(false, |found, value| found | !value.is_finite()) {
             for value in values.iter_mut().filter(|value| !value.is_finite()) {
-                *value = 0.0;
+                *value = f32::NAN;
                 non_finite += 1;
             }
         }
+        // A trace that is not live has no data as it is; zeros take no room where it is stored.
+        let nothing = if self.is_dead(trace) { 0.0 } else { f32::NAN };
         nulls.into_iter().for_each(|n| values[n] = nothing);
         non_finite
     }
@@ -423,7 +412,7 @@ fn null_amplitude(
     if number < dead.len() {
         dead.iter_mut().zip(&empty).for_each(|(dead, empty)| *dead |= empty);
     }
-    let left_out = format!("they are left out, as 0, and {number} traces of nothing else are not live");
+    let left_out = format!("they are left out, as no data, and {number} traces of nothing else are not live");
     match found {
         None => findings.evidence(format!("amplitudes of {value:e} stand for no data, as stated: {left_out}")),
         Some(found) => findings.assumption(Note::unless(

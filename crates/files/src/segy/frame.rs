@@ -472,7 +472,7 @@ fn starts(
     let written = texts(file, encoding)?;
     match binary.extended_headers {
         n @ 1.. => starts.push(after(u64::from(n.unsigned_abs()))),
-        ..=-1 => match find_end_of_text(file, encoding)? {
+        ..=-1 => match find_end_of_text(file)? {
             Some(n) => starts.push(after(n)),
             None => findings.warning(
                 "byte 3505 announces extended text headers closed by ((SEG: EndText)), which is nowhere in the \
@@ -516,13 +516,13 @@ fn texts(file: &Bytes, encoding: TextEncoding) -> Result<u64, SegyProblem> {
 }
 
 /// Number of the extended header (from 1) that holds the end-of-text stanza.
-fn find_end_of_text(file: &Bytes, encoding: TextEncoding) -> Result<Option<u64>, SegyProblem> {
+fn find_end_of_text(file: &Bytes) -> Result<Option<u64>, SegyProblem> {
     let (mut room, mut number, mut from) = (Vec::new(), 0, FILE_HEADER_BYTES as u64);
     while from + TEXT_BYTES as u64 <= file.len() {
         let to = (from + (TEXT_BYTES * HEADERS_TOGETHER) as u64).min(file.len());
         for block in file.read(from..to, &mut room, None)?.chunks_exact(TEXT_BYTES) {
             number += 1;
-            if ends_text(block, encoding.of_block(block)) {
+            if ends_text(block) {
                 return Ok(Some(number));
             }
         }

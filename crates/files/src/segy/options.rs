@@ -45,6 +45,19 @@ pub enum NullAmplitude {
     At(f64),
 }
 
+impl std::str::FromStr for NullAmplitude {
+    type Err = ();
+
+    /// A number, or `none`.
+    fn from_str(text: &str) -> Result<Self, ()> {
+        let text = text.trim();
+        if text.eq_ignore_ascii_case("none") {
+            return Ok(Self::None);
+        }
+        text.parse().ok().filter(|number: &f64| number.is_finite()).map(Self::At).ok_or(())
+    }
+}
+
 /// Which of several traces at one place is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -149,13 +149,13 @@ fn write_statistics(page: &mut String, statistics: &Statistics) -> Result {
     writeln!(page, "{}", percentiles.collect::<Vec<_>>().join("   "))?;
     writeln!(
         page,
-        "{:.2} % zero, {} traces zero throughout, {} samples no numbers (read as 0), {} at the smallest or largest value ({:.4} %{})",
+        "{:.2} % zero, {} traces zero throughout, {} samples no numbers (no data), {} at the smallest or largest value ({:.4} %{})",
         share(s.zero),
         s.zero_traces,
         s.non_finite,
         s.at_limits,
         share(s.at_limits),
-        if s.at_limits > 20 && share(s.at_limits) > 0.01 { ": the data are clipped" } else { "" }
+        if s.clipped > 20 && share(s.clipped) > 0.01 { ": the data are clipped" } else { "" }
     )?;
     write_histogram(page, &s.histogram)
 }

@@ -27,7 +27,7 @@ pub struct Amplitudes {
     pub rms: f64,
     /// Samples of live traces.
     pub samples: u64,
-    /// Samples that were no numbers; they are read as 0.
+    /// Samples that were no numbers in the file: no data.
     pub non_finite: u64,
 }
 
@@ -63,6 +63,15 @@ impl SampleSums {
     /// samples are summed in `f32`, whose rounding averages out, where their squares are in its range; else
     /// in `f64`.
     fn add_trace(&mut self, trace: &[f32]) {
+        if trace.iter().fold(false, |found, value| found | value.is_nan()) {
+            let known: Vec<f32> = trace.iter().copied().filter(|value| !value.is_nan()).collect();
+            return self.add_numbers(&known);
+        }
+        self.add_numbers(trace);
+    }
+
+    /// The same of samples none of which is missing.
+    fn add_numbers(&mut self, trace: &[f32]) {
         const LANES: usize = 8;
         const RUN: usize = 64;
         /// Squares of amplitudes in between neither overflow nor vanish.
@@ -222,8 +231,7 @@ impl SegyFile {
         self.check_unchanged()?;
         let mut info = self.info().clone();
         if amplitudes.non_finite > 0 {
-            let warning =
-                format!("{} samples are not numbers (NaN or infinite) and are read as 0", amplitudes.non_finite);
+            let warning = format!("{} samples are not numbers (NaN or infinite): no data", amplitudes.non_finite);
             progress.warn(&warning);
             info.warnings.push(warning.into());
         }

@@ -2,10 +2,12 @@
 
 use super::SegyOptions;
 use super::candidate::{Candidate, Verdict};
-use super::columns::Columns;
+use super::columns::{Columns, HeaderColumn};
+use super::coordinates::varying;
 use super::error::SegyProblem;
 use super::header::{Field, at};
 use super::lines::LineLattice;
+use glam::DVec2;
 use std::collections::BTreeSet;
 
 /// Several traces a bin: the line numbers of the standard (or the stated ones) repeat, or gathers are
@@ -106,8 +108,13 @@ fn gathers_of_a_line(columns: &Columns, candidate: &Candidate) -> Result<(), Seg
     })
 }
 
-/// One line: an axis that does not vary, or both numbers changing from trace to trace.
-pub(super) fn two_dimensional(columns: &Columns, candidates: &[Candidate]) -> Result<(), SegyProblem> {
+/// One line: an axis that does not vary, both numbers changing from trace to trace, no number but one that counts traces, or
+/// places that follow one another.
+pub(super) fn two_dimensional(
+    columns: &Columns,
+    options: &SegyOptions,
+    candidates: &[Candidate],
+) -> Result<(), SegyProblem> {
     let of = |byte: u16| {
         let [low, high] = columns.get(Field::I32(byte)).range;
         format!("{low} to {high}")
@@ -138,13 +145,48 @@ pub(super) fn two_dimensional(columns: &Columns, candidates: &[Candidate]) -> Re
         gathers_of_a_line(columns, candidate)?;
         return Err(SegyProblem::TwoDimensional { evidence });
     }
-    let cdp = columns.get(Field::I32(at::CDP));
-    let counts_up = cdp.iter().zip(cdp.iter().skip(1)).all(|(a, b)| b == a.wrapping_add(1));
-    let counts_down = cdp.iter().zip(cdp.iter().skip(1)).all(|(a, b)| b == a.wrapping_sub(1));
-    if cdp.constant().is_none() && (counts_up || counts_down) {
+    if is_one_way(columns.get(Field::I32(at::CDP))) {
         return Err(SegyProblem::TwoDimensional {
             evidence: format!("there are no inline numbers, and the CDP number (byte 21) counts from {}", of(at::CDP)),
         });
     }
-    Ok(())
+    for candidate in candidates {
+        let (missing, kind, byte) = match candidate.verdict {
+            Verdict::ConstantInline(0) => ("inline", "crossline", candidate.crossline_byte),
+            Verdict::ConstantCrossline(0) => ("crossline", "inline", candidate.inline_byte),
+            _ => continue,
+        };
+        if candidate.inline_byte != at::TRACE_IN_FILE && is_one_way(&columns.numbers(byte, candidate.number_type)) {
+            let evidence = format!(
+                "there are no {missing} numbers, and each trace has a {kind} number (byte {byte}, {}) of its own",
+                of(byte)
+            );
+            return Err(SegyProblem::TwoDimensional { evidence });
+        }
+    }
+    follow_one_line(columns, options)
+}
+
+/// Whether numbers rise from trace to trace, or fall: in a volume they begin anew with each line.
+fn is_one_way(numbers: &HeaderColumn) -> bool {
+    let pairs = || numbers.iter().zip(numbers.iter().skip(1));
+    numbers.constant().is_none() && (pairs().all(|(a, b)| a < b) || pairs().all(|(a, b)| a > b))
+}
+
+/// Fewer traces may lie on a line by chance.
+const FEWEST_ON_A_LINE: usize = 8;
+
+/// Traces whose X and Y lead from the first to the last without turning back, straight or crooked. Those of a volume turn
+/// back with each of its lines.
+pub(super) fn follow_one_line(columns: &Columns, options: &SegyOptions) -> Result<(), SegyProblem> {
+    let Some(coordinates) = varying(columns, options) else { return Ok(()) };
+    let places: Vec<DVec2> = (0..columns.count()).filter_map(|trace| coordinates.of(trace)).collect();
+    let (Some(first), Some(last)) = (places.first(), places.last()) else { return Ok(()) };
+    let along = *last - *first;
+    let goes_on = |pair: &[DVec2]| (pair[1] - pair[0]).dot(along) > 0.0;
+    if places.len() < FEWEST_ON_A_LINE.max(columns.count()) || !places.windows(2).all(goes_on) {
+        return Ok(());
+    }
+    let evidence = "there are no line numbers, and X and Y lead along one line without turning back".to_owned();
+    Err(SegyProblem::TwoDimensional { evidence })
 }

@@ -51,10 +51,12 @@ pub struct Statistics {
     pub zero: u64,
     /// Traces that are 0 throughout, though they are not flagged dead.
     pub zero_traces: usize,
-    /// Samples that are NaN or infinite; they are read as 0.
+    /// Samples that are NaN or infinite in the file: no data.
     pub non_finite: u64,
-    /// Samples that equal the smallest or largest one. If there are many, the data are clipped.
+    /// Samples that equal the smallest or largest one.
     pub at_limits: u64,
+    /// Those of them at a limit at which samples pile up: the data are clipped there.
+    pub clipped: u64,
     /// Histogram between the outer percentiles, symmetric about 0 if there are both signs.
     pub histogram: AmplitudeHistogram,
 }
@@ -77,7 +79,7 @@ impl SegyFile {
             .par_chunks_mut(samples.max(1))
             .zip(&chosen)
             .map(|(trace, &place)| {
-                let non_finite = self.read_known(place / crosslines, place % crosslines, trace)?;
+                let non_finite = self.read_trace(place / crosslines, place % crosslines, trace)?;
                 progress.step(1).map_err(|cancelled| SegyProblem::from(cancelled).in_file(&self.path))?;
                 Ok((non_finite, trace.iter().all(|&value| value == 0.0 || value.is_nan())))
             })
@@ -89,6 +91,28 @@ impl SegyFile {
         statistics.zero_traces = faults.iter().filter(|fault| fault.1).count();
         Ok(statistics)
     }
+}
+
+/// Fewer values than these are classes, which pile up anywhere.
+const FEWEST_VALUES: usize = 16;
+/// How many times more samples a limit has than the value beside it where data are clipped there.
+const TIMES_MORE: usize = 3;
+
+/// Samples, ascending, at limits at which they pile up: where data were clipped. 0 is none, since it also stands for no
+/// data, and attributes begin there.
+fn clipped(values: &[f32]) -> u64 {
+    let runs = || values.chunk_by(|a, b| a == b);
+    if runs().take(FEWEST_VALUES).count() < FEWEST_VALUES {
+        return 0;
+    }
+    let mut runs = runs();
+    let first = [runs.next(), runs.next()];
+    let last = [runs.next_back(), runs.next_back()];
+    let piled = [first, last].into_iter().filter_map(|[limit, beside]| {
+        let (limit, beside) = (limit?, beside?);
+        (limit.first() != Some(&0.0) && limit.len() > TIMES_MORE * beside.len()).then_some(limit.len() as u64)
+    });
+    piled.sum()
 }
 
 fn describe(mut values: Vec<f32>) -> Statistics {
@@ -103,6 +127,7 @@ fn describe(mut values: Vec<f32>) -> Statistics {
     let at = |limit: f32| values.iter().filter(|&&v| v == limit).count();
     // One value is no limit that data are clipped at.
     let at_limits = if min == max { 0 } else { at(min) + at(max) };
+    let clipped = clipped(&values);
     let at = |percent: f64| values.get((percent / 100.0 * count as f64) as usize).map_or(0.0, |&v| f64::from(v));
     let (low, high) = match [at(PERCENT[0]), at(PERCENT[PERCENT.len() - 1])] {
         [low, high] if low < 0.0 && high > 0.0 => (-high.max(-low), high.max(-low)),
@@ -128,6 +153,7 @@ fn describe(mut values: Vec<f32>) -> Statistics {
         zero_traces: 0,
         non_finite: 0,
         at_limits: at_limits as u64,
+        clipped,
         histogram: AmplitudeHistogram { low, high, counts },
     }
 }
@@ -147,6 +173,27 @@ mod tests {
         assert_eq!(found.histogram.counts.iter().sum::<u64>(), 1001);
         let inner = &found.histogram.counts[1..COLUMNS - 1];
         assert!(inner.iter().all(|&c| (16..=17).contains(&c)), "{inner:?}");
+    }
+
+    #[test]
+    fn limits_at_which_samples_pile_up_are_clipped_and_classes_are_not() {
+        let wave = |n: u32| (n as f32 * 0.37).sin() * 900.0;
+        let clipped_wave = describe((0..4000).map(|n| wave(n).clamp(-500.0, 800.0)).collect());
+        assert!(clipped_wave.clipped > 1000 && clipped_wave.clipped == clipped_wave.at_limits, "{clipped_wave:?}");
+        // 8 bits, clipped on one side.
+        assert!(describe((0..4000).map(|n| (wave(n) / 7.0).round().min(90.0)).collect()).clipped > 500);
+        // A mask, codes of rocks, an attribute that begins at 0, a wave with two equal crests, steps of one size.
+        let others: [Vec<f32>; 5] = [
+            (0..4000).map(|n| (n % 2) as f32).collect(),
+            (0..4000).map(|n| (n % 7) as f32).collect(),
+            (0..4000).map(|n| wave(n).max(0.0)).collect(),
+            (0..4000).map(wave).chain([900.0, 900.0]).collect(),
+            (0..4000).map(|n| (n % 200) as f32).collect(),
+        ];
+        for (n, values) in others.into_iter().enumerate() {
+            let found = describe(values);
+            assert!(found.clipped <= 2, "{n}: {found:?}");
+        }
     }
 
     #[test]

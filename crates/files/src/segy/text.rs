@@ -97,11 +97,14 @@ pub(super) fn is_text(block: &[u8], encoding: TextEncoding) -> bool {
     printable * 20 >= block.len() * 19 && letters >= 4
 }
 
-/// Whether an extended text header holds the end-of-text stanza.
-pub(super) fn ends_text(block: &[u8], encoding: TextEncoding) -> bool {
+/// Whether an extended text header holds the end-of-text stanza, in either encoding: it need not be that of the first
+/// header, and what follows the stanza need not be text.
+pub(super) fn ends_text(block: &[u8]) -> bool {
     // Blanks and capitals are as every program likes them.
-    let letters = block.iter().map(|&b| encoding.decode(b).to_ascii_uppercase()).filter(|c| !c.is_whitespace());
-    letters.collect::<String>().contains(END_OF_TEXT)
+    [TextEncoding::Ebcdic, TextEncoding::Ascii].into_iter().any(|encoding| {
+        let letters = block.iter().map(|&b| encoding.decode(b).to_ascii_uppercase()).filter(|c| !c.is_whitespace());
+        letters.collect::<String>().contains(END_OF_TEXT)
+    })
 }
 
 /// A textual header of 40 lines, `C 1` to `C40`, in code page 037; longer lines are cut, missing ones blank.
@@ -158,9 +161,8 @@ mod tests {
     fn the_end_of_text_stanza_is_found() {
         let first = encode_ebcdic(&["((SEG: Location Data ver 1.0))".to_owned()]);
         let second = encode_ebcdic(&["((SEG: EndText))".to_owned()]);
-        assert!(ends_text(&second, TextEncoding::Ebcdic));
-        let spelled = encode_ebcdic(&["((  seg: endTEXt  ))".to_owned()]);
-        assert!(ends_text(&spelled, TextEncoding::Ebcdic));
-        assert!(!ends_text(&first, TextEncoding::Ebcdic));
+        assert!(ends_text(&second) && !ends_text(&first));
+        assert!(ends_text(&encode_ebcdic(&["((  seg: endTEXt  ))".to_owned()])));
+        assert!(ends_text(&[b"((SEG: EndText))".as_slice(), &[0; 3184]].concat()));
     }
 }

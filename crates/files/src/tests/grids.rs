@@ -320,27 +320,13 @@ fn surfaces_without_a_name_are_selected_by_their_number() {
     assert!(worst(&horizon, |xy| plane_of_cases(xy) + 300.0).0 < 0.01);
     let error = read_horizons(&path, &survey, &select("7")).unwrap_err().to_string();
     assert!(error.contains("it has: 1, 2"), "{error}");
-}
-
-#[test]
-fn archives_and_grids_of_other_kinds_are_named_with_what_to_export() {
-    for (start, word) in [
-        (&b"\x89HDF\r\n\x1a\n"[..], "HDF5"),
-        (b"CDF\x01\0\0", "NetCDF"),
-        (b"PK\x03\x04", "ZIP"),
-        (b"\x1f\x8b\x08", "gzip"),
-        (b"\xd0\xcf\x11\xe0", "Office"),
-        (b"-- a grid\nSPECGRID\n 3 3 3 1 F /\n", "GRDECL"),
-        (b"<?xml version=\"1.0\"?>\n<a>", "XML"),
-        (b"II*\0\x08\0\0\0", "GeoTIFF"),
-        (b"\0\0\x27\x0a\0\0", "shapefile"),
-    ] {
-        let content = [start, &vec![0; 5000][..]].concat();
-        let (_folder, path) = bytes("a.dat", &content);
-        let error = describe(&path, &ImportOptions::default()).unwrap_err();
-        assert!(
-            matches!(&error, FormatError::UnknownFormat { is_named: true, .. }) && error.to_string().contains(word),
-            "{error}"
-        );
+    // One without a name among others; a name that is a number is a name.
+    let named = |name: &str, by: f64| set(by).replace("HEADER {\n", &format!("HEADER {{\nname:{name}\n"));
+    let (_folder, path) = file("b.vs", &(named("1", 0.0) + &set(300.0) + &named("B", 600.0)));
+    for (word, by) in [("1", 0.0), ("2", 300.0), ("B", 600.0)] {
+        let (horizon, _) = read_horizons(&path, &survey, &select(word)).unwrap().remove(0);
+        assert!(worst(&horizon, |xy| plane_of_cases(xy) + by).0 < 0.01, "{word}");
     }
+    let error = read_horizons(&path, &survey, &select("3")).unwrap_err().to_string();
+    assert!(error.contains("it has: 1, 2, B"), "{error}");
 }

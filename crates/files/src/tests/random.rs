@@ -60,11 +60,44 @@ const FILES: &[(&str, &str)] = &[
          \nEOD\n",
     ),
     ("dug", "# subgrid=il:1-2[1]+cl:1-2[1]\n# vertical_dimension=time\n1\t1\t40\n1\t2\t44\n2\t1\t48\n"),
+    ("obj", "o A\nv 0 0 40\nv 50 0 44\nv 0 50 48\nv 50 50 50\nf 1//1 2//1 3//1\nf -3 -1 -2\no B\nl 1 2 \\\n 3\n"),
+    (
+        "stl",
+        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 40\nvertex 50 0 44\nvertex 0 50 48\nendloop\nendfacet\nendsolid a\n",
+    ),
+    (
+        "gxf",
+        "#POINTS\n3\n#ROWS\n2\n#PTSEPARATION\n25\n#RWSEPARATION\n25\n#SENSE\n-2\n#DUMMY\n-1e12\n#GRID\n40 41 42\n43 -1e12 45\n",
+    ),
+    (
+        "gxf",
+        "#POINTS\n3\n#ROWS\n2\n#PTSEPARATION\n25\n#RWSEPARATION\n25\n#ROTATION\n3\n#GTYPE\n2\n#TRANSFORM\n0.1,0\n#GRID\n\"\"%(*+!!))))\n",
+    ),
     (
         "ijxyz",
         "@File\n#Horizon_name___-> A\n#End_of_Horizon_ASCII_Header_\n1.0 1 0 0 40\n2.0 1 25 0 44\n1.0 2 0 25 48\n",
     ),
 ];
+
+/// Small valid files that are not text.
+fn binary_files() -> Vec<(&'static str, Vec<u8>)> {
+    let floats = |values: &[f32]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
+    let mut stl = vec![b' '; 80];
+    stl.extend(1_u32.to_le_bytes());
+    stl.extend(floats(&[0.0, 0.0, 1.0, 0.0, 0.0, 40.0, 50.0, 0.0, 44.0, 0.0, 50.0, 48.0]));
+    stl.extend([0, 0]);
+    let head = "{'descr': '<f4', 'fortran_order': False, 'shape': (6, 6), }\n";
+    let start = [b"\x93NUMPY\x01\0", &(head.len() as u16).to_le_bytes()[..], head.as_bytes()].concat();
+    let npy = [start, floats(&[44.0; 36])].concat();
+    vec![
+        ("stl", stl),
+        ("npy", npy),
+        ("geotiff", rasters::small_geotiff()),
+        ("netcdf", netcdf::small_grid()),
+        ("shapefile", features::small_shapefile()),
+        ("geopackage", geopackages::small_geopackage()),
+    ]
+}
 
 fn irap_binary() -> Vec<u8> {
     let mut bytes = Vec::new();
@@ -112,6 +145,14 @@ fn valid_files_are_read_and_recognised() {
         assert!(!found.is_empty(), "{name}: {as_horizon:?} {as_fault:?}");
         assert!(found.iter().all(|f| f.name() == *name), "{name}: {found:?}");
     }
+    for (name, content) in binary_files() {
+        let (_folder, path) = bytes("A.dat", &content);
+        let as_horizon =
+            read_horizons(&path, &survey(), &ImportOptions::default()).map(|found| found[0].1.format.value);
+        let as_fault = read_fault(&path, &survey(), &ImportOptions::default()).map(|found| found[0].1.format.value);
+        let found = [as_horizon.as_ref().ok(), as_fault.as_ref().ok()];
+        assert!(found.contains(&Format::from_name(name).as_ref()), "{name}: {as_horizon:?} {as_fault:?}");
+    }
     let (_folder, path) = bytes("A.gri", &irap_binary());
     let (horizon, report) = read_horizons(&path, &survey(), &ImportOptions::default()).unwrap().remove(0);
     assert_eq!(report.format.value, Format::IrapBinary);
@@ -148,9 +189,10 @@ fn mutated_files_are_read_or_refused_but_never_panic() {
     let mut sources: Vec<(Format, Vec<u8>)> =
         FILES.iter().map(|(name, text)| (Format::from_name(name).unwrap(), text.as_bytes().to_vec())).collect();
     sources.push((Format::IrapBinary, irap_binary()));
+    sources.extend(binary_files().into_iter().map(|(name, content)| (Format::from_name(name).unwrap(), content)));
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mutant.dat");
-    for round in 0..1300 {
+    for round in 0..2000 {
         let (format, valid) = &sources[round % sources.len()];
         let mut mutant = valid.clone();
         for _ in 0..=random(4) {

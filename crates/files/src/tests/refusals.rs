@@ -139,3 +139,24 @@ fn rows_that_are_no_rows_of_iesx_are_named() {
     let error = refused(text).to_string();
     assert!(error.contains("line 3: expected X, Y, two counts, Z"), "{error}");
 }
+
+#[test]
+fn a_hint_that_names_columns_uses_those_of_the_file() {
+    for (header, columns, example) in [
+        ("inline,crossline,top_twt_ms", "inline, crossline, top_twt_ms", "inline,crossline,z"),
+        ("inline,crossline,top_twt_ms,amplitude", "top_twt_ms, amplitude", "inline,crossline,z,-"),
+        ("Easting;Northing;Base Depth 2;remark", "Base Depth 2", "x,y,z,-"),
+        ("x\ty\tpick", "x, y, pick", "x,y,z"),
+    ] {
+        let cut = header.chars().find(|c| ",;\t".contains(*c)).unwrap().to_string();
+        let row = |n: i32| (0..header.split(&cut as &str).count()).map(move |at| (n * 7 + at as i32).to_string());
+        let rows: String = (1..9).map(|n| row(n).collect::<Vec<_>>().join(&cut) + "\n").collect();
+        match refused(&format!("{header}\n{rows}")) {
+            FormatError::Columns { why, example: found, .. } => {
+                assert!(why.contains(columns), "{header}: {why}");
+                assert_eq!(found, example, "{header}");
+            }
+            error => panic!("{header}: {error}"),
+        }
+    }
+}

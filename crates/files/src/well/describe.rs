@@ -4,6 +4,7 @@ use super::columns::WellColumn;
 use super::deviation::resinsight;
 use super::error::WellFileError;
 use super::las::parse_las;
+use super::las_tops;
 use super::options::WellOptions;
 use super::report::WellReport;
 use super::rms;
@@ -80,12 +81,22 @@ fn column(name: &str, unit: &str, description: &str, values: impl Iterator<Item 
 pub fn describe(file: &Path, text: &str) -> Result<Option<WellFileDescription>, WellFileError> {
     let first = text.lines().map(str::trim).find(|l| !l.is_empty() && !l.starts_with('#')).unwrap_or("");
     if first.len() >= 2 && first.starts_with('~') && first[1..].starts_with(['V', 'v']) {
-        let las = parse_las(file, text)?;
+        let of_las = las_tops::table_of(text);
+        let las = match (parse_las(file, text), of_las) {
+            (Ok(las), _) => las,
+            // A file may hold tops and no curves.
+            (Err(_), Some(tops)) => return describe(file, &tops),
+            (Err(error), None) => return Err(error),
+        };
         let mut facts = vec![format!("LAS {:.1}{}", las.version, if las.wrapped { ", wrapped" } else { "" })];
         facts.extend(las.well.iter().filter(|i| !i.value.is_empty()).map(|i| {
             let unit = if i.unit.is_empty() { String::new() } else { format!(" {}", i.unit) };
             format!("{}: {}{unit}", i.mnemonic, i.value)
         }));
+        facts.extend(
+            las_tops::table_of(text)
+                .map(|tops| format!("tops: {}", tops.lines().filter(|l| !l.is_empty()).count() - 1)),
+        );
         let columns = las.curves.iter().zip(&las.data);
         return Ok(Some(WellFileDescription {
             file: file.to_owned(),

@@ -1,10 +1,11 @@
 //! LAS 1.2, 2.0 and 3.0: curves by depth or time.
 //!
 //! Sections begin with `~` and a letter: V (version, wrap), W (well: STRT, STOP, STEP, NULL …), C (curves), P
-//! (parameters), O (other), A (data). Lines are `MNEM.UNIT value : description`, cut at the first dot, the
-//! first blank after it and the last colon. In wrapped files the values of a depth run over several lines.
-//! LAS 3.0 names its sections (`~Log_Definition`, `~Log_Data`) and what separates values (`DLM. COMMA`), so that a value may
-//! be empty; its curves of words are missing values, and its other tables are left out.
+//! (parameters), O (other), A (data). Lines are `MNEM.UNIT value : description`, cut at the first dot, the first blank
+//! after it and the last colon. In wrapped files the values of a depth run over several lines. LAS 3.0 names its
+//! sections (`~Log_Definition`, `~Log_Data`) and what separates values (`DLM. COMMA`), so that a value may be empty;
+//! its curves of words are missing values, its tops are read as a table of tops ([`las_tops`](super::las_tops)), and
+//! its other tables are left out.
 
 use super::error::WellFileError;
 use crate::number::{self, NumberStyle};
@@ -48,7 +49,7 @@ pub struct Las {
 }
 
 /// `MNEM.UNIT value : description`; None without a dot.
-fn item(text: &str) -> Option<LasItem> {
+pub(super) fn item(text: &str) -> Option<LasItem> {
     let (mnemonic, rest) = text.split_once('.')?;
     let unit_end = rest.find(char::is_whitespace).unwrap_or(rest.len());
     let (mut unit, mut tail) = rest.split_at(unit_end);

@@ -11,6 +11,7 @@ mod describe;
 mod deviation;
 mod error;
 mod las;
+mod las_tops;
 mod options;
 mod read;
 mod report;

@@ -5,6 +5,7 @@ use super::collar::parse_collar;
 use super::deviation::deviation_of;
 use super::error::WellFileError;
 use super::las::{Las, parse_las};
+use super::las_tops;
 use super::options::WellOptions;
 use super::report::WellReport;
 use super::rms;
@@ -80,7 +81,13 @@ pub fn read_well(files: &WellFiles, options: &WellOptions) -> Result<(Well, Well
         report.notes.push(format!("{} tops", well.tops.len()).into());
     }
     for file in &files.las {
-        let las = parse_las(file, &text_of(file)?)?;
+        let text = text_of(file)?;
+        let las = parse_las(file, &text)?;
+        if files.tops.is_none() && las_tops::table_of(&text).is_some() {
+            let rows = parse_tops(file, &text, &well.path, &options, &mut report)?;
+            well.tops.extend(on_path(rows, &well.path, &mut report));
+            report.notes.push(format!("{} tops of {}", well.tops.len(), file.display()).into());
+        }
         if let Some(inside) = las.well_name()
             && !same_name(inside, &well.name)
         {

@@ -260,3 +260,139 @@ fn wells_survive_json() {
     let broken = text.replace("\"md_m\":1000.0,\"position\"", "\"md_m\":-1.0,\"position\"");
     assert!(serde_json::from_str::<Well>(&broken).unwrap_err().to_string().contains("increase"));
 }
+
+/// A LAS 3.0 file with a log and the sections of its tops.
+fn las_with(tops: &str, delimiter: &str, unit: &str) -> String {
+    let cut = if delimiter == "COMMA" {
+        ','
+    } else if delimiter == "TAB" {
+        '\t'
+    } else {
+        ' '
+    };
+    format!(
+        "~Version\nVERS. 3.0 :\nWRAP. NO :\nDLM. {delimiter} :\n~Well\nSTRT.{unit} 100 :\nSTOP.{unit} 200 :\nSTEP.{unit} 100 :\nNULL. \
+         -999.25 :\nWELL. A-1 :\n~Log_Definition\nDEPT.{unit} : Depth {{F}}\nGR.GAPI : Gamma {{F}}\n~Log_Data | Log_Definition\n\
+         100{cut}45\n200{cut}47\n{tops}"
+    )
+}
+
+#[test]
+fn tops_of_las_3_are_read_under_many_names_and_units() {
+    let path = WellPath::through(
+        25.0,
+        &[(Some(0.0), DVec3::new(0.0, 0.0, -25.0)), (Some(3000.0), DVec3::new(0.0, 0.0, 2975.0))],
+    )
+    .unwrap();
+    let data = "~Tops_Data | Tops_Definition\n";
+    for (what, las, wanted) in [
+        (
+            "the standard's own",
+            las_with(
+                &format!(
+                    "~Tops_Parameter\nTOPS. Logs : Source\n~Tops_Definition\nTOPN. : Name {{S}}\nTOPT.M : Top {{F}}\nTOPB.M : Base {{F}}\n{data}Viking,1000,1010\n\"Colony, upper\",1010.5,1020.5\n"
+                ),
+                "COMMA",
+                "M",
+            ),
+            [("Viking", 1000.0), ("Colony, upper", 1010.5)],
+        ),
+        (
+            "in feet by their own unit",
+            las_with(
+                "~TOPS_DEFINITION\nTOPT.FT : Top {F}\nTOPN. : Name {S}\n~TOPS_DATA | TOPS_DEFINITION\n1000 \"Top A\"\n2000 B\n",
+                "SPACE",
+                "M",
+            ),
+            [("Top A", 304.8), ("B", 609.6)],
+        ),
+        (
+            "in the feet of the log, tabs",
+            las_with(
+                &format!("~Tops_Definition\nTOPN. : Name {{S}}\nTOPT. : Top {{F}}\n{data}Top A\t1000\nB\t2000\n"),
+                "TAB",
+                "FT",
+            ),
+            [("Top A", 304.8), ("B", 609.6)],
+        ),
+        (
+            "TOPT is the name",
+            las_with(
+                &format!(
+                    "~Tops_Definition\nTOPT. : TOP NAME {{S}}\nTOPD.M : TOP DEPTH {{F}}\n{data}\"Top Sand A\",1500.4\nB,1600\n"
+                ),
+                "COMMA",
+                "M",
+            ),
+            [("Top Sand A", 1500.4), ("B", 1600.0)],
+        ),
+        (
+            "below sea level, negative",
+            las_with(
+                &format!(
+                    "~Tops_Parameter\nTOPDR. Subsea : Tops Depth Reference {{S}}\n~Tops_Definition\nTOPT.M : {{F}}\nTOPB.M : {{F}}\nTOPN. : {{S}}\n{data}-1545.5,-1603,Viking\n-1603,-1614.8,Colony\n"
+                ),
+                "COMMA",
+                "M",
+            ),
+            [("Viking", 1570.5), ("Colony", 1628.0)],
+        ),
+        (
+            "many columns",
+            las_with(
+                "~Tops_Definition[1]\nKID. : {S}\nID. : {S}\nTOPT.F : {F}\nTOPB.F : {F}\nRANK. : {S}\nTOPN. : {S}\nFORM. : {S}\n~Tops_Data[1] | Tops_Definition[1]\n# KID ID\n\"-999.25\",\"11\",4338.0,0.0,\"FORMATION\",\"Topeka\",\"Topeka Limestone\"\n\"-999.25\",\"12\",4454.0,0.0,\"GROUP\",\"Oread\",\"\"\n",
+                "COMMA",
+                "F",
+            ),
+            [("Topeka", 4338.0 * 0.3048), ("Oread", 4454.0 * 0.3048)],
+        ),
+    ] {
+        let mut report = WellReport::default();
+        let rows = parse_tops(Path::new("a.las"), &las, &path, &WellOptions::default(), &mut report)
+            .unwrap_or_else(|e| panic!("{what}: {e}\n{las}"));
+        let found: Vec<(&str, f64)> =
+            rows.iter().map(|row| (row.name.as_str(), row.md_m.unwrap_or(f64::NAN))).collect();
+        let is_same = found.len() == 2 && found.iter().zip(wanted).all(|(a, b)| a.0 == b.0 && (a.1 - b.1).abs() < 1e-6);
+        assert!(is_same, "{what}: {found:?}, {wanted:?}");
+        let told = describe(Path::new("a.las"), &las).unwrap().unwrap();
+        assert!(told.facts.iter().any(|fact| fact == "tops: 2"), "{what}: {:?}", told.facts);
+        // The line of a row is that of the file.
+        assert!(las.lines().nth(rows[1].line - 1).unwrap().contains(wanted[1].0), "{what}");
+    }
+    let none = las_with("", "COMMA", "M");
+    assert!(parse_tops(Path::new("a.las"), &none, &path, &WellOptions::default(), &mut WellReport::default()).is_err());
+    // A file of tops and no curves.
+    let alone = format!(
+        "~Version\nVERS. 3.0 :\nDLM. COMMA :\n~Tops_Definition\nTOPN. : {{S}}\nTOPT.M : {{F}}\n{data}Viking,1000\n"
+    );
+    assert_eq!(describe(Path::new("a.las"), &alone).unwrap().unwrap().kind, WellFileKind::Tops);
+    for cut in 0..alone.len() {
+        let _ = describe(Path::new("a.las"), &alone[..cut]);
+        let _ =
+            parse_tops(Path::new("a.las"), &alone[..cut], &path, &WellOptions::default(), &mut WellReport::default());
+    }
+}
+
+#[test]
+fn tops_of_a_log_are_the_wells_where_no_other_file_has_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    };
+    let deviation = write("a.dev", "# KB 25\nMD,INC,AZI,X,Y,TVD\n0,0,0,0,0,0\n3000,0,0,0,0,3000\n");
+    let tops = "~Tops_Definition\nTOPN. : {S}\nTOPT.M : {F}\n~Tops_Data | Tops_Definition\nViking,150\nDeep,9000\n";
+    let las = vec![write("a.las", &las_with(tops, "COMMA", "M"))];
+    let files = WellFiles { deviation, las, ..WellFiles::default() };
+    let (well, report) = read_well(&files, &WellOptions::default()).unwrap();
+    assert_eq!(
+        well.tops.iter().map(|top| (top.name.as_str(), top.md_m)).collect::<Vec<_>>(),
+        [("Viking", 150.0)],
+        "{report:?}"
+    );
+    assert!(report.warnings.iter().any(|warning| warning.to_string().contains("Deep")), "{report:?}");
+    let told = WellFiles { tops: Some(write("tops.csv", "surface,md_m\nOther,200\n")), ..files };
+    let (well, _) = read_well(&told, &WellOptions::default()).unwrap();
+    assert_eq!(well.tops.iter().map(|top| top.name.as_str()).collect::<Vec<_>>(), ["Other"]);
+}

@@ -1,10 +1,12 @@
 //! Tops: the name of a surface and the depth at which the well penetrates it, as MD, TVD, TVDSS or Z.
 //!
 //! CSV or blanks with a header, Petrel well tops (`BEGIN HEADER` … `END HEADER`), or two columns without a header,
-//! depth and name (taken as measured depth), or intervals of rocks (from, to). Vertical depths are placed on the path where it first crosses that depth.
+//! depth and name (taken as measured depth), intervals of rocks (from, to), or the tops of LAS 3.0. Vertical depths are
+//! placed on the path where it first crosses that depth.
 
 use super::columns::WellColumn;
 use super::error::WellFileError;
+use super::las_tops;
 use super::options::WellOptions;
 use super::report::WellReport;
 use super::table::Table;
@@ -34,7 +36,14 @@ pub fn parse_tops(
     options: &WellOptions,
     report: &mut WellReport,
 ) -> Result<Vec<TopRow>, WellFileError> {
-    let mut table = Table::parse(file, text);
+    let of_las = las_tops::table_of(text);
+    if of_las.is_none() && las_tops::is_las(text) {
+        return Err(WellFileError::Empty {
+            file: file.to_owned(),
+            what: "tops (sections ~Tops_Definition and ~Tops_Data)",
+        });
+    }
+    let mut table = Table::parse(file, of_las.as_deref().unwrap_or(text));
     if table.rows.is_empty() {
         return Err(WellFileError::Empty { file: file.to_owned(), what: "tops" });
     }

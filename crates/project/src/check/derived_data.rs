@@ -2,9 +2,9 @@
 //! own.
 
 use super::newest;
-use super::report::{CheckReport, Cure, Damage, Outcome, Part};
+use super::report::{CheckReport, Cure, Damage, Outcome, Part, Unread};
 use super::states::States;
-use super::verify::{is_there, outcome};
+use super::verify::{Finding, confirmed, is_there, outcome};
 use crate::derived;
 use crate::document::Document;
 use crate::error::ProjectError;
@@ -13,6 +13,7 @@ use crate::interpretation::{extraction, proposals};
 use std::path::Path;
 use store::{StoredCandidates, StoredParameterization};
 use survey::Progress;
+use system::file::{self, FileAction};
 
 /// A kind of derived data, by its name.
 enum Computed<'a> {
@@ -57,7 +58,10 @@ impl<'a> Computed<'a> {
     fn verify(&self, path: &Path, progress: &Progress) -> Result<(), ProjectError> {
         let malformed = |detail: String| ProjectError::Malformed { path: path.to_owned(), detail };
         match self {
-            Self::Hashed => derived::verify_kept(path).map_err(|error| malformed(error.to_string())),
+            Self::Hashed => derived::verify_kept(path).map_err(|error| match file::says_nothing(&error) {
+                true => ProjectError::io(FileAction::Read, path, error),
+                false => malformed(error.to_string()),
+            }),
             Self::Parameterization => Ok(StoredParameterization::open(path)?.verify(progress)?),
             Self::Candidates(key) => {
                 let stored = StoredCandidates::open(path)?;
@@ -82,23 +86,36 @@ pub(super) fn check(
     progress: &Progress,
 ) -> Result<(), ProjectError> {
     let document = newest(states);
-    for name in storage::names_in(&root.join(storage::DERIVED)) {
+    let names = match storage::list(&root.join(storage::DERIVED)) {
+        Ok(names) => names,
+        // Which of them is there cannot be told either.
+        Err(error) => {
+            let (file, what) = (storage::DERIVED.to_owned(), "what was computed".to_owned());
+            report.unread.push(Unread { file, what, reason: format!("it cannot be read: {error}") });
+            return Ok(());
+        }
+    };
+    for name in names {
         let Some(computed) = Computed::of(&name) else { continue };
         let file = format!("{}/{name}", storage::DERIVED);
         report.derived_files += 1;
         progress.begin(&format!("checking {file}"), 1);
-        let found = match is_there(root, &file, computed.is_folder()) {
-            Ok(()) => outcome(computed.verify(&root.join(&file), progress))?,
-            Err(reason) => Err(reason),
-        };
-        if let Err(reason) = found {
-            report.damage.push(Damage {
+        let path = root.join(&file);
+        let found = confirmed(&path, || match is_there(root, &file, computed.is_folder()) {
+            Ok(()) => outcome(computed.verify(&path, progress)),
+            Err(finding) => Ok(Err(finding)),
+        })?;
+        let what = computed.result().to_string();
+        match found {
+            Ok(()) => {}
+            Err(Finding::Unread(reason)) => report.unread.push(Unread { file, what, reason }),
+            Err(Finding::Damaged(reason)) => report.damage.push(Damage {
                 part: Part::Derived,
-                what: computed.result().to_string(),
+                what,
                 dependants: document.map(|document| dependants(&computed, document)).unwrap_or_default(),
                 cures: vec![Cure::Recompute { result: computed.result() }],
                 ..Damage::of(file, reason)
-            });
+            }),
         }
     }
     let is_missing = |document: &Document| {

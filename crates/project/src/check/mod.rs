@@ -1,9 +1,10 @@
 //! Checks a project on disk, whatever has become of it, and repairs what can be repaired without losing anything.
 //!
 //! [`check`] reads the state and every step of the history, every data file that one of them names, and what is
-//! derived. It compares recorded hashes and verifies checksums, and says what is damaged and what depends on it. Where
-//! nothing that the present state needs is damaged, it makes sure that the state can be drawn. It writes nothing, so it
-//! also works on a project that is read-only, that belongs to someone else, or whose `project.toml` cannot be read.
+//! derived. It compares recorded hashes and verifies checksums, and says what is damaged and what depends on it. What
+//! cannot be read now is told apart from that. Where nothing that the present state needs is damaged, it makes sure that the
+//! state can be drawn. It writes nothing, so it also works on a project that is read-only, that belongs to someone else, or
+//! whose `project.toml` cannot be read.
 //!
 //! [`repair`] holds the project's lock meanwhile. It removes leftovers, data files that no state names and damaged
 //! derived data, moves damaged steps to `damaged/`, and restores a damaged `project.toml` from the history. Data that a
@@ -19,11 +20,13 @@
 //! | `derived_data` | derived data |
 //! | `leftovers` | what no state names |
 //! | `repair` | everything that writes |
+//! | `acquaint` | a project that is not known here, before it is changed |
 //!
-//! Before a project that is not known here is changed, `refuse_unless_sound` does the quick part of a check.
+//! Before a project that is not known here is changed, `acquaint` does the quick part of a check.
 //!
 //! Deliberately absent: [`crate::Project`], which opens only what is whole.
 
+pub(crate) mod acquaint;
 mod dependants;
 mod derived_data;
 mod leftovers;
@@ -31,21 +34,25 @@ mod objects;
 mod repair;
 mod report;
 mod states;
+#[cfg(all(test, unix))]
+mod tests;
 mod verify;
 
 pub use repair::repair;
-pub use report::{CheckReport, Cure, Damage, Leftover, LeftoverKind, Outcome, Part, Repair};
+pub use report::{CheckReport, Cure, Damage, Leftover, LeftoverKind, Outcome, Part, Repair, Unread};
 
 use crate::document::Document;
 use crate::error::ProjectError;
 use crate::facts::Facts;
 use crate::folder::{Lock, acquaintance, storage};
 use crate::interpretation::drawable;
+use crate::pictures::shown;
 use objects::Object;
 use states::States;
 use std::path::Path;
 use survey::Progress;
 use ttf::TextureLibrary;
+use verify::Finding;
 
 /// Checks the project in the folder `root`; nothing is written.
 ///
@@ -75,38 +82,6 @@ pub fn check(root: &Path, progress: &Progress) -> Result<CheckReport, ProjectErr
     Ok(report)
 }
 
-/// Looks through a project that this user has neither created nor checked nor changed before: whether what the present
-/// state names is there, and of the right kind. The data themselves are compared when they are read.
-///
-/// # Errors
-/// [`ProjectError::Unsound`] with the first thing that is missing or not what it should be. A check of the whole project
-/// tells all of it; after one, the project is known.
-pub(crate) fn refuse_unless_sound(root: &Path) -> Result<(), ProjectError> {
-    if acquaintance::is_known(root) {
-        return Ok(());
-    }
-    let states = States::read(root)?;
-    let mut found: Vec<(String, String)> = Vec::new();
-    for object in objects::of(&states).iter().filter(|object| object.is_present) {
-        let file = object.entry.file();
-        if let Err(reason) = verify::is_there(root, file, object.is_folder()) {
-            found.push((file.to_owned(), reason));
-        }
-    }
-    match found.first() {
-        None => {
-            acquaintance::note(root);
-            Ok(())
-        }
-        Some((file, reason)) => Err(ProjectError::Unsound {
-            path: root.to_owned(),
-            count: found.len(),
-            file: file.clone(),
-            reason: reason.clone(),
-        }),
-    }
-}
-
 /// The report, and the states it is based on; `lock` is that of the project, if it is held.
 fn examine(root: &Path, lock: Option<&Lock>, progress: &Progress) -> Result<(CheckReport, States), ProjectError> {
     let states = States::read(root)?;
@@ -124,20 +99,27 @@ fn examine(root: &Path, lock: Option<&Lock>, progress: &Progress) -> Result<(Che
     let objects = objects::of(&states);
     for object in &objects {
         progress.begin(&format!("checking {}", object.entry.file()), 1);
-        if let Err(reason) = verify::verify(root, object, progress)? {
-            report.damage.push(damage(object, reason, &states));
+        match verify::verify(root, object, progress)? {
+            Ok(()) => {}
+            Err(Finding::Damaged(reason)) => report.damage.push(damage(object, reason, &states)),
+            Err(Finding::Unread(reason)) => {
+                let what = format!("{} \"{}\"", object.entry.noun(), object.entry.name());
+                report.unread.push(Unread { file: object.entry.file().to_owned(), what, reason });
+            }
         }
     }
     report.data_files = objects.len();
     // Of damaged data nothing can be drawn, and that is told.
     if let Some(document) = states.present().filter(|_| report.damage.iter().all(|damage| !damage.is_present)) {
-        match drawable::check(Facts::of(root, document), progress) {
+        let facts = Facts::of(root, document);
+        match drawable::check(facts, progress) {
             Ok(notes) => report.notes.extend(notes.iter().map(ToString::to_string)),
             Err(error @ ProjectError::Cancelled(_)) => return Err(error),
-            Err(ProjectError::Model(error)) => report.undrawable = Some(error.to_string()),
+            Err(ProjectError::Model(error)) => report.undrawable.push(error.to_string()),
             // What is damaged is told elsewhere.
             Err(_) => {}
         }
+        report.undrawable.extend(shown::refusals(facts));
     }
     derived_data::check(root, &states, &mut report, progress)?;
     leftovers::find(root, &states, lock, &mut report);
@@ -166,7 +148,8 @@ fn damage(object: &Object, reason: String, states: &States) -> Damage {
 /// What can be done about a damaged data file.
 fn cures(object: &Object, states: &States) -> Vec<Cure> {
     let restored = || states.restorable().and_then(|number| states.document(number));
-    let Some(base) = states.present().or_else(restored) else { return vec![Cure::Backup] };
+    let newest = || newest(states).filter(|_| states.is_state_unread());
+    let Some(base) = states.present().or_else(restored).or_else(newest) else { return vec![Cure::Backup] };
     let will_be_present = states.present().is_none() && object.steps.contains(&base.step);
     if !object.is_present && !will_be_present {
         return vec![Cure::Prune];
@@ -178,17 +161,25 @@ fn cures(object: &Object, states: &States) -> Vec<Cure> {
 
 /// Reports a link anywhere in the project that was not reported yet: no command writes while there is one.
 fn find_links(root: &Path, report: &mut CheckReport) {
-    let reason = match storage::refuse_links(root) {
+    let relative = |path: &Path| path.strip_prefix(root).unwrap_or(path).to_string_lossy().into_owned();
+    let what = "a file or folder of the project".to_owned();
+    let path = match storage::refuse_links(root) {
         Ok(()) => return,
-        Err(ProjectError::Link { path }) => (path, "it is a link".to_owned()),
-        Err(error) => (root.to_owned(), error.to_string()),
+        Err(ProjectError::Link { path }) => path,
+        Err(ProjectError::Io { path, source, .. }) => {
+            let file = relative(&path);
+            if !report.unread.iter().any(|unread| file.starts_with(&unread.file)) {
+                report.unread.push(Unread { file, what, reason: format!("it cannot be read: {source}") });
+            }
+            return;
+        }
+        Err(error) => return report.unread.push(Unread { file: String::new(), what, reason: error.to_string() }),
     };
-    let (path, reason) = reason;
-    let file = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().into_owned();
+    let (file, reason) = (relative(&path), "it is a link");
     if !report.damage.iter().any(|damage| !damage.file.is_empty() && file.starts_with(&damage.file)) {
         report.damage.push(Damage {
             part: Part::Folder,
-            what: "a file or folder of the project".to_owned(),
+            what,
             cures: vec![Cure::ReplaceLink],
             ..Damage::of(file, reason)
         });

@@ -4,7 +4,7 @@
 use super::examine;
 use super::leftovers::size_of;
 use super::report::{CheckReport, Cure, Damage, Leftover, LeftoverKind, Part, Repair};
-use super::states::{DAMAGED, DAMAGED_STATE, States};
+use super::states::{DAMAGED, DAMAGED_STATE, States, Trouble};
 use crate::document::data_file;
 use crate::error::ProjectError;
 use crate::folder::{Lock, Step, acquaintance, forget_creation, history, storage};
@@ -39,6 +39,11 @@ pub fn repair(root: &Path, wait: Duration, progress: &Progress) -> Result<CheckR
     }
     let (mut report, states) = examine(root, Some(&lock), progress)?;
     progress.check()?;
+    if states.is_state_unread() {
+        // What it names is not known, and nothing is known to be left over.
+        report.repairs = repairs;
+        return Ok(report);
+    }
     mend_state(root, &states, &mut report, &mut repairs)?;
     mend_history(root, &states, &mut report, &mut repairs)?;
     remove_derived(root, &mut report, &mut repairs);
@@ -89,7 +94,7 @@ fn mend_history(
         repairs.push(Repair::Made { folder: "history".to_owned() });
         repaired(report, |damage| damage.file == "history");
     }
-    for unreadable in states.unreadable.iter().filter(|unreadable| !unreadable.is_newer) {
+    for unreadable in states.unreadable.iter().filter(|file| file.trouble == Trouble::Damaged) {
         let Some(number) = unreadable.number else { continue };
         let to = free_name(root, &format!("{DAMAGED}/{number:04}.toml"));
         storage::rename(&root.join(&unreadable.file), &root.join(&to))?;
@@ -111,29 +116,11 @@ fn mend_history(
 /// Removes damaged derived data.
 fn remove_derived(root: &Path, report: &mut CheckReport, repairs: &mut Vec<Repair>) {
     let files: Vec<String> = report.damage.iter().filter(|d| is_derived(d)).map(|d| d.file.clone()).collect();
-    for file in files.into_iter().filter(|file| can_be_judged(root, file)) {
+    for file in files {
         if remove(root, &file, repairs) {
             repaired(report, |damage| damage.file == file);
         }
     }
-}
-
-/// Whether what was found of derived data is about their bytes. What cannot be opened now, for want of a permission or of
-/// handles, or lies in a folder whose name the store cannot write down, may be whole: it is not deleted.
-fn can_be_judged(root: &Path, file: &str) -> bool {
-    root.to_str().is_some() && can_be_opened(&root.join(file))
-}
-
-fn can_be_opened(path: &Path) -> bool {
-    let facts = match fs::symlink_metadata(path) {
-        Ok(facts) => facts,
-        Err(error) => return error.kind() == ErrorKind::NotFound,
-    };
-    if !facts.is_dir() {
-        return !facts.is_file() || fs::File::open(path).is_ok();
-    }
-    let Ok(entries) = fs::read_dir(path) else { return false };
-    entries.into_iter().all(|entry| entry.is_ok_and(|entry| can_be_opened(&entry.path())))
 }
 
 fn is_derived(damage: &Damage) -> bool {
@@ -196,26 +183,4 @@ fn free_name(root: &Path, name: &str) -> String {
     let is_taken = |name: &String| fs::symlink_metadata(root.join(name)).is_ok();
     let numbered = (2..).map(|number| format!("{name}-{number}"));
     std::iter::once(name.to_owned()).chain(numbered).find(|name| !is_taken(name)).unwrap_or_else(|| name.to_owned())
-}
-
-#[cfg(all(test, unix))]
-mod tests {
-    use super::*;
-    use std::ffi::OsStr;
-    use std::os::unix::ffi::OsStrExt;
-
-    #[test]
-    fn derived_data_that_cannot_be_judged_are_not_deleted() {
-        let folder = tempfile::tempdir().unwrap();
-        let unnamed = folder.path().join(OsStr::from_bytes(b"north\xff.petro"));
-        for root in [folder.path(), &unnamed] {
-            fs::create_dir_all(root.join("derived/candidates.zarr")).unwrap();
-            fs::write(root.join("derived/candidates.zarr/0"), b"a").unwrap();
-        }
-        let file = "derived/candidates.zarr";
-        assert!(can_be_judged(folder.path(), file) && !can_be_judged(&unnamed, file));
-        assert!(can_be_judged(folder.path(), "derived/gone"));
-        // A file in the place of a folder cannot be looked into.
-        assert!(!can_be_judged(folder.path(), "derived/candidates.zarr/0/c"));
-    }
 }

@@ -21,9 +21,12 @@ pub struct CheckReport {
     pub derived_files: usize,
     /// What is damaged.
     pub damage: Vec<Damage>,
-    /// Why the present state cannot be drawn, though nothing that it needs is damaged: what a picture of it would say.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub undrawable: Option<String>,
+    /// What cannot be read now, so that nothing can be said of it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unread: Vec<Unread>,
+    /// What of the present state cannot be drawn, though nothing that it needs is damaged: what pictures of it would say.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub undrawable: Vec<String>,
     /// What no state names. It does no harm.
     pub leftovers: Vec<Leftover>,
     /// What else there is to know.
@@ -33,9 +36,9 @@ pub struct CheckReport {
 }
 
 impl CheckReport {
-    /// Whether nothing is damaged any more, and the present state can be drawn.
+    /// Whether everything could be read, nothing is damaged any more, and the present state can be drawn.
     pub fn is_well(&self) -> bool {
-        self.undrawable.is_none() && self.damage.iter().all(|damage| damage.repaired)
+        self.unread.is_empty() && self.undrawable.is_empty() && self.damage.iter().all(|damage| damage.repaired)
     }
 }
 
@@ -84,6 +87,18 @@ impl Damage {
     pub(super) fn of(file: impl Into<String>, reason: impl Into<String>) -> Self {
         Self { file: file.into(), reason: reason.into(), ..Self::default() }
     }
+}
+
+/// Something that cannot be read now: for want of a permission, of handles or memory, because a disk or a network fails,
+/// because a newer version wrote it, or in a folder whose path is no text. It may be whole.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Unread {
+    /// The file or folder, relative to the project.
+    pub file: String,
+    /// What it is, in words.
+    pub what: String,
+    /// Why it cannot be read.
+    pub reason: String,
 }
 
 /// A result of a computation, which can be computed again.

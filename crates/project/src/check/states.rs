@@ -1,6 +1,7 @@
 //! The present state and the steps of the history, as far as they can be read.
 
-use super::report::{CheckReport, Cure, Damage, Part};
+use super::report::{CheckReport, Cure, Damage, Part, Unread};
+use super::verify::Finding;
 use crate::document::Document;
 use crate::error::ProjectError;
 use crate::folder::history::{self, Step};
@@ -9,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
-use system::file;
+use system::file::{self, FileAction};
 
 /// A file of a state that cannot be read.
 #[derive(Debug)]
@@ -20,10 +21,21 @@ pub(super) struct Unreadable {
     pub number: Option<u32>,
     /// What is wrong with it.
     pub reason: String,
-    /// Whether it is a step that a newer version of the program wrote: it is no damage.
-    pub is_newer: bool,
+    /// Whether that is damage.
+    pub trouble: Trouble,
     /// Its bytes, as far as they can be read: they show what it may name.
     pub text: Option<String>,
+}
+
+/// Why a file of a state is of no use.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Trouble {
+    /// It is damaged.
+    Damaged,
+    /// A newer version of the program wrote it: that is no damage.
+    Newer,
+    /// It cannot be read now, and may be whole.
+    Unread,
 }
 
 /// Everything that is known of a project's states.
@@ -38,6 +50,8 @@ pub(super) struct States {
     pub set_aside: Vec<Unreadable>,
     /// What is wrong with the folder of the history, and what helps.
     pub history_trouble: Option<(String, Cure)>,
+    /// Why the steps of the history cannot be listed now; they may name anything.
+    history_unread: Option<String>,
 }
 
 impl States {
@@ -47,11 +61,11 @@ impl States {
     /// There is no project, or a newer version wrote it.
     pub(super) fn read(root: &Path) -> Result<Self, ProjectError> {
         let not_a_project = |fact| Err(ProjectError::NotAProject { path: root.to_owned(), fact });
-        if !root.exists() {
-            return Err(ProjectError::NotFound { path: root.to_owned() });
-        }
-        if !root.is_dir() {
-            return not_a_project("it is a file, a project is a folder");
+        match fs::metadata(root) {
+            Ok(facts) if facts.is_dir() => {}
+            Ok(_) => return not_a_project("it is a file, a project is a folder"),
+            Err(error) if file::says_nothing(&error) => return Err(ProjectError::io(FileAction::Read, root, error)),
+            Err(_) => return Err(ProjectError::NotFound { path: root.to_owned() }),
         }
         let mut states = Self {
             present: None,
@@ -59,10 +73,15 @@ impl States {
             unreadable: Vec::new(),
             set_aside: Vec::new(),
             history_trouble: None,
+            history_unread: None,
         };
         states.read_history(root);
-        let has_state = fs::symlink_metadata(root.join(storage::STATE)).is_ok();
-        if !has_state && states.steps.is_empty() && states.unreadable.is_empty() {
+        let has_state = match fs::symlink_metadata(root.join(storage::STATE)) {
+            // Nothing in the folder can be looked at.
+            Err(error) if file::says_nothing(&error) => return Err(ProjectError::io(FileAction::Read, root, error)),
+            known => known.is_ok(),
+        };
+        if !has_state && states.steps.is_empty() && states.unreadable.is_empty() && states.history_unread.is_none() {
             return not_a_project("it has neither a project.toml nor a history");
         }
         states.read_present(root)?;
@@ -70,7 +89,8 @@ impl States {
         let moved = storage::names_in(&root.join(DAMAGED)).into_iter().map(|name| format!("{DAMAGED}/{name}"));
         for file in kept.chain(moved) {
             let text = raw(&root.join(&file));
-            states.set_aside.push(Unreadable { file, number: None, reason: String::new(), is_newer: false, text });
+            let (reason, trouble) = (String::new(), Trouble::Damaged);
+            states.set_aside.push(Unreadable { file, number: None, reason, trouble, text });
         }
         Ok(states)
     }
@@ -83,28 +103,40 @@ impl States {
             Err(error) if error.kind() == ErrorKind::NotFound => {
                 Some(("it is missing: there is nothing to undo".to_owned(), Cure::MakeAgain))
             }
-            Err(error) => Some((error.to_string(), Cure::ReplaceLink)),
+            Err(error) => {
+                self.history_unread = Some(format!("it cannot be read: {error}"));
+                return;
+            }
         };
         if self.history_trouble.is_some() {
             return;
         }
-        for number in history::numbers(root).into_iter().collect::<BTreeSet<_>>() {
+        let numbers = match history::numbers(root) {
+            Ok(numbers) => numbers,
+            Err(error) => {
+                self.history_unread = Some(format!("it cannot be read: {}", cause_of(&error)));
+                return;
+            }
+        };
+        for number in numbers.into_iter().collect::<BTreeSet<_>>() {
             let file = history::file_of(number);
             let path = root.join(&file);
             let step = plain_text(&path)
-                .and_then(|text| toml::from_str::<Step>(&text).map_err(|error| first_line(&error.to_string())))
-                .map_err(|reason| (reason, false));
+                .and_then(|text| {
+                    toml::from_str::<Step>(&text).map_err(|error| Finding::Damaged(first_line(&error.to_string())))
+                })
+                .map_err(of_finding);
             let known = step.and_then(|step| match Document::from_text(&step.project, &path) {
                 Ok(document) if document.step == number => Ok((step, document)),
-                Ok(document) => Err((format!("it holds the state of step {}", document.step), false)),
-                Err(error @ ProjectError::Newer { .. }) => Err((error.to_string(), true)),
-                Err(error) => Err((detail(&error), false)),
+                Ok(document) => Err((format!("it holds the state of step {}", document.step), Trouble::Damaged)),
+                Err(error @ ProjectError::Newer { .. }) => Err((error.to_string(), Trouble::Newer)),
+                Err(error) => Err((detail(&error), Trouble::Damaged)),
             });
             match known {
                 Ok(known) => drop(self.steps.insert(number, known)),
-                Err((reason, is_newer)) => {
+                Err((reason, trouble)) => {
                     let text = raw(&path);
-                    self.unreadable.push(Unreadable { file, number: Some(number), reason, is_newer, text });
+                    self.unreadable.push(Unreadable { file, number: Some(number), reason, trouble, text });
                 }
             }
         }
@@ -115,15 +147,15 @@ impl States {
         let read = plain_text(&path).and_then(|text| match Document::from_text(&text, &path) {
             Ok(document) => Ok(Ok((text, document))),
             Err(error @ ProjectError::Newer { .. }) => Ok(Err(error)),
-            Err(error) => Err(detail(&error)),
+            Err(error) => Err(Finding::Damaged(detail(&error))),
         });
-        match read {
+        match read.map_err(of_finding) {
             Ok(known) => self.present = Some(known?),
-            Err(reason) => self.unreadable.push(Unreadable {
+            Err((reason, trouble)) => self.unreadable.push(Unreadable {
                 file: storage::STATE.to_owned(),
                 number: None,
                 reason,
-                is_newer: false,
+                trouble,
                 text: raw(&path),
             }),
         }
@@ -164,12 +196,20 @@ impl States {
     /// shows that, otherwise the newest.
     pub(super) fn restorable(&self) -> Option<u32> {
         let damaged = self.unreadable.iter().find(|unreadable| unreadable.number.is_none())?;
+        if damaged.trouble != Trouble::Damaged {
+            return None;
+        }
         let said = damaged
             .text
             .iter()
             .flat_map(|text| text.lines())
             .find_map(|line| line.strip_prefix("step = ")?.trim().parse().ok());
         said.filter(|number| self.steps.contains_key(number)).or_else(|| self.numbers().last())
+    }
+
+    /// Whether the present state cannot be read now.
+    pub(super) fn is_state_unread(&self) -> bool {
+        self.unreadable.iter().any(|file| file.number.is_none() && file.trouble == Trouble::Unread)
     }
 
     /// The newest step that undo leads to from `present` and that is not among `without`: all steps on the way must be
@@ -186,7 +226,8 @@ impl States {
     /// Whether a file that cannot be read may name `text`. One whose bytes cannot be read at all may name anything.
     pub(super) fn may_be_named(&self, text: &str) -> bool {
         let doubtful = self.unreadable.iter().chain(&self.set_aside);
-        doubtful.into_iter().any(|unreadable| unreadable.text.as_ref().is_none_or(|all| all.contains(text)))
+        self.history_unread.is_some()
+            || doubtful.into_iter().any(|unreadable| unreadable.text.as_ref().is_none_or(|all| all.contains(text)))
     }
 
     /// Whether another process has changed the project since it was read.
@@ -211,15 +252,32 @@ pub(super) fn report(states: &States, report: &mut CheckReport) {
             ..Damage::of("history", reason)
         });
     }
-    for newer in states.unreadable.iter().filter(|unreadable| unreadable.is_newer) {
-        report.notes.push(format!("{}: undo and redo stop there, and whatever it may name is kept", newer.reason));
+    if let Some(reason) = &states.history_unread {
+        let (file, what) = ("history".to_owned(), "the history".to_owned());
+        report.unread.push(Unread { file, what, reason: reason.clone() });
     }
-    for unreadable in states.unreadable.iter().filter(|unreadable| !unreadable.is_newer) {
-        let damage = Damage::of(&unreadable.file, &unreadable.reason);
+    for unreadable in &states.unreadable {
+        let what = match unreadable.number {
+            Some(number) => format!("step {number} of the history"),
+            None => "the present state".to_owned(),
+        };
+        match unreadable.trouble {
+            Trouble::Damaged => {}
+            Trouble::Newer => {
+                let reason = &unreadable.reason;
+                report.notes.push(format!("{reason}: undo and redo stop there, and whatever it may name is kept"));
+                continue;
+            }
+            Trouble::Unread => {
+                let (file, reason) = (unreadable.file.clone(), unreadable.reason.clone());
+                report.unread.push(Unread { file, what, reason });
+                continue;
+            }
+        }
+        let damage = Damage { what, ..Damage::of(&unreadable.file, &unreadable.reason) };
         report.damage.push(match unreadable.number {
             Some(number) => Damage {
                 part: Part::Step,
-                what: format!("step {number} of the history"),
                 dependants: lost_undo(states, number),
                 steps: vec![number],
                 cures: vec![Cure::SetAside],
@@ -227,7 +285,6 @@ pub(super) fn report(states: &States, report: &mut CheckReport) {
             },
             None => Damage {
                 part: Part::State,
-                what: "the present state".to_owned(),
                 dependants: vec!["everything in the project".to_owned()],
                 is_present: true,
                 cures: vec![states.restorable().map_or(Cure::Backup, |step| Cure::Restore { step })],
@@ -237,6 +294,7 @@ pub(super) fn report(states: &States, report: &mut CheckReport) {
     }
     if let Some(present) = states.present()
         && states.history_trouble.is_none()
+        && states.history_unread.is_none()
         && !states.steps.contains_key(&present.step)
         && !states.unreadable.iter().any(|unreadable| unreadable.number == Some(present.step))
     {
@@ -250,7 +308,9 @@ pub(super) fn report(states: &States, report: &mut CheckReport) {
         && let Some(last) = states.way_back(present).last()
         && states.numbers().next().is_some_and(|first| first < last)
     {
-        report.notes.push(format!("undo ends at step {last}, because the step before it is missing or damaged"));
+        report.notes.push(format!(
+            "undo ends at step {last}, because the step before it is missing, damaged or cannot be read"
+        ));
     }
     if !states.set_aside.is_empty() {
         let names: Vec<&str> = states.set_aside.iter().map(|aside| aside.file.as_str()).collect();
@@ -269,6 +329,19 @@ fn lost_undo(states: &States, number: u32) -> Vec<String> {
         std::cmp::Ordering::Equal => "undo of the last command".to_owned(),
         std::cmp::Ordering::Greater => format!("redo to step {number} and to those after it"),
     }]
+}
+
+/// What the system said of a failure, without the path.
+fn cause_of(error: &ProjectError) -> String {
+    std::error::Error::source(error).map_or_else(|| error.to_string(), ToString::to_string)
+}
+
+/// What was found of a state's file.
+fn of_finding(finding: Finding) -> (String, Trouble) {
+    match finding {
+        Finding::Damaged(reason) => (reason, Trouble::Damaged),
+        Finding::Unread(reason) => (reason, Trouble::Unread),
+    }
 }
 
 /// The reason of an error, without the path that is said anyway.
@@ -290,15 +363,15 @@ fn first_line(text: &str) -> String {
 }
 
 /// The text of an ordinary file that is no link.
-fn plain_text(path: &Path) -> Result<String, String> {
+fn plain_text(path: &Path) -> Result<String, Finding> {
     match fs::symlink_metadata(path) {
-        Ok(facts) if facts.is_symlink() => return Err("it is a link".to_owned()),
-        Err(error) if error.kind() == ErrorKind::NotFound => return Err("it is missing".to_owned()),
+        Ok(facts) if facts.is_symlink() => return Err(Finding::Damaged("it is a link".to_owned())),
+        Err(error) if error.kind() == ErrorKind::NotFound => return Err(Finding::Damaged("it is missing".to_owned())),
         _ => {}
     }
     file::read_text(path, file::MAX_DOCUMENT_BYTES).map_err(|error| match error.kind() {
-        ErrorKind::InvalidData => format!("it is no text: {error}"),
-        _ => format!("it cannot be read: {error}"),
+        ErrorKind::InvalidData => Finding::Damaged(format!("it is no text: {error}")),
+        _ => Finding::of(&error),
     })
 }
 

@@ -1,4 +1,8 @@
-//! Whether a data file is what was written: present, no link, readable, with the recorded hash, and in the survey.
+//! Whether a data file is what was written: present, no link, with the recorded hash, and in the survey.
+//!
+//! What cannot be read now is not damaged: without a permission, without handles or memory, on a disk that fails, in a
+//! folder whose path the store cannot write down. So damage is believed only where every file of it can be opened, and where
+//! a second look, on one thread and so with few handles, finds it again.
 
 use super::objects::{Entry, Object};
 use crate::content;
@@ -6,78 +10,139 @@ use crate::document::Origin;
 use crate::error::ProjectError;
 use crate::placement;
 use glam::DVec2;
-use std::fs;
+use rayon::ThreadPoolBuilder;
+use std::fs::{self, File};
+use std::io;
 use std::io::ErrorKind;
 use std::path::Path;
 use store::StoreError;
 use survey::{Horizon, Progress, SurveyGeometry};
-use system::file::FileAction;
+use system::file::{self, FileAction};
 use ttf::TextureLibrary;
+
+/// What a look at a file found, if it is not what was written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Finding {
+    /// It is not what was written; why.
+    Damaged(String),
+    /// It cannot be read now; why.
+    Unread(String),
+}
+
+impl Finding {
+    /// A failure of the file system.
+    pub(super) fn of(error: &io::Error) -> Self {
+        let text = format!("it cannot be read: {error}");
+        if file::says_nothing(error) { Self::Unread(text) } else { Self::Damaged(text) }
+    }
+}
 
 /// What is wrong with an object; `Ok(Ok(()))` if nothing is.
 ///
 /// # Errors
 /// The user cancelled.
-pub(super) fn verify(root: &Path, object: &Object, progress: &Progress) -> Result<Result<(), String>, ProjectError> {
+pub(super) fn verify(root: &Path, object: &Object, progress: &Progress) -> Result<Result<(), Finding>, ProjectError> {
     let file = object.entry.file();
-    if let Err(reason) = is_there(root, file, object.is_folder()) {
-        return Ok(Err(reason));
-    }
-    outcome(content_of(root, object, progress).and_then(|()| Ok(progress.step(1)?)))
+    confirmed(&root.join(file), || {
+        if let Err(finding) = is_there(root, file, object.is_folder()) {
+            return Ok(Err(finding));
+        }
+        outcome(content_of(root, object, progress).and_then(|()| Ok(progress.step(1)?)))
+    })
 }
 
-/// Tells damage from a check that was cancelled.
-pub(super) fn outcome<T>(result: Result<T, ProjectError>) -> Result<Result<T, String>, ProjectError> {
+/// What a look at `path` finds, where damage is believed only when it is found twice.
+///
+/// # Errors
+/// The user cancelled.
+pub(super) fn confirmed(
+    path: &Path,
+    look: impl Fn() -> Result<Result<(), Finding>, ProjectError> + Sync,
+) -> Result<Result<(), Finding>, ProjectError> {
+    let found = look()?;
+    if !matches!(found, Err(Finding::Damaged(_))) {
+        return Ok(found);
+    }
+    if let Err(error) = open_all(path)
+        && file::says_nothing(&error)
+    {
+        return Ok(Err(Finding::of(&error)));
+    }
+    match ThreadPoolBuilder::new().num_threads(1).build() {
+        Ok(pool) => pool.install(look),
+        Err(_) => Ok(found),
+    }
+}
+
+/// Opens every file at a path, one after the other.
+fn open_all(path: &Path) -> io::Result<()> {
+    let facts = fs::symlink_metadata(path)?;
+    if facts.is_file() {
+        return File::open(path).map(drop);
+    }
+    if !facts.is_dir() {
+        return Ok(());
+    }
+    fs::read_dir(path)?.try_for_each(|entry| open_all(&entry?.path()))
+}
+
+/// Tells what was found from a check that was cancelled.
+pub(super) fn outcome<T>(result: Result<T, ProjectError>) -> Result<Result<T, Finding>, ProjectError> {
+    let in_full = |error: &ProjectError| {
+        let cause = std::error::Error::source(error).map(|cause| format!(": {cause}")).unwrap_or_default();
+        format!("{error}{cause}")
+    };
     match result {
         Ok(value) => Ok(Ok(value)),
         Err(ProjectError::Cancelled(cancelled) | ProjectError::Store(StoreError::Cancelled(cancelled))) => {
             Err(cancelled.into())
         }
+        Err(error) if error.says_nothing() => Ok(Err(Finding::Unread(in_full(&error)))),
         Err(ProjectError::Store(StoreError::Damaged { array, reason, .. })) => {
-            Ok(Err(format!("array \"{array}\": {reason}")))
+            Ok(Err(Finding::Damaged(format!("array \"{array}\": {reason}"))))
         }
-        Err(ProjectError::Malformed { detail, .. }) => Ok(Err(detail)),
-        Err(error) => {
-            let cause = std::error::Error::source(&error).map(|cause| format!(": {cause}")).unwrap_or_default();
-            Ok(Err(format!("{error}{cause}")))
-        }
+        Err(ProjectError::Malformed { detail, .. }) => Ok(Err(Finding::Damaged(detail))),
+        Err(error) => Ok(Err(Finding::Damaged(in_full(&error)))),
     }
 }
 
 /// Checks that `file` is there with nothing but real files and folders in it, and is of the right kind.
-pub(super) fn is_there(root: &Path, file: &str, is_folder: bool) -> Result<(), String> {
+pub(super) fn is_there(root: &Path, file: &str, is_folder: bool) -> Result<(), Finding> {
+    let damaged = |fact: &str| Err(Finding::Damaged(fact.to_owned()));
     let mut path = root.to_owned();
     for part in file.split('/') {
         path.push(part);
         match fs::symlink_metadata(&path) {
             Ok(facts) if facts.is_symlink() => return Err(link(root, &path)),
             Ok(_) => {}
-            Err(error) if error.kind() == ErrorKind::NotFound => return Err("it is missing".to_owned()),
-            Err(error) => return Err(format!("it cannot be read: {error}")),
+            Err(error) if error.kind() == ErrorKind::NotFound => return damaged("it is missing"),
+            Err(error) => return Err(Finding::of(&error)),
         }
     }
     if path.is_dir() != is_folder {
-        return Err(if is_folder { "it is no folder" } else { "it is no file" }.to_owned());
+        return damaged(if is_folder { "it is no folder" } else { "it is no file" });
     }
     all_real(root, &path)
 }
 
-fn link(root: &Path, path: &Path) -> String {
-    format!("{} is a link", path.strip_prefix(root).unwrap_or(path).display())
+fn link(root: &Path, path: &Path) -> Finding {
+    Finding::Damaged(format!("{} is a link", path.strip_prefix(root).unwrap_or(path).display()))
 }
 
 /// Checks that nothing in a folder is a link, a pipe or a device.
-fn all_real(root: &Path, path: &Path) -> Result<(), String> {
-    let facts = fs::symlink_metadata(path).map_err(|error| format!("it cannot be read: {error}"))?;
+fn all_real(root: &Path, path: &Path) -> Result<(), Finding> {
+    let unread = |error: io::Error| Finding::of(&error);
+    let facts = fs::symlink_metadata(path).map_err(unread)?;
     if facts.is_symlink() {
         return Err(link(root, path));
     }
     if facts.is_dir() {
-        for entry in fs::read_dir(path).map_err(|error| format!("it cannot be read: {error}"))? {
-            all_real(root, &entry.map_err(|error| format!("it cannot be read: {error}"))?.path())?;
+        for entry in fs::read_dir(path).map_err(unread)? {
+            all_real(root, &entry.map_err(unread)?.path())?;
         }
     } else if !facts.is_file() {
-        return Err(format!("{} is a pipe or a device", path.strip_prefix(root).unwrap_or(path).display()));
+        let name = path.strip_prefix(root).unwrap_or(path).display();
+        return Err(Finding::Damaged(format!("{name} is a pipe or a device")));
     }
     Ok(())
 }

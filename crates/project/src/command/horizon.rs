@@ -213,6 +213,9 @@ fn take_as_points(horizon: &mut Horizon, report: &mut ImportReport) {
     if let Some((_, warning)) = report.off_map.take() {
         report.warnings.retain(|other| *other != warning);
     }
+    let of_map = std::mem::take(&mut report.of_map);
+    report.notes.retain(|note| !of_map.contains(note));
+    report.warnings.retain(|warning| !of_map.contains(&warning.fact));
 }
 
 /// The position in the list, 0 = youngest.

@@ -1,11 +1,12 @@
 //! Importing and removing volumes.
 
-use super::{Effect, Noun, ProjectError, stored_volume};
+use super::{Effect, Noun, ProjectError, array_volume, stored_volume};
 use crate::content::volume_facts::{self, Facts};
 use crate::document::{Origin, Polarity};
 use crate::folder::{Draft, IMPORTING};
 use crate::memory_budget;
 use crate::placement;
+use files::NpyVolume;
 use files::segy::{SegyFile, SegyOptions};
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -15,7 +16,7 @@ use survey::{Note, Progress, SurveyGeometry};
 use system::file::FileAction;
 
 /// Reads a volume into the project: a SEG-Y file, or a folder in which a volume is stored as this program stores them
-/// (see `stored_volume.rs`). The first volume defines the survey geometry; others must lie in it.
+/// (see `stored_volume.rs`), or a NumPy array on the lattice of the project (`array_volume.rs`). The first volume defines the survey geometry; others must lie in it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ImportVolume {
     /// The file or folder.
@@ -73,6 +74,9 @@ impl ImportVolume {
         draft.document.check_new_name(Noun::Volume, &name)?;
         if self.path.is_dir() {
             return stored_volume::execute(self, name, draft, progress);
+        }
+        if NpyVolume::is_one(&self.path) {
+            return array_volume::execute(self, name, draft, progress);
         }
         let file = SegyFile::open(&self.path, &self.options, progress)?;
         let geometry = file.geometry()?;
@@ -161,7 +165,7 @@ impl ImportVolume {
             ));
         }
         if non_finite > 0 {
-            progress.warn(format!("{non_finite} samples are not numbers (NaN or infinite) and are read as 0"));
+            progress.warn(format!("{non_finite} samples are not numbers (NaN or infinite): no data"));
         }
         Ok(done)
     }

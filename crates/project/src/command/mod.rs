@@ -4,6 +4,7 @@
 //! It overwrites nothing and can fail at any point: [`crate::Project::apply`] then discards the draft. Undo needs
 //! nothing from a command, because every state is kept in the history.
 
+mod array_volume;
 mod attribute;
 mod contact;
 mod draw;
@@ -27,6 +28,7 @@ mod scene;
 mod stack;
 mod stored_volume;
 mod survey_frame;
+mod tell_history;
 mod texture;
 pub(crate) mod time;
 mod time_slabs;
@@ -55,6 +57,7 @@ pub use scalar::{RemoveScalar, SetRaw, SetScalar};
 pub use scene::AddScene;
 pub use stack::{Spacing, StackHorizons, Stacked};
 pub use survey_frame::SetVelocity;
+pub use tell_history::{HistoryTold, TellHistory};
 pub use texture::AddTexture;
 pub use time::{ComputeTime, TimeComputed};
 pub use time_slabs::TimeSlabs;
@@ -164,6 +167,8 @@ pub enum Command {
     AddScene(AddScene),
     /// Write a note on a place.
     AddNote(AddNote),
+    /// Make a block from its geological history.
+    TellHistory(TellHistory),
 }
 
 /// What a command did: the facts to report to the user.
@@ -200,6 +205,8 @@ pub enum Effect {
     FaultAdded(Box<FaultAdded>),
     /// A well was added.
     WellAdded(Box<WellAdded>),
+    /// A block was made from its geological history.
+    HistoryTold(Box<HistoryTold>),
     /// A small change.
     Changed {
         /// The change, in a few words.
@@ -268,6 +275,7 @@ impl Command {
             Self::SetParameterization(change) => change.execute(draft, progress),
             Self::AddScene(change) => change.execute(draft),
             Self::AddNote(change) => change.execute(draft),
+            Self::TellHistory(change) => change.execute(draft, progress),
         }
     }
 }
@@ -302,6 +310,7 @@ impl Effect {
             | Self::HorizonDrawn(_)
             | Self::Replayed(_)
             | Self::HorizonRefined(_)
+            | Self::HistoryTold(_)
             | Self::Changed { .. } => Vec::new(),
         }
     }
@@ -336,6 +345,7 @@ impl Effect {
             Self::HorizonRefined(done) => format!("holes of {} filled", done.horizon),
             Self::FaultAdded(done) => format!("fault {}", done.report.name),
             Self::WellAdded(done) => format!("well {}", done.name),
+            Self::HistoryTold(done) => format!("a block of {} events", done.events),
             Self::Changed { summary } => summary.clone(),
         }
     }
@@ -375,6 +385,7 @@ impl std::fmt::Display for Effect {
             Self::HorizonRefined(done) => write!(f, "{done}"),
             Self::FaultAdded(done) => write!(f, "{}", done.report),
             Self::WellAdded(done) => write!(f, "{done}"),
+            Self::HistoryTold(done) => write!(f, "{done}"),
             Self::Created | Self::Changed { .. } => f.write_str(&self.summary()),
         }
     }

@@ -29,7 +29,7 @@ pub use grids::{holds_volumes, keep_grids, load_grids, volumes_path};
 pub(crate) use grids::{keep_volumes, load_volumes, model_key, parameterization_key, voxels_of};
 
 pub(crate) use file::verify_kept;
-pub(crate) use scratch::{RESUMABLE, Scratch, abandoned, remove_leftovers, remove_resumable};
+pub(crate) use scratch::{RESUMABLE, Scratch, abandoned, remove_finished, remove_leftovers, remove_resumable};
 
 use serde::Serialize;
 

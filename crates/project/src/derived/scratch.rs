@@ -125,6 +125,19 @@ pub(crate) fn remove_resumable(root: &Path) {
     let _ = fs::remove_dir(root.join(UNFINISHED));
 }
 
+/// Removes the folders of work in bricks under a key whose result is stored: a program that was killed between storing it and
+/// cleaning up leaves one, which nothing goes on with any more.
+pub(crate) fn remove_finished(root: &Path, key: &str) {
+    let of_key = format!("{UNFINISHED}/{RESUMABLE}{key}-");
+    let finished: Vec<String> = abandoned(root).into_iter().filter(|file| file.starts_with(&of_key)).collect();
+    if finished.is_empty() {
+        return;
+    }
+    finished.iter().for_each(|file| storage::remove(root, file));
+    // This succeeds only when no other writer is at work.
+    let _ = fs::remove_dir(root.join(UNFINISHED));
+}
+
 /// Whether a file of [`abandoned`] belongs to the work that `name` identifies.
 fn is_of(file: &str, name: &str) -> bool {
     let entry = file.rsplit('/').next().unwrap_or(file);
@@ -184,6 +197,28 @@ mod tests {
         // Other work does not.
         drop(Scratch::resume(root, "bricks-b").unwrap());
         assert_eq!(names(root), Vec::<String>::new());
+    }
+
+    #[test]
+    fn work_whose_result_is_stored_is_not_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        let begun = |key: &str| Scratch::resume(root, &format!("bricks-{key}-64x64-9")).unwrap().unwrap();
+        let write = |scratch: Scratch| {
+            fs::create_dir_all(scratch.path("arrays/z")).unwrap();
+            fs::write(scratch.path("arrays/z/0"), "1").unwrap();
+            scratch.leave();
+        };
+        write(begun("a"));
+        remove_finished(root, "b");
+        assert_eq!(names(root), ["bricks-a-64x64-9", "bricks-a-64x64-9.lock"]);
+        // Another program that does it again keeps it.
+        let again = begun("a");
+        remove_finished(root, "a");
+        assert!(again.path("arrays/z/0").exists());
+        again.leave();
+        remove_finished(root, "a");
+        assert!(!root.join(UNFINISHED).exists());
     }
 
     #[test]

@@ -61,6 +61,9 @@ pub struct Document {
     /// The lattice in which everything is placed; `None` until a volume is imported or bounds are given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub geometry: Option<SurveyGeometry>,
+    /// The text of the geological history that the block was made from, if it was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub geological_history: Option<String>,
     /// Names of the layers, youngest first; if empty, they are named after the horizons.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layer_names: Vec<String>,
@@ -124,6 +127,7 @@ impl Document {
             step: 0,
             last_id: 0,
             geometry,
+            geological_history: None,
             layer_names: Vec::new(),
             fonts: Vec::new(),
             volumes: Vec::new(),

@@ -47,6 +47,8 @@ pub enum Origin {
     },
     /// A horizon that a person put together from candidates; its log says how.
     Picked,
+    /// The surface of a block that was told as events.
+    History,
     /// Drawn by a person, or tracked from a place: a horizon by its log, a fault by its sticks.
     Drawn,
     /// The level of geologic time through places at which a person pointed.
@@ -217,6 +219,7 @@ impl fmt::Display for Origin {
             Self::GeologicTime { of } => write!(f, "geologic time of the volume {of}"),
             Self::TimeFraction { of } => write!(f, "k by geologic time of the volume {of}"),
             Self::Picked => f.write_str("assembled from picks"),
+            Self::History => f.write_str("told by the geological history"),
             Self::Drawn => f.write_str("drawn"),
             Self::ByTime { seeds, .. } => {
                 f.write_str("geologic time through ")?;

@@ -122,6 +122,7 @@ impl Document {
             step: _,
             last_id: _,
             geometry: _,
+            geological_history: _,
             layer_names: _,
             fonts: _,
             volumes,

@@ -38,6 +38,18 @@ impl ProjectError {
         }
     }
 
+    /// Whether data that were to be read may be whole: they could not be looked at now, or not by this program. Where it is
+    /// told from damage, that is not advised against which is none.
+    pub(crate) fn says_nothing(&self) -> bool {
+        match self {
+            Self::Store(error) => error.says_nothing(),
+            Self::Memory(_) | Self::Newer { .. } => true,
+            _ => std::iter::successors(std::error::Error::source(self), |error| error.source())
+                .filter_map(|error| error.downcast_ref::<io::Error>())
+                .any(system::file::says_nothing),
+        }
+    }
+
     /// Turns a failure of the file system into an error that the user can act on.
     pub fn io(action: FileAction, path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();

@@ -58,9 +58,15 @@ mod system {
         let names: Vec<_> = Dir::read_from(&inner)?
             .map(|entry| entry.map(|entry| entry.file_name().to_owned()))
             .collect::<Result<_, _>>()?;
+        // What cannot be removed keeps nothing else; what is gone already was removed by another program.
+        let mut failure = None;
         for inside in names.iter().filter(|name| ![c".", c".."].contains(&name.as_c_str())) {
-            remove_entry(inner.as_fd(), inside)?;
+            match remove_entry(inner.as_fd(), inside) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => failure = failure.or(Some(error)),
+                _ => {}
+            }
         }
+        failure.map_or(Ok(()), Err)?;
         Ok(unlinkat(folder, name, AtFlags::REMOVEDIR)?)
     }
 
@@ -113,5 +119,28 @@ mod system {
             return Err(refused());
         }
         OpenOptions::new().create(true).truncate(false).read(true).write(true).open(path)
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn two_that_remove_one_folder_leave_nothing_of_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        for round in 0..20 {
+            let file = format!("derived/{round}");
+            for inner in ["a", "b/c", "b/d"] {
+                fs::create_dir_all(root.join(&file).join(inner)).unwrap();
+                (0..20).for_each(|n| fs::write(root.join(&file).join(inner).join(n.to_string()), "").unwrap());
+            }
+            std::thread::scope(|scope| {
+                (0..2).for_each(|_| drop(scope.spawn(|| remove(root, &file))));
+            });
+            assert!(!root.join(&file).exists(), "round {round}");
+        }
     }
 }

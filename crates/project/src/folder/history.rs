@@ -17,8 +17,10 @@ use crate::document::{Document, data_file};
 use crate::error::ProjectError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
+use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
-use system::file;
+use system::file::{self, FileAction};
 
 /// Number of steps in the history; the oldest are dropped first. Long enough for a day's work, short enough that
 /// removed volumes do not fill the disk for ever.
@@ -46,23 +48,31 @@ fn forgotten_file_of(number: u32) -> String {
     format!("{}/forgotten/{number:04}.toml", storage::UNFINISHED)
 }
 
-/// The numbers of the steps in a folder, ascending.
-fn numbers_in(folder: &Path) -> Vec<u32> {
+/// The numbers of the steps in a folder, ascending. A folder that cannot be read is an error, and not one without steps:
+/// what no step names is deleted.
+fn numbers_in(folder: &Path) -> Result<Vec<u32>, ProjectError> {
     let number = |name: &String| name.strip_suffix(".toml")?.parse().ok();
-    let mut numbers: Vec<u32> = storage::names_in(folder).iter().filter_map(number).collect();
+    let names = storage::list(folder).map_err(|source| ProjectError::io(FileAction::Read, folder, source))?;
+    let mut numbers: Vec<u32> = names.iter().filter_map(number).collect();
     numbers.sort_unstable();
-    numbers
+    Ok(numbers)
 }
 
 /// The numbers of the steps in the history, ascending.
-pub(crate) fn numbers(root: &Path) -> Vec<u32> {
+///
+/// # Errors
+/// It cannot be read.
+pub(crate) fn numbers(root: &Path) -> Result<Vec<u32>, ProjectError> {
     numbers_in(&root.join("history"))
 }
 
 /// Reads step `number`; `None` if it is not in the history.
 pub(crate) fn read(root: &Path, number: u32) -> Result<Option<Step>, ProjectError> {
     let path = root.join(file_of(number));
-    if path.exists() { read_step(&path).map(Some) } else { Ok(None) }
+    match fs::symlink_metadata(&path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        _ => read_step(&path).map(Some),
+    }
 }
 
 fn read_step(path: &Path) -> Result<Step, ProjectError> {
@@ -96,7 +106,8 @@ pub(crate) fn complete(root: &Path, number: u32) -> Result<(), ProjectError> {
 
 /// Whether a step still waits to take its place, or to be deleted.
 pub(crate) fn is_incomplete(root: &Path) -> bool {
-    ["history", "forgotten"].iter().any(|folder| !numbers_in(&storage::unfinished(root, folder)).is_empty())
+    let waits = |folder| numbers_in(&storage::unfinished(root, folder)).map_or(true, |numbers| !numbers.is_empty());
+    ["history", "forgotten"].into_iter().any(waits)
 }
 
 /// Drops everything but step `number`, and the data that only the dropped steps refer to.
@@ -110,7 +121,7 @@ pub(crate) fn forget_all_but(root: &Path, number: u32) -> Result<(), ProjectErro
 /// Takes steps out of the history; their data stay until [`release_forgotten`]. Those furthest from the `present` step go
 /// first, so that undo and redo still lead to all that are left after a kill.
 fn forget(root: &Path, present: u32, which: impl Fn(u32) -> bool) -> Result<(), ProjectError> {
-    let (before, after): (Vec<u32>, Vec<u32>) = numbers(root).into_iter().partition(|&old| old < present);
+    let (before, after): (Vec<u32>, Vec<u32>) = numbers(root)?.into_iter().partition(|&old| old < present);
     for old in before.into_iter().chain(after.into_iter().rev()).filter(|&old| which(old)) {
         storage::rename(&root.join(file_of(old)), &root.join(forgotten_file_of(old)))?;
     }
@@ -119,7 +130,7 @@ fn forget(root: &Path, present: u32, which: impl Fn(u32) -> bool) -> Result<(), 
 
 /// Deletes the dropped steps, after the data that only they refer to.
 fn release_forgotten(root: &Path) -> Result<(), ProjectError> {
-    for number in numbers_in(&storage::unfinished(root, "forgotten")) {
+    for number in numbers_in(&storage::unfinished(root, "forgotten"))? {
         let file = forgotten_file_of(number);
         release(root, files_of(read_step(&root.join(&file)).ok().as_ref()))?;
         storage::remove(root, &file);
@@ -132,10 +143,11 @@ pub(crate) fn recover(root: &Path, project_text: &str) -> Result<(), ProjectErro
     if !root.join(storage::UNFINISHED).exists() {
         return Ok(());
     }
-    for number in numbers_in(&storage::unfinished(root, "history")) {
+    for number in numbers_in(&storage::unfinished(root, "history"))? {
         match read_step(&storage::unfinished(root, &file_of(number))) {
             Ok(step) if step.project == project_text => complete(root, number)?,
             Ok(step) => release(root, files_of(Some(&step)))?,
+            Err(error) if error.says_nothing() => return Err(error),
             // It was written in part, so nothing of it was published yet.
             Err(_) => {}
         }
@@ -148,7 +160,9 @@ pub(crate) fn recover(root: &Path, project_text: &str) -> Result<(), ProjectErro
 /// Whether the present state or any state of the history contains this text; this is how keys of derived data are
 /// looked for.
 pub(crate) fn is_named(root: &Path, text: &str) -> bool {
-    let states = numbers(root).into_iter().map(|number| root.join(file_of(number))).chain([root.join(storage::STATE)]);
+    // States that cannot be listed may name anything.
+    let Ok(numbers) = numbers(root) else { return true };
+    let states = numbers.into_iter().map(|number| root.join(file_of(number))).chain([root.join(storage::STATE)]);
     // A state that cannot be read may name anything.
     states
         .map(|state| file::read(&state, file::MAX_DOCUMENT_BYTES))
@@ -171,7 +185,7 @@ pub(crate) fn release(root: &Path, mut files: BTreeSet<String>) -> Result<(), Pr
     let path = root.join(storage::STATE);
     let present = Document::from_text(&storage::read_text(&path)?, &path)?;
     let mut kept: BTreeSet<String> = present.files().map(str::to_owned).collect();
-    for number in numbers(root) {
+    for number in numbers(root)? {
         match read_step(&root.join(file_of(number))) {
             Ok(step) => kept.append(&mut files_of(Some(&step))),
             Err(_) => keep_what_is_named_in(&root.join(file_of(number)), &mut files),

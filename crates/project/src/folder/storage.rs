@@ -13,7 +13,6 @@
 //! can lead outside. Data files go through [`super::history::release`] instead, which first checks every state of the
 //! history.
 
-use crate::document::data_file::KINDS;
 use crate::error::ProjectError;
 use crate::folder::handle;
 use std::fs::{self, File};
@@ -34,22 +33,17 @@ pub(crate) const DERIVED: &str = "derived";
 /// Folder of an incomplete import. An import that was killed leaves it, and the next one continues from it.
 pub(crate) const IMPORTING: &str = "importing";
 
-/// Everything at the top level of a project: folders first, then files.
-const FOLDERS: [&str; 4] = ["history", DERIVED, UNFINISHED, IMPORTING];
-const FILES: [&str; 4] = [STATE, "lock", "creating", "window.lock"];
-
-/// Refuses a project in which a link could lead outside: every folder and file that commands read or write, and
-/// everything in it, must be a real folder or file. Nothing but `project.toml` is read before this check has passed, and
-/// nothing is written.
+/// Refuses a project in which a link could lead outside: everything in its folder, whatever its name, must be a real folder
+/// or file. Nothing but `project.toml` is read before this check has passed, and nothing is written.
 ///
 /// # Errors
-/// [`ProjectError::Link`] with the first link found, or a folder cannot be read.
+/// [`ProjectError::Link`] with a link, or a folder cannot be read.
 pub(crate) fn refuse_links(root: &Path) -> Result<(), ProjectError> {
-    FILES.iter().chain(&FOLDERS).chain(&KINDS).try_for_each(|name| refuse_links_in(root, Path::new(name)))
+    // The folder itself may be reached through a link: whoever names it means what it points to.
+    refuse_links_below(root)
 }
 
-fn refuse_links_in(root: &Path, relative: &Path) -> Result<(), ProjectError> {
-    let path = root.join(relative);
+fn refuse_links_in(path: PathBuf) -> Result<(), ProjectError> {
     let facts = match fs::symlink_metadata(&path) {
         Ok(facts) => facts,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
@@ -58,19 +52,20 @@ fn refuse_links_in(root: &Path, relative: &Path) -> Result<(), ProjectError> {
     if facts.is_symlink() {
         return Err(ProjectError::Link { path });
     }
-    if facts.is_dir() {
-        let entries = match fs::read_dir(&path) {
-            Ok(entries) => entries,
-            // Another process has just removed its unfinished work.
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-            Err(source) => return Err(ProjectError::io(FileAction::Read, &path, source)),
-        };
-        for entry in entries {
-            let entry = entry.map_err(|source| ProjectError::io(FileAction::Read, &path, source))?;
-            refuse_links_in(root, &relative.join(entry.file_name()))?;
-        }
-    }
-    Ok(())
+    if facts.is_dir() { refuse_links_below(&path) } else { Ok(()) }
+}
+
+fn refuse_links_below(folder: &Path) -> Result<(), ProjectError> {
+    let fail = |source| ProjectError::io(FileAction::Read, folder, source);
+    let entries = match fs::read_dir(folder) {
+        Ok(entries) => entries,
+        // Another process has just removed its unfinished work.
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        Err(source) => return Err(fail(source)),
+    };
+    // Gathered first: a folder that is open while those below it are looked through takes a handle for each level.
+    let paths: io::Result<Vec<PathBuf>> = entries.map(|entry| Ok(entry?.path())).collect();
+    paths.map_err(fail)?.into_iter().try_for_each(refuse_links_in)
 }
 
 /// The path at which `file` is written until it is complete.
@@ -190,11 +185,30 @@ pub(crate) fn read_text(path: &Path) -> Result<String, ProjectError> {
 }
 
 /// The names of a folder's entries, sorted; none if the folder does not exist.
-pub(crate) fn names_in(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut found: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+///
+/// # Errors
+/// The folder cannot be read: what is in it is not known.
+pub(crate) fn list(folder: &Path) -> io::Result<Vec<String>> {
+    let entries = match fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(error) if file_is_missing(&error) => return Ok(Vec::new()),
+        Err(error) => return Err(error),
+    };
+    let mut found = Vec::new();
+    for entry in entries {
+        found.extend(entry?.file_name().into_string().ok());
+    }
     found.sort();
-    found
+    Ok(found)
+}
+
+fn file_is_missing(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory)
+}
+
+/// The same where nothing follows from a name that is not seen: none if the folder cannot be read.
+pub(crate) fn names_in(folder: &Path) -> Vec<String> {
+    list(folder).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -209,6 +223,25 @@ mod tests {
         assert_eq!(read_text(&folder.path().join("a.toml")).unwrap(), "two");
         remove(folder.path(), UNFINISHED);
         assert_eq!(names_in(folder.path()), ["a.toml"]);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_link_of_any_name_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let (root, outside) = (folder.path().join("p"), folder.path().join("outside"));
+        fs::create_dir_all(root.join("fonts/of/mine")).unwrap();
+        fs::create_dir_all(&outside).unwrap();
+        refuse_links(&root).unwrap();
+        for name in ["damaged", "project.toml.damaged", "fonts/han.otf", "fonts/of/mine/a", ".hidden", "lock"] {
+            let link = root.join(name);
+            std::os::unix::fs::symlink(&outside, &link).unwrap();
+            assert!(matches!(refuse_links(&root), Err(ProjectError::Link { path }) if path == link), "{name}");
+            fs::remove_file(&link).unwrap();
+        }
+        // The project itself may be named through a link.
+        std::os::unix::fs::symlink(&root, folder.path().join("q")).unwrap();
+        refuse_links(&folder.path().join("q")).unwrap();
     }
 
     #[test]

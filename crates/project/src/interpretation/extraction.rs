@@ -9,7 +9,7 @@
 use super::bricks::BrickedExtraction;
 pub use super::bricks::{ExtractionPlan, SharedExtraction};
 use crate::content;
-use crate::derived::{Scratch, key_of, remove_resumable, revision};
+use crate::derived::{Scratch, key_of, remove_finished, remove_resumable, revision};
 use crate::document::{Document, VolumeEntry};
 use crate::error::ProjectError;
 use crate::folder::{history, storage};
@@ -292,6 +292,7 @@ pub fn share(
     let root = std::path::absolute(root).map_err(|source| ProjectError::io(FileAction::Read, root, source))?;
     let job = Job::of(&root, document, volume, settings)?;
     if find_stored(&root, &job.key, Stored::Verified, progress)?.is_some() {
+        remove_finished(&root, &job.key);
         return Ok(None);
     }
     let (key, file) = (job.key.as_str(), parked(&job.key));
@@ -323,6 +324,8 @@ pub(crate) fn compute(
         report,
     };
     if let Some((file, report)) = find_stored(root, &key, how, progress)? {
+        // Whoever stored them may have been killed before it had cleaned up.
+        remove_finished(root, &key);
         return Ok(answer(file, report, false));
     }
     let size = source.info().geometry.size();

@@ -19,6 +19,7 @@ pub mod load;
 mod motion;
 mod painter;
 pub mod scene;
+pub(crate) mod shown;
 mod shown_candidates;
 mod volumes;
 mod wells;

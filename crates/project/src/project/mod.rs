@@ -20,7 +20,7 @@
 //! Deliberately absent: no state is kept in memory that is not on disk, and nothing that is saved is edited
 //! in place.
 
-use crate::check::refuse_unless_sound;
+use crate::check::acquaint::refuse_unless_sound;
 use crate::command::{Command, Effect};
 use crate::derived;
 use crate::document::{Document, data_file};
@@ -194,7 +194,7 @@ impl Project {
     /// The steps of the history, oldest first; a step that cannot be read says so.
     pub fn history(&self) -> Vec<HistoryLine> {
         let mut lines = Vec::new();
-        for step in history::numbers(&self.root) {
+        for step in history::numbers(&self.root).unwrap_or_default() {
             let summary = match history::read(&self.root, step) {
                 Ok(Some(step)) => step.summary,
                 Ok(None) => continue,

@@ -537,6 +537,18 @@ class Commands:
         """Removes a scene."""
         return self.apply({"remove": {"noun": "scene", "name": name}})
 
+    def tell_history(self, text: str, *, progress: Progress | None = None) -> Effect:
+        """Makes the block that a geological history tells of, in a project that has none.
+
+        Parameters
+        ----------
+        text : str
+            The events as TOML, oldest first (``docs/history.md``).
+        progress : callable, optional
+            Called as ``progress(stage, done, total)``.
+        """
+        return self.apply({"tell-history": {"text": text}}, progress=progress)
+
     def add_note(self, text: str, at: Place, *, scene: str | None = None) -> Effect:
         """Writes a note on a place."""
         return self.apply({"add-note": {"note": _given(text=text, at=list(at), scene=scene)}})

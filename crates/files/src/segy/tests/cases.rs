@@ -204,7 +204,7 @@ fn null_amplitudes_are_found_said_and_left_out() {
     for value in [1e30, -999.25, -9999.0, 1.701_41e38, -1e10] {
         let (file, out) = bytes_of(&null(5, value));
         assert!(
-            out[30..60].iter().all(|v| *v == 0.0) && out[29] == wave(14, 29) || out.iter().all(|v| *v == 0.0),
+            out[30..60].iter().all(|v| v.is_nan()) && out[29] == wave(14, 29) || out.iter().all(|v| *v == 0.0),
             "{value}"
         );
         let statistics = file.statistics(&Progress::silent()).unwrap();
@@ -217,6 +217,24 @@ fn null_amplitudes_are_found_said_and_left_out() {
     assert!(null(5, -999.25).read(&kept).unwrap().volume.samples().contains(&-999.25));
     let stated = SegyOptions { null: Some(NullAmplitude::At(-123.5)), ..SegyOptions::default() };
     assert!(!null(5, -123.5).read(&stated).unwrap().volume.samples().contains(&-123.5));
+    // Integers with a null are stored as floats, of which NaN is no data; without one they stay integers.
+    let whole =
+        |v: f32, n: usize| (if (30..60).contains(&n) { -32_000.0 } else { v / 4.0 } as i16).to_be_bytes().to_vec();
+    let integers = volume(3, 100, whole);
+    for (null, stored) in [
+        (NullAmplitude::At(-32_000.0), survey::sample::SampleType::Float32),
+        (NullAmplitude::None, survey::sample::SampleType::Int16),
+    ] {
+        let options = SegyOptions { null: Some(null), ..SegyOptions::default() };
+        let file = integers.read(&options).unwrap();
+        let is_nothing = file.volume.trace(5, 5)[40].is_nan();
+        assert_eq!(is_nothing, stored == survey::sample::SampleType::Float32);
+        assert!(file.amplitudes.rms.is_finite(), "{:?}", file.amplitudes);
+        super::builder::with_file(&integers.bytes(), |path| {
+            let opened = SegyFile::open(path, &options, &Progress::silent()).unwrap();
+            assert_eq!(opened.sample_type(), stored);
+        });
+    }
     for (name, least) in [("40-null-amplitudes/null-1e30.sgy", 1e30), ("40-null-amplitudes/null-999.sgy", -999.25)] {
         let Some(file) = opened(name, &SegyOptions::default()) else { return };
         let said = file.info().assumptions.iter().any(|a| a.fact.contains(&format!("{least:e}")));
@@ -235,4 +253,26 @@ fn extended_text_in_ascii_under_an_ebcdic_header_ends_where_it_says() {
     built.extended = [block("((SEG: Location Data ver 1.0))"), block("((SEG: EndText))")].concat();
     let info = built.info();
     assert_eq!((info.traces, info.extended_text[0].as_str()), (9, "((SEG: Location Data ver 1.0))"));
+    // A stanza of a program's own, words behind its name, an end that is spelled otherwise and filled up with anything; of
+    // a revision that knows no such headers; in the other encoding; bytes that are no text between.
+    let filled = |text: &str, fill: u8| {
+        let mut block = text.as_bytes().to_vec();
+        block.resize(3200, fill);
+        block
+    };
+    let own = filled("((own: words ()(test1) ))first part", b' ');
+    let ebcdic = super::super::text::encode_ebcdic(&["((SEG: EndText))".to_owned()]);
+    let binary: Vec<u8> = (0..3200).map(|n| (n * 7 % 256) as u8).collect();
+    for (revision, blocks) in [
+        (0, vec![own.clone(), filled("second part", b' '), filled("((  seg: endTEXt  ))", b'3')]),
+        (0x0100, vec![own.clone(), filled("((SEG:ENDTEXT))", 0)]),
+        (0x0100, vec![own.clone(), ebcdic]),
+        (0x0200, vec![own, binary, filled("((SEG: EndText))", b' ')]),
+    ] {
+        built.binary(3501, revision);
+        let count = blocks.len();
+        built.extended = blocks.concat();
+        let info = built.info();
+        assert_eq!((info.traces, info.extended_text.len()), (9, 40 * count), "{:?}", info.warnings);
+    }
 }

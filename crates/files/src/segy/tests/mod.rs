@@ -10,3 +10,4 @@ mod numberless;
 mod properties;
 mod reference_reader;
 mod round_trip;
+mod two_d;

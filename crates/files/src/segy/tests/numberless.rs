@@ -173,7 +173,7 @@ fn what_is_no_lattice_is_refused_with_the_reason() {
     assert!(sentence.contains("within a quarter of a bin") && sentence.contains("inline byte"), "{sentence}");
 
     let straight = placed([1, 60], DVec2::X, DVec2::new(9.0, 12.0), 1.0);
-    assert!(straight.refusal().1.contains("on one line"), "{}", straight.refusal().1);
+    assert!(straight.refusal().1.contains("along one line"), "{}", straight.refusal().1);
     let mut bent = placed([1, 60], DVec2::X, DVec2::new(25.0, 0.0), 1.0);
     let corner = bent.traces[30].clone();
     bent.traces.extend((1..60).map(|k| {

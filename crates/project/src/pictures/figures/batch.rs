@@ -93,6 +93,14 @@ fn stage(
     Ok(written)
 }
 
+/// Checks that no figure of a state is refused for its name, format or scene.
+///
+/// # Errors
+/// The first that is.
+pub(crate) fn check_all(document: &Document) -> Result<(), ProjectError> {
+    if document.figures.is_empty() { Ok(()) } else { check(document, &Progress::silent()).map(drop) }
+}
+
 /// The figures, none of which is refused for its name, format or scene.
 fn check<'a>(document: &'a Document, progress: &Progress) -> Result<Vec<Meant<'a>>, ProjectError> {
     if document.figures.is_empty() {

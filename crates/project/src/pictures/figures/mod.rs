@@ -11,6 +11,7 @@ mod interpreter;
 mod little_room;
 mod output;
 
+pub(crate) use batch::check_all;
 pub use batch::{WrittenFigure, make_all};
 pub use confusion::{NamedConfusion, confusions};
 pub use fonts::{FontFile, faces, font_files};
