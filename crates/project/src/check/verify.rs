@@ -57,7 +57,7 @@ pub(super) fn verify(root: &Path, object: &Object, progress: &Progress) -> Resul
 /// The user cancelled.
 pub(super) fn confirmed(
     path: &Path,
-    look: impl Fn() -> Result<Result<(), Finding>, ProjectError> + Sync,
+    look: impl Fn() -> Result<Result<(), Finding>, ProjectError> + Send + Sync,
 ) -> Result<Result<(), Finding>, ProjectError> {
     let found = look()?;
     if !matches!(found, Err(Finding::Damaged(_))) {
