@@ -2,10 +2,13 @@
 
 use super::builder::{Built, Trace};
 
+/// Writes the header of one of a line's traces.
+type Header<'a> = &'a dyn Fn(i32, &mut Trace);
+
 /// What 2D lines look like in the headers that programs write.
 #[test]
 fn two_d_lines_of_many_programs() {
-    let line = |header: &dyn Fn(i32, &mut Trace)| {
+    let line = |header: Header| {
         let mut file = Built::grid(&[0], &[0]);
         file.traces = (0..60)
             .map(|n| {
@@ -21,7 +24,7 @@ fn two_d_lines_of_many_programs() {
         t.i32(181, 60_000_000 + 2500 * n);
         t.i32(185, 600_000_000 + (30.0 * f64::from(n * n)) as i32);
     };
-    let members: [(&str, &dyn Fn(i32, &mut Trace)); 12] = [
+    let members: [(&str, Header); 12] = [
         ("line and CDP", &|n, t| {
             t.i32(189, 12);
             t.i32(193, 101 + n);
