@@ -216,6 +216,105 @@ fn a_soup_of_triangles_is_no_horizon() {
     limited(at, "horizon add n.petro soup.ts --name Soup").failed(&["depths at one place"]);
 }
 
+/// Grids, meshes, tables and wells of other programs whose heads promise what their bytes do not hold, each with a word of
+/// the refusal.
+fn false_promises() -> Vec<(&'static str, Vec<u8>, &'static str)> {
+    let floats = |values: &[f32]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
+    let words = |values: &[u32]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
+    let big = |values: &[u32]| values.iter().flat_map(|v| v.to_be_bytes()).collect::<Vec<u8>>();
+    let npy =
+        |head: &str| [b"\x93NUMPY\x01\0", &(head.len() as u16).to_le_bytes()[..], head.as_bytes(), &[0; 64]].concat();
+    let surfer = [b"DSBB".to_vec(), vec![0xff, 0x7f, 0xff, 0x7f], vec![0; 48], floats(&[1.0; 9])].concat();
+    let stl = [vec![b' '; 80], words(&[u32::MAX]), vec![0; 50]].concat();
+    // A TIFF of 2^31 by 2^31 floats in one strip of 24 bytes.
+    let entry = |tag: u16, kind: u16, value: u32| {
+        [&tag.to_le_bytes()[..], &kind.to_le_bytes(), &1u32.to_le_bytes(), &value.to_le_bytes()].concat()
+    };
+    let huge = 1 << 31;
+    let entries = [
+        (256, 4, huge),
+        (257, 4, huge),
+        (258, 3, 32),
+        (259, 3, 1),
+        (262, 3, 1),
+        (273, 4, 8),
+        (278, 4, huge),
+        (279, 4, 24),
+        (339, 3, 3),
+    ];
+    let tiff: Vec<u8> = [b"II*\0".to_vec(), words(&[32]), vec![0; 24], (entries.len() as u16).to_le_bytes().to_vec()]
+        .into_iter()
+        .chain(entries.map(|(tag, kind, value)| entry(tag, kind, value)))
+        .chain([vec![0; 4]])
+        .flatten()
+        .collect();
+    // NetCDF: dimensions of 2^31 - 1, and one variable over both.
+    let dimension = |name: u8| [big(&[1]), vec![name, 0, 0, 0], big(&[i32::MAX as u32])].concat();
+    let netcdf = [
+        [b"CDF\x01".to_vec(), big(&[0, 10, 2]), dimension(b'y'), dimension(b'x'), big(&[0, 0, 11, 1])].concat(),
+        [big(&[1]), vec![b'z', 0, 0, 0], big(&[2, 0, 1, 0, 0, 6, 16, 96]), vec![0; 64]].concat(),
+    ]
+    .concat();
+    let mut shapefile = [big(&[9994, 0, 0, 0, 0, 0, 1 << 30]), words(&[1000, 3]), vec![0; 64]].concat();
+    shapefile.extend([big(&[1, 1 << 29]), words(&[3]), vec![0; 32], words(&[1 << 30, 1 << 30]), vec![0; 64]].concat());
+    // A database whose one table is a page that is its own child.
+    let mut database = b"SQLite format 3\0".to_vec();
+    database.extend([2, 0, 1, 1, 0, 64, 32, 32]);
+    database.resize(68, 0);
+    database.extend(b"GPKG");
+    database.resize(100, 0);
+    database.extend([5, 0, 0, 0, 1, 1, 244, 0, 0, 0, 0, 1, 1, 244]);
+    database.resize(500, 0);
+    database.extend([0, 0, 0, 1, 1]);
+    database.resize(512, 0);
+    let text = |text: &str| text.as_bytes().to_vec();
+    vec![
+        (
+            "esri.asc",
+            text("ncols 2000000000\nnrows 2000000000\nxllcorner 0\nyllcorner 0\ncellsize 25\n1 2 3\n"),
+            "values",
+        ),
+        ("surfer.grd", text("DSAA\n2000000000 2000000000\n0 100\n0 100\n1 2\n1 2 1 2\n"), "values"),
+        ("surfer6.grd", surfer, "bytes"),
+        ("geosoft.gxf", text("#POINTS\n60000\n#ROWS\n60000\n#GTYPE\n8\n#GRID\n%%%%%%%%\n"), "bytes"),
+        ("array.npy", npy("{'descr': '<f8', 'fortran_order': False, 'shape': (2000000000, 2000000000), }\n"), "bytes"),
+        (
+            "head.npy",
+            npy("{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999999999999999, 2), }\n"),
+            "NumPy",
+        ),
+        ("mesh.stl", stl, "4294967295"),
+        ("mesh.obj", text("v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 99999999999\n"), "99999999999"),
+        ("raster.tif", tiff, "raster.tif"),
+        ("grid.nc", netcdf, "grid.nc"),
+        ("lines.shp", shapefile, "lines.shp"),
+        ("map.gpkg", database, "map.gpkg"),
+        (
+            "deep.geojson",
+            text(&format!("{{\"type\":\"FeatureCollection\",\"features\":{}", "[".repeat(400_000))),
+            "deep.geojson",
+        ),
+    ]
+}
+
+#[test]
+fn a_grid_or_mesh_of_another_program_is_believed_only_where_its_bytes_are() {
+    let folder = project();
+    let at = folder.path();
+    let before = bytes(&at.join("p.petro"));
+    for (name, content, word) in false_promises() {
+        fs::write(at.join(name), content).unwrap();
+        limited(at, &format!("horizon add p.petro {name} --name Z")).failed(&[word]);
+        limited(at, &format!("fault add p.petro {name} --name Z")).failed(&[name]);
+        limited(at, &format!("info {name}"));
+    }
+    assert!(bytes(&at.join("p.petro")) == before);
+    let las = "~Version\nVERS. 3.0 :\nWRAP. NO :\n~Well\nSTRT.M 0 :\nSTOP.M 1e300 :\nSTEP.M 1e-300 :\nNULL. -999.25 :\n\
+               ~Curve\nDEPT.M :\nGR.API {F9999999999} :\n~Ascii\n0 1\n";
+    fs::write(at.join("well.las"), las).unwrap();
+    limited(at, "well add p.petro well.las --name W").failed(&["well.las"]);
+}
+
 #[test]
 fn a_shape_is_believed_only_where_its_files_are() {
     let folder = project();

@@ -7,8 +7,8 @@
 //! 64 samples, or its length) before the transform, which treats it as periodic, so that the two ends of the
 //! trace do not touch.
 //!
-//! Samples that are NaN count as 0 in the transform and have a NaN envelope. A constant trace c has the
-//! envelope |c|.
+//! Samples that are NaN have a NaN envelope; in the transform the trace is mirrored into them from both sides, as beyond
+//! its ends. A constant trace c has the envelope |c|.
 
 use super::dip::like;
 use super::error::AttributeError;
@@ -66,6 +66,7 @@ struct Hilbert {
 
 /// Room for one trace.
 struct TraceRoom {
+    filled: Vec<f32>,
     signal: Vec<Complex32>,
     scratch: Vec<Complex32>,
 }
@@ -80,12 +81,18 @@ impl Hilbert {
 
     fn work(&self) -> TraceRoom {
         let scratch = self.forward.get_inplace_scratch_len().max(self.inverse.get_inplace_scratch_len());
-        TraceRoom { signal: vec![Complex32::default(); self.length], scratch: vec![Complex32::default(); scratch] }
+        let filled = Vec::new();
+        TraceRoom {
+            filled,
+            signal: vec![Complex32::default(); self.length],
+            scratch: vec![Complex32::default(); scratch],
+        }
     }
 
     fn envelope(&self, trace: &[f32], work: &mut TraceRoom, out: &mut [f32]) {
         let samples = trace.len();
-        let at = |n: usize| if trace[n].is_finite() { trace[n] } else { 0.0 };
+        fill(trace, &mut work.filled);
+        let at = |n: usize| work.filled[n];
         // The tail is split between both mirrors, which meet in the middle of it.
         for (n, value) in work.signal.iter_mut().enumerate() {
             let source = if n < samples {
@@ -112,6 +119,25 @@ impl Hilbert {
         for ((out, value), sample) in out.iter_mut().zip(&work.signal).zip(trace) {
             *out = if sample.is_finite() { value.norm() } else { f32::NAN };
         }
+    }
+}
+
+/// A trace that is mirrored into its gaps, over [`MIRRORED`] samples at most, and 0 beyond.
+fn fill(trace: &[f32], filled: &mut Vec<f32>) {
+    filled.clear();
+    filled.extend_from_slice(trace);
+    let mut from = 0;
+    while let Some(start) = (from..trace.len()).find(|&n| !trace[n].is_finite()) {
+        let end = (start..trace.len()).find(|&n| trace[n].is_finite()).unwrap_or(trace.len());
+        for n in start..end {
+            // As far on the other side of the nearer edge of the gap as `n` is on this one.
+            let source = match n - start < end - 1 - n && start > 0 || end == trace.len() {
+                true => (n - start < MIRRORED).then(|| (2 * start).checked_sub(n + 1)).flatten(),
+                false => (end - 1 - n < MIRRORED).then_some(2 * end - 1 - n),
+            };
+            filled[n] = source.and_then(|source| trace.get(source)).copied().filter(|a| a.is_finite()).unwrap_or(0.0);
+        }
+        from = end;
     }
 }
 

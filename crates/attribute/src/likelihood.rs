@@ -152,7 +152,8 @@ pub fn reach(geometry: &SurveyGeometry) -> usize {
     slopes::REACH + 1 + ALONG.1 + 1 + crossed(geometry, DOWN.1 * TAP * ROW) + 1
 }
 
-/// The fault likelihood of a volume at every sample, 0 to 1, along its own slopes; see [`likelihood`].
+/// The fault likelihood of a volume at every sample, 0 to 1, along its own slopes; see [`likelihood`]. NaN where the sample
+/// is missing.
 ///
 /// # Errors
 /// [`AttributeError::Cancelled`].
@@ -186,8 +187,13 @@ pub fn fault_likelihood(
     let rows = found.size[2];
     let mut samples = vec![0.0f32; volume.samples().len()];
     if nz > 0 {
-        samples.par_chunks_mut(nz).zip(found.value.par_chunks(rows)).for_each(|(out, rows)| {
-            for (z, out) in out.iter_mut().enumerate() {
+        let traces = volume.samples().par_chunks(nz);
+        samples.par_chunks_mut(nz).zip(found.value.par_chunks(rows)).zip(traces).for_each(|((out, rows), trace)| {
+            for (z, (out, sample)) in out.iter_mut().zip(trace).enumerate() {
+                if !sample.is_finite() {
+                    *out = f32::NAN;
+                    continue;
+                }
                 let (row, t) = (z / ROW, (z % ROW) as f32 / ROW as f32);
                 let next = rows[(row + 1).min(rows.len() - 1)];
                 *out = rows[row] + t * (next - rows[row]);

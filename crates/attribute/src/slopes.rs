@@ -9,12 +9,11 @@
 //! tensor's; the other, in [`ROUNDS`], compares neighbours along the present slope, so that steep reflections, which
 //! gradients alias, are followed. Unlike
 //! [`super::dip()`], which is sharper, these slopes run smoothly past a fault instead of climbing it: what measures faults
-//! needs them. Missing values count as zero amplitude. Space: samples a line.
+//! needs them. Differences with a missing value are left out of both sums. Space: samples a line.
 
 use super::dip::{DipVolumes, like};
 use super::error::AttributeError;
 use rayon::prelude::*;
-use std::borrow::Cow;
 use survey::{Progress, Volume};
 
 /// Standard deviation of the neighbourhood along lines, traces, and its reach.
@@ -38,13 +37,12 @@ pub(super) const REACH: usize = (TRACES.1 + 1) * (ROUNDS + 1);
 pub fn slopes(volume: &Volume<f32>, progress: &Progress) -> Result<DipVolumes, AttributeError> {
     let [nx, _, _] = volume.size();
     progress.begin("slopes", (2 * (ROUNDS + 1) * nx.div_ceil(BLOCK)) as u64);
-    let filled = without_missing(volume);
-    let inline = one_way(&filled, true, progress)?;
-    let crossline = one_way(&filled, false, progress)?;
+    let inline = one_way(volume, true, progress)?;
+    let crossline = one_way(volume, false, progress)?;
     Ok(DipVolumes { inline: like(volume, inline), crossline: like(volume, crossline) })
 }
 
-/// Slopes along one axis of a volume without missing values.
+/// Slopes along one axis.
 fn one_way(volume: &Volume<f32>, along_inlines: bool, progress: &Progress) -> Result<Vec<f32>, AttributeError> {
     let [nx, ny, nz] = volume.size();
     let mut found = vec![0.0f32; nx * ny * nz];
@@ -77,8 +75,11 @@ fn one_way(volume: &Volume<f32>, along_inlines: bool, progress: &Progress) -> Re
                     down += step;
                 }
                 let down = down / (2.0 + known);
-                num[z] = across / known.max(1.0) * down;
-                den[z] = down * down;
+                let product = across / known.max(1.0) * down;
+                if product.is_finite() {
+                    num[z] = product;
+                    den[z] = down * down;
+                }
             }
         };
         let change = fitted([nx, ny, nz], &pairs, progress)?;
@@ -86,16 +87,6 @@ fn one_way(volume: &Volume<f32>, along_inlines: bool, progress: &Progress) -> Re
         found.par_iter_mut().zip(change).for_each(|(slope, change)| *slope = steepest(*slope - change));
     }
     Ok(found)
-}
-
-/// The volume with zeros in place of what is missing.
-fn without_missing(volume: &Volume<f32>) -> Cow<'_, Volume<f32>> {
-    if volume.samples().par_iter().all(|sample| sample.is_finite()) {
-        return Cow::Borrowed(volume);
-    }
-    let mut filled = volume.clone();
-    filled.samples_mut().par_iter_mut().for_each(|sample| *sample = if sample.is_finite() { *sample } else { 0.0 });
-    Cow::Owned(filled)
 }
 
 /// A trace of at least four samples at a fractional one, and its change in a sample there, by the cubic through the four

@@ -4,6 +4,7 @@ use super::*;
 use std::f32::consts::TAU;
 use survey::progress::Progress;
 use survey::volume::Volume;
+use survey::{SurveyGeometry, VerticalUnit};
 
 fn volume_of(size: [usize; 3], value: impl Fn(f32, f32, f32) -> f32) -> Volume<f32> {
     let [nx, ny, nz] = size;
@@ -176,6 +177,40 @@ fn dead_traces_contribute_nothing_and_nan_stays_where_it_is() {
                 }
             }
         }
+    }
+}
+
+/// A block without data is like the end of the traces: what is beside it does not see a reflection of zeros.
+#[test]
+fn beside_no_data_attributes_are_what_they_are_beside_an_end() {
+    let size = [12, 12, 160];
+    let whole =
+        volume_of(size, |x, y, z| (TAU * (z - 0.8 * x + 0.5 * y) / 13.0).cos() * (1.0 + 0.3 * (z / 20.0).sin()));
+    let mut holed = whole.clone();
+    for (x, y) in (0..12).flat_map(|x| (0..12).map(move |y| (x, y))) {
+        holed.trace_mut(x, y)[60..100].fill(f32::NAN);
+    }
+    let silent = Progress::silent();
+    let (strong, tilted) = (envelope(&holed, &silent).unwrap(), slopes(&holed, &silent).unwrap());
+    let geometry = SurveyGeometry::regular(size, 25.0, 4.0, VerticalUnit::Metres);
+    let faults = fault_likelihood(&holed, &geometry, &silent).unwrap();
+    // The same without what is below.
+    let above = volume_of([12, 12, 60], |x, y, z| whole.at(x as usize, y as usize, z as usize));
+    let alone = envelope(&above, &silent).unwrap();
+    for (x, y, z) in [(3, 3), (6, 5), (8, 8)].into_iter().flat_map(|(x, y)| (0..160).map(move |z| (x, y, z))) {
+        let is_missing = (60..100).contains(&z);
+        assert_eq!(strong.at(x, y, z).is_nan(), is_missing);
+        assert_eq!(faults.at(x, y, z).is_nan(), is_missing);
+        if is_missing {
+            continue;
+        }
+        if z < 60 {
+            let error = (strong.at(x, y, z) - alone.at(x, y, z)).abs();
+            assert!(error < 0.05, "envelope off by {error} at {z}");
+        }
+        let error = [tilted.inline.at(x, y, z) - 0.8, tilted.crossline.at(x, y, z) + 0.5].map(f32::abs);
+        assert!(error.iter().all(|error| *error < 0.1), "slopes off by {error:?} at {z}");
+        assert!(faults.at(x, y, z) < 0.2, "a fault at {z}: {}", faults.at(x, y, z));
     }
 }
 

@@ -102,7 +102,9 @@ pub(super) fn of_name(name: &str) -> NamedColumn {
         | "temps" | "tiempo" | "tempo" => (Column::Z, Some(Domain::Time), None),
         "depth" | "tvd" | "tvdss" | "tvdmsl" | "z_tvdss" | "z_depth" | "tiefe" | "teufe" | "profondeur"
         | "profundidad" | "profundidade" => (Column::Z, Some(Domain::Depth), None),
-        "elevation" | "elev" | "altitude" => (Column::Z, Some(Domain::Depth), Some(ZPositive::Up)),
+        "elevation" | "elev" | "altitude" | "z_elevation" | "elevation_z" | "z_elev" => {
+            (Column::Z, Some(Domain::Depth), Some(ZPositive::Up))
+        }
         "name" | "horizon" | "surface" | "fault" | "horizon_name" | "fault_name" | "surface_name" | "formation"
         | "formation_name" | "feature_name" | "interface" => (Column::Name, None, None),
         "val" | "strati" | "horizon_id" | "surface_id" | "formation_id" | "id" | "surf_id" => {

@@ -8,7 +8,7 @@ use super::text::{self, Field, Line, SourceFile};
 use crate::number::{self, NumberStyle};
 use glam::{DVec2, DVec3};
 use indexmap::IndexMap;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// How the lines of a table are cut into numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -115,7 +115,7 @@ pub(super) fn surfaces(
         let polygons = layout.columns.iter_mut().filter(|column| **column == Column::Polygon);
         polygons.for_each(|column| *column = Column::Other);
     }
-    settle_levels(rows, cut, &mut layout);
+    settle_names(rows, cut, &mut layout);
     if !layout.is_complete() {
         return Err(FormatError::Columns {
             file: source.path.clone(),
@@ -176,33 +176,101 @@ pub(super) fn surfaces(
         .collect())
 }
 
-/// Most surfaces that numbers in a column tell apart, and fewest points of each on average.
+/// Most surfaces that a column tells apart, and fewest points of each on average.
 const MOST_LEVELS: usize = 64;
 const POINTS_OF_LEVEL: usize = 3;
 
-/// Whether a column of numbers tells surfaces apart: few numbers, each of many rows. Where rows have names, the numbers
-/// are levels of them, unless there is one alone for each name.
-fn settle_levels(rows: &[Line<'_>], cut: LineCut, layout: &mut ColumnLayout) {
-    let Some(at) = layout.columns.iter().position(|column| *column == Column::Level) else { return };
-    let named = layout.columns.iter().position(|column| *column == Column::Name);
-    let mut levels: HashMap<&str, usize> = HashMap::new();
-    let mut pairs: HashMap<(&str, &str), usize> = HashMap::new();
+/// What the name of a column begins with, or one of its words, where it tells surfaces apart.
+const TELLING: [&str; 20] = [
+    "strat", "form", "surf", "horiz", "layer", "marker", "lith", "feature", "unit", "zone", "series", "sequence",
+    "event", "object", "label", "group", "bed", "schicht", "couche", "capa",
+];
+
+/// Whether the columns that may name a surface, or number it, tell surfaces apart: few words or numbers, each of many rows.
+/// Where rows have names, numbers are levels of them, unless there is one alone for each name.
+fn settle_names(rows: &[Line<'_>], cut: LineCut, layout: &mut ColumnLayout) {
+    let find = |layout: &ColumnLayout, wanted| layout.columns.iter().position(|column| *column == wanted);
+    if let Some(at) = find(layout, Column::Level).filter(|&at| !holds_numbers(rows, cut, at)) {
+        layout.columns[at] = Column::Other;
+        name_by(at, rows, cut, layout, true);
+    }
+    for at in 0..layout.columns.len().min(layout.names.len()) {
+        let name = layout.names[at].to_lowercase();
+        let is_telling = name
+            .split(|c: char| !c.is_alphanumeric())
+            .any(|word| matches!(word, "fm" | "top" | "pick") || TELLING.iter().any(|stem| word.starts_with(stem)));
+        match (layout.columns[at], holds_numbers(rows, cut, at)) {
+            (Column::Other, false) => name_by(at, rows, cut, layout, is_telling),
+            (Column::Other, true) if is_telling && find(layout, Column::Level).is_none() => {
+                layout.columns[at] = Column::Level;
+            }
+            _ => {}
+        }
+    }
+    let Some(at) = find(layout, Column::Level) else { return };
+    let named = find(layout, Column::Name);
+    let pairs = words_of(rows, cut, &[named, Some(at)]);
+    let names: HashSet<&str> = pairs.keys().map(|pair| pair[0]).collect();
+    if !(pairs.len() > names.len() && are_few(pairs.len(), rows.len())) {
+        layout.columns[at] = Column::Other;
+    } else if named.is_none() {
+        let levels: HashSet<&str> = pairs.keys().map(|pair| pair[1]).collect();
+        layout.notes.push(format!("a column of {} numbers tells its surfaces apart", levels.len()));
+    }
+}
+
+/// Takes a column of words as names, where they are few and none is known; what is not taken is said.
+fn name_by(at: usize, rows: &[Line<'_>], cut: LineCut, layout: &mut ColumnLayout, is_telling: bool) {
+    if layout.columns.contains(&Column::Name) {
+        return;
+    }
+    let found = words_of(rows, cut, &[Some(at)]);
+    let mut words: Vec<&str> = found.keys().map(|word| word[0]).filter(|word| !number::is_missing(word)).collect();
+    if words.len() < 2 || !are_few(words.len(), rows.len()) || words.iter().any(|w| columns::quality_of(w).is_some()) {
+        return;
+    }
+    words.sort_unstable();
+    words.truncate(4);
+    let (column, words) = (layout.names.get(at).map_or("", String::as_str), words.join(", "));
+    if is_telling {
+        layout.notes.push(format!("the column '{column}' tells its surfaces apart: {words}"));
+        layout.columns[at] = Column::Name;
+    } else {
+        let mut stated = layout.columns.clone();
+        stated[at] = Column::Name;
+        let stated = ColumnLayout { columns: stated, ..layout.clone() };
+        layout.notes.push(format!(
+            "the words of the column '{column}' ({words}) are not read; where they are names of surfaces, state the columns as {}",
+            example_of(&stated)
+        ));
+    }
+}
+
+/// Whether so many surfaces are few for so many rows.
+fn are_few(surfaces: usize, rows: usize) -> bool {
+    surfaces <= MOST_LEVELS && rows >= POINTS_OF_LEVEL * surfaces
+}
+
+/// Whether a column has numbers alone, and missing values.
+fn holds_numbers(rows: &[Line<'_>], cut: LineCut, at: usize) -> bool {
+    rows.iter().step_by((rows.len() / 2000).max(1)).all(|line| {
+        let fields = cut.fields(line.text);
+        fields.get(at).is_none_or(|field| !field.quoted && cut.value(field.text).is_some())
+    })
+}
+
+/// What stands in some columns together, and how often; more than [`MOST_LEVELS`] are not counted.
+fn words_of<'a>(rows: &[Line<'a>], cut: LineCut, columns: &[Option<usize>]) -> HashMap<Vec<&'a str>, usize> {
+    let mut found: HashMap<Vec<&str>, usize> = HashMap::new();
     for line in rows {
         let fields = cut.fields(line.text);
-        let text = |at: usize| fields.get(at).map_or("", |field| field.text);
-        *levels.entry(text(at)).or_default() += 1;
-        *pairs.entry((named.map_or("", text), text(at))).or_default() += 1;
-        if pairs.len() > MOST_LEVELS {
+        let text = |at: &Option<usize>| at.and_then(|at| fields.get(at)).map_or("", |field| field.text);
+        *found.entry(columns.iter().map(text).collect()).or_default() += 1;
+        if found.len() > MOST_LEVELS {
             break;
         }
     }
-    let names: std::collections::HashSet<&str> = pairs.keys().map(|(name, _)| *name).collect();
-    let tells = pairs.len() > names.len() && pairs.len() <= MOST_LEVELS && rows.len() >= POINTS_OF_LEVEL * pairs.len();
-    if !tells {
-        layout.columns[at] = Column::Other;
-    } else if named.is_none() {
-        layout.notes.push(format!("a column of {} numbers tells its surfaces apart", levels.len()));
-    }
+    found
 }
 
 /// The columns as the file calls them, otherwise what they are.

@@ -217,7 +217,7 @@ fn around(z: f32, reach: usize, nz: usize) -> std::ops::Range<usize> {
     at.saturating_sub(reach)..(at + reach + 1).min(nz)
 }
 
-/// Makes τ NaN on dead traces, farther than `reach` samples from every vertex of its trace and of the traces beside it,
+/// Makes τ NaN on dead traces, at samples without data, farther than `reach` samples from every vertex of its trace and of the traces beside it,
 /// and in parts that neither patches nor ties join to the largest.
 pub(crate) fn hide_unknown(
     tau: &mut [f32],
@@ -249,8 +249,8 @@ pub(crate) fn hide_unknown(
                     }
                 }
             }
-            for (tau, near) in tau.iter_mut().zip(&near) {
-                *tau = if *near { *tau } else { f32::NAN };
+            for ((tau, near), sample) in tau.iter_mut().zip(&near).zip(volume.trace(x, y)) {
+                *tau = if *near && sample.is_finite() { *tau } else { f32::NAN };
             }
         }
     });

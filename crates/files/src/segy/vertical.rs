@@ -13,7 +13,7 @@ use super::vertical_words::{self, Said, Words};
 use crate::unit::ZUnit;
 use crate::unit::words::{HeaderUnits, Quantity};
 use survey::geometry::{VerticalAxis, VerticalUnit};
-use survey::remedy::{Note, Setting};
+use survey::remedy::{Note, Remedy, Setting};
 
 /// Traces that start later than the earliest one may lengthen the volume to this many times their own length.
 const MAX_LENGTHENING: usize = 4;
@@ -290,8 +290,21 @@ fn unit(frame: &FileLayout, [micro, start]: [f64; 2], options: &SegyOptions, fin
             findings.evidence(format!("vertical axis: {}, text header: \"{quote}\"", axis_in(*unit)));
             *unit
         }
-        None => weighed(&words, likely, in_depth, &plausibility, findings),
+        None => match weighed(&words, likely, in_depth, &plausibility, findings) {
+            depth if depth.is_time() || words.contradiction.is_some() => depth,
+            depth => length_of_depths(depth, &words, frame.binary.measurement, findings),
+        },
     };
+    if let Some((number, other, quote)) = &words.other_interval {
+        findings.warning(Note::unless(
+            format!(
+                "the text header gives a sample interval of {number} {} (\"{quote}\"), the file {}; the file's is taken",
+                other.symbol(),
+                micro / 1000.0
+            ),
+            Remedy::any([Setting::Interval.stated_as(number), Setting::VerticalUnit.stated_as(other.symbol())]),
+        ));
+    }
     plausibility.tell(unit, findings);
     if !unit.is_time() && unit != in_depth && frame.binary.measurement != 0 {
         findings.warning(Note::unless(
@@ -304,6 +317,23 @@ fn unit(frame: &FileLayout, [micro, start]: [f64; 2], options: &SegyOptions, fin
         ));
     }
     unit
+}
+
+/// The unit of depths whose unit no sentence gives: one that is said without saying of what, or that of X and Y.
+fn length_of_depths(depth: ZUnit, words: &Words, measurement: u16, findings: &mut Findings) -> ZUnit {
+    if let Some((unit, quote)) = &words.unowned {
+        let axis = axis_in(*unit);
+        findings.evidence(format!("vertical axis: {axis}, text header: \"{quote}\", which does not say of what"));
+        return *unit;
+    }
+    match measurement {
+        1 | 2 => findings.evidence(format!("{}, as byte 3255 says of lengths", axis_in(depth))),
+        _ => findings.assumption(Note::unless(
+            format!("the vertical axis is {}: neither the text header nor byte 3255 says", axis_in(depth)),
+            Setting::VerticalUnit.stated_as("ft or usft"),
+        )),
+    }
+    depth
 }
 
 /// The earliest start, and by how many samples each trace starts later.

@@ -33,6 +33,10 @@ pub(super) struct Words {
     pub unit: Option<(ZUnit, String)>,
     /// Two sentences that say different units.
     pub contradiction: Option<[(ZUnit, String); 2]>,
+    /// A length that is said to be a unit, and not of what.
+    pub unowned: Option<(ZUnit, String)>,
+    /// A length that is said to be the sample interval, and is not the file's.
+    pub other_interval: Option<(f64, ZUnit, String)>,
     pub time: Option<Said>,
     pub depth: Option<Said>,
 }
@@ -73,6 +77,9 @@ const GEAR: [&str; 24] = [
 /// What has a length of its own, which may by chance be that between two samples.
 const SPREAD: [&str; 10] = ["BIN", "BINS", "SPACING", "GROUP", "OFFSET", "GRID", "CDP", "CMP", "INLINE", "CROSSLINE"];
 
+/// Words of a sample interval.
+const SAMPLING: [&str; 5] = ["SAMPLE", "SAMPLING", "STEP", "INCREMENT", "RATE"];
+
 impl Words {
     /// Reads the lines of a header; `interval` is the sample interval as the file holds it, in thousandths.
     pub(super) fn find<'a>(lines: impl Iterator<Item = &'a String>, interval: f64) -> Self {
@@ -93,6 +100,9 @@ impl Words {
                     found.contradiction = Some([first.clone(), (unit, line.clone())]);
                 }
             }
+            if !is_of_gear {
+                found.note_lengths(said, interval, words.iter().any(|word| SAMPLING.contains(word)), line);
+            }
             let is_only = |word: &str| is_answer && words.first() == Some(&word);
             let answer = |word: &str| is_only(word).then_some(Weight::Axis);
             note(&mut found.time, answer("TIME").or_else(|| time(&words)), line);
@@ -102,6 +112,20 @@ impl Words {
             found.unit = None;
         }
         found
+    }
+
+    /// Notes the lengths of a line that are no unit of the axis, but may be meant so.
+    fn note_lengths(&mut self, said: &str, interval: f64, is_of_sampling: bool, line: &str) {
+        for said in words::statements(said).into_iter().filter(|said| !said.unit.is_time()) {
+            match (said.number, said.quantity) {
+                (None, None) if self.unowned.is_none() => self.unowned = Some((axis_unit(said.unit), line.to_owned())),
+                (Some(number), _) if is_of_sampling && self.other_interval.is_none() => {
+                    let differs = (number * to_thousandths(said.unit) - interval).abs() > 1e-6 * interval;
+                    self.other_interval = differs.then(|| (number, said.unit, line.to_owned()));
+                }
+                _ => {}
+            }
+        }
     }
 }
 

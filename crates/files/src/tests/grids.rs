@@ -266,6 +266,23 @@ fn objects_of_a_table_as_other_programs_name_them() {
             read_horizons(&path, &survey, &ImportOptions::default()).unwrap_or_else(|e| panic!("{}: {e}", &text[..30]));
         assert_eq!(found.iter().map(|(h, _)| h.name.as_str()).collect::<Vec<_>>(), names, "{}", &text[..40]);
     }
+    // Words under any name that may be a surface's, and numbers under it.
+    for head in ["id", "layer", "Strat_unit", "marker", "surf_name", "lithology", "Fm", "Schichtname", "event_label"] {
+        let text = table(&format!("X,Y,Z,{head}\n"), &|k, x, y, z| format!("{x},{y},{z},{}", ["Chalk", "Marl"][k]));
+        let (_folder, path) = file("t.csv", &text);
+        let found = read_horizons(&path, &survey, &ImportOptions::default()).unwrap();
+        assert_eq!(found.iter().map(|(h, _)| h.name.as_str()).collect::<Vec<_>>(), ["Chalk", "Marl"], "{head}");
+        assert!(found[0].1.notes.iter().any(|note| note.contains("tells its surfaces apart")), "{head}");
+    }
+    let (_folder, path) = file("t.csv", &table("X Y Z layer_no\n", &|k, x, y, z| format!("{x} {y} {z} {k}")));
+    assert_eq!(read_horizons(&path, &survey, &ImportOptions::default()).unwrap().len(), 2);
+    // Under another name they are told, and read where the columns are stated.
+    let by = table("X,Y,Z,picked_by\n", &|k, x, y, z| format!("{x},{y},{},{}", z - 300.0 * k as f64, ["Ann", "Bo"][k]));
+    let (_folder, path) = file("t.csv", &by);
+    let found = read_horizons(&path, &survey, &ImportOptions::default()).unwrap();
+    assert_eq!(found.len(), 1);
+    let told = found[0].1.notes.iter().find(|note| note.contains("'picked_by' (Ann, Bo) are not read"));
+    assert!(told.is_some_and(|note| note.contains("x,y,z,name")), "{:?}", found[0].1.notes);
     // A number for each point is no name; one for all is none either.
     for head in ["X,Y,Z,id\n", "X,Y,Z,Strati\n"] {
         let count = std::cell::Cell::new(0);

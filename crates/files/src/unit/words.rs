@@ -9,6 +9,7 @@
 //!             | quantity … "unit(s)" … unit       Unit in depth: ft, Trace unit: ft
 //!             | quantity … unit "-UNITS"          DEPTH GIVEN IN ft-UNITS
 //!             | quantity ":" unit                 VERTICAL: METRES
+//!             | quantity "," unit                 VERTICAL AXIS: DEPTH, US-FT
 //!             | number unit                       4 ms, 0,004 s
 //! column      = quantity [preposition] unit       depth_ft, MD ft
 //! unit        = [us | international] [survey] foot | a word of the table
@@ -241,7 +242,7 @@ fn introduced(words: &[Word], at: usize, taken: usize, tail: &str) -> Option<Int
         || matches!((before.text.as_str(), at.checked_sub(2)), ("is" | "are" | "in", Some(n)) if is_in(UNIT_WORDS, &words[n].text))
         || (is_in(UNIT_WORDS, next) && matches!(gap_after, "-" | " "))
         || (gap.contains([':', '=']) && words[..at].iter().any(|word| is_in(UNIT_WORDS, &word.text)))
-        || (gap.trim().starts_with([':', '=']) && quantity_of(&before.text).is_some() && next.is_empty());
+        || (gap.trim().starts_with([':', '=', ',']) && quantity_of(&before.text).is_some() && next.is_empty());
     said.then_some(Introduction::Statement)
 }
 

@@ -108,7 +108,8 @@ pub(super) fn of_name(name: &str) -> (WellColumn, Option<ZUnit>) {
             }
             "tvdss" | "tvd_ss" | "tvdsub" | "tvdmsl" | "tvd_msl" | "ssd" | "subsea" | "tvdsd" | "tvd_sd"
             | "tvd_subsea" => WellColumn::Tvdss,
-            "z" | "elevation" | "elev" | "rl" | "collar_z" | "z_collar" | "z_msl" | "zmsl" => WellColumn::Z,
+            "z" | "elevation" | "elev" | "z_elevation" | "elevation_z" | "z_elev" | "rl" | "collar_z" | "z_collar"
+            | "z_msl" | "zmsl" => WellColumn::Z,
             "twt" | "twt_picked" | "time" | "two_way_time" | "twtt" | "twt_auto" => WellColumn::Twt,
             "owt" | "one_way_time" | "owtt" => WellColumn::Owt,
             "surface" | "top" | "tops" | "marker" | "name" | "horizon" | "formation" | "pick" | "marker_name"

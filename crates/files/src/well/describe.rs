@@ -139,7 +139,7 @@ pub fn describe(file: &Path, text: &str) -> Result<Option<WellFileDescription>, 
         (WellFileKind::Deviation, "its columns are those of a deviation")
     } else if has(WellColumn::Surface) && (has(WellColumn::Well) || has(WellColumn::Md)) && !on_lines {
         (WellFileKind::Tops, "its columns are a surface's name and a depth along a well")
-    } else if !on_lines && !places && depth && (has(WellColumn::Twt) || has(WellColumn::Owt)) {
+    } else if !on_lines && !places && (depth || has(WellColumn::Md)) && (has(WellColumn::Twt) || has(WellColumn::Owt)) {
         (WellFileKind::Checkshot, "its columns are depth and time")
     } else {
         return Ok(None);

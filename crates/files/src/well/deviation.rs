@@ -360,6 +360,13 @@ impl DeviationReading<'_> {
             self.report.note(format!("head at {}, {}, the first row's X, Y", first.x, first.y));
             return Ok(first.truncate());
         }
+        if let (Some(x), Some(y)) = (self.column(WellColumn::X)?, self.column(WellColumn::Y)?)
+            && let (Some(&x), Some(&y)) = (x.first(), y.first())
+            && (x + y).is_finite()
+        {
+            self.report.note(format!("head at {x}, {y}, the first row's X, Y; the others are not used without depths"));
+            return Ok(DVec2::new(x, y));
+        }
         Err(WellFileError::NoHead { file: self.file.to_owned() })
     }
 

@@ -396,3 +396,18 @@ fn tops_of_a_log_are_the_wells_where_no_other_file_has_them() {
     let (well, _) = read_well(&told, &WellOptions::default()).unwrap();
     assert_eq!(well.tops.iter().map(|top| top.name.as_str()).collect::<Vec<_>>(), ["Other"]);
 }
+
+#[test]
+fn places_without_depths_are_the_head_and_checkshots_along_the_hole_are_described() {
+    let text = "MD_ft,Inc_deg,Azi_deg,X,Y\n0,0,60,1000,2000\n1640.42,0,60,1000,2000\n3280.84,30,60,1100,2060\n";
+    let found = read(text, &WellOptions { datum_m: Some(25.0), ..WellOptions::default() });
+    assert_eq!(found.path.position_at_md(0.0).unwrap().truncate(), DVec2::new(1000.0, 2000.0));
+    assert!((found.path.md_range_m()[1] - 1000.0).abs() < 1e-2);
+    let up = "MD,X,Y,Z elevation (m)\n0,1000,2000,25\n500,1000,2000,-475\n";
+    assert_eq!(read(up, &WellOptions::default()).path.datum_m(), 25.0);
+    for head in ["MD (m),TWT (s)", "TVDSS;TWT", "depth_m,owt_ms"] {
+        let text = format!("{head}\n{}", "0,0\n500,0.5\n".replace(',', if head.contains(';') { ";" } else { "," }));
+        let found = describe(Path::new("cs.csv"), &text).unwrap();
+        assert_eq!(found.map(|found| found.kind), Some(WellFileKind::Checkshot), "{head}");
+    }
+}

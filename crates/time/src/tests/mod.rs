@@ -123,6 +123,23 @@ fn where_nothing_reflects_time_is_not_known() {
 }
 
 #[test]
+fn where_there_are_no_data_time_is_not_known_and_beside_them_it_is_as_before() {
+    let strat = |x: f32, y: f32, z: f32| z - 0.2 * x + 0.1 * y;
+    let mut holed = volume([32, 28, 72], strat);
+    let is_missing = |x: usize, z: usize| x < 20 && (30..40).contains(&z);
+    for (x, y) in (0..32).flat_map(|x| (0..28).map(move |y| (x, y))) {
+        let missing = holed.trace_mut(x, y).iter_mut().enumerate().filter(|(z, _)| is_missing(x, *z));
+        missing.for_each(|(_, sample)| *sample = f32::NAN);
+    }
+    let found = time_of(&holed, &[]);
+    for (x, y, z) in (0..32).flat_map(|x| (0..28).flat_map(move |y| (0..72).map(move |z| (x, y, z)))) {
+        assert!(!is_missing(x, z) || found.tau.at(x, y, z).is_nan(), "{x} {y} {z}");
+    }
+    let (worst, share) = errors(&found.tau, strat, |_, _| true);
+    assert!(worst < 0.5 && share > 0.45, "{worst} {share}");
+}
+
+#[test]
 fn it_refuses_candidates_of_another_volume_and_stops_when_cancelled() {
     let small = volume([24, 24, 48], |_, _, z| z);
     let surfaces = grow_surfaces(&small, &GrowSettings::default(), &Progress::silent()).unwrap();

@@ -55,6 +55,7 @@ fn what_a_unit_belongs_to_is_seen_from_what_introduces_it() {
         ("DEPTH VOLUME IN FEET", Depth, ZUnit::Feet),
         ("TVDSS (FEET)", Depth, ZUnit::Feet),
         ("Trace unit: ft", Vertical, ZUnit::Feet),
+        ("VERTICAL AXIS: DEPTH, US-FT", Depth, ZUnit::SurveyFeet),
         ("Unit in depth: ft", Depth, ZUnit::Feet),
         ("Unit in X and Y direction: m", Horizontal, ZUnit::Metres),
         ("DEPTH (Z, tvd_z) GIVEN IN ft-UNITS", Vertical, ZUnit::Feet),
