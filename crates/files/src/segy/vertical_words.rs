@@ -75,7 +75,8 @@ const GEAR: [&str; 24] = [
 ];
 
 /// What has a length of its own, which may by chance be that between two samples.
-const SPREAD: [&str; 10] = ["BIN", "BINS", "SPACING", "GROUP", "OFFSET", "GRID", "CDP", "CMP", "INLINE", "CROSSLINE"];
+const SPREAD: [&str; 11] =
+    ["BIN", "BINS", "SPACING", "GROUP", "OFFSET", "GRID", "CDP", "CMP", "INLINE", "CROSSLINE", "SHOT"];
 
 /// Words of a sample interval.
 const SAMPLING: [&str; 5] = ["SAMPLE", "SAMPLING", "STEP", "INCREMENT", "RATE"];
