@@ -93,6 +93,19 @@ pub enum Dialogue {
     Shortcuts,
 }
 
+impl Dialogue {
+    /// Whether it asks for this file to be written.
+    pub fn writes(&self, path: &Path) -> bool {
+        let stated = match self {
+            Self::Export(form) => form.path.as_str(),
+            Self::Share(form) => form.path(),
+            Self::Data(form) => form.path.as_str(),
+            _ => return false,
+        };
+        [stated, stated.trim()].iter().any(|stated| Path::new(stated) == path)
+    }
+}
+
 /// What is written for other programs, and how.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Written {

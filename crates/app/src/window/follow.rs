@@ -90,7 +90,10 @@ impl Window {
                 // The project was closed meanwhile.
                 Event::Picking { .. } | Event::Erased { .. } => {}
                 Event::Exported(path) => {
-                    self.act(Action::Answered);
+                    // A dialogue that was opened meanwhile stays open.
+                    if self.state.dialogue.as_ref().is_some_and(|dialogue| dialogue.writes(&path)) {
+                        self.act(Action::Answered);
+                    }
                     self.act(Action::Tell(Notice::note(Place::Foot, format!("Written: {}", path.display()))));
                 }
                 Event::Thumbnail { root, name, image } => {

@@ -98,21 +98,44 @@ const FEWEST_VALUES: usize = 16;
 /// How many times more samples a limit has than the value beside it where data are clipped there.
 const TIMES_MORE: usize = 3;
 
-/// Samples, ascending, at limits at which they pile up: where data were clipped. 0 is none, since it also stands for no
-/// data, and attributes begin there.
+/// Samples at limits at which they pile up: where data were clipped. 0 is none, since it also stands for no data, and
+/// attributes begin there.
 fn clipped(values: &[f32]) -> u64 {
-    let runs = || values.chunk_by(|a, b| a == b);
-    if runs().take(FEWEST_VALUES).count() < FEWEST_VALUES {
+    if !has_many_values(values) {
         return 0;
     }
-    let mut runs = runs();
-    let first = [runs.next(), runs.next()];
-    let last = [runs.next_back(), runs.next_back()];
-    let piled = [first, last].into_iter().filter_map(|[limit, beside]| {
-        let (limit, beside) = (limit?, beside?);
-        (limit.first() != Some(&0.0) && limit.len() > TIMES_MORE * beside.len()).then_some(limit.len() as u64)
+    let piled = [1.0, -1.0].map(|side| {
+        let next = |beyond: f32| values.iter().map(|v| v * side).filter(|v| *v > beyond).fold(f32::INFINITY, f32::min);
+        let samples_at = |at: f32| values.iter().filter(|v| **v * side == at).count();
+        let limit = next(f32::NEG_INFINITY);
+        let samples = samples_at(limit);
+        let is_piled = limit != 0.0 && samples > TIMES_MORE * samples_at(next(limit));
+        if is_piled { samples as u64 } else { 0 }
     });
-    piled.sum()
+    piled.into_iter().sum()
+}
+
+/// Whether samples have so many different values that they are no classes.
+fn has_many_values(values: &[f32]) -> bool {
+    let mut different: Vec<f32> = Vec::with_capacity(FEWEST_VALUES);
+    values.iter().any(|value| {
+        if !different.contains(value) {
+            different.push(*value);
+        }
+        different.len() >= FEWEST_VALUES
+    })
+}
+
+/// The values at ascending places of the sorted sequence, of which `values` is the part from `first` on; it is reordered
+/// as far as it takes.
+fn at_places(values: &mut [f32], first: usize, places: &[usize]) -> Vec<f32> {
+    let Some(&middle) = places.get(places.len() / 2) else { return Vec::new() };
+    let (below, &mut value, above) = values.select_nth_unstable_by(middle - first, f32::total_cmp);
+    let [before, after] = [places.partition_point(|place| *place < middle), places.partition_point(|p| *p <= middle)];
+    let mut found = at_places(below, first, &places[..before]);
+    found.resize(after, value);
+    found.extend(at_places(above, middle + 1, &places[after..]));
+    found
 }
 
 fn describe(mut values: Vec<f32>) -> Statistics {
@@ -122,14 +145,16 @@ fn describe(mut values: Vec<f32>) -> Statistics {
     let sum = |of: fn(f64) -> f64| values.iter().map(|&v| of(f64::from(v))).sum::<f64>() / count.max(1) as f64;
     let (mean, rms) = (sum(|v| v), sum(|v| v * v).sqrt());
     let zero = values.iter().filter(|&&v| v == 0.0).count() as u64;
-    values.sort_unstable_by(f32::total_cmp);
-    let (min, max) = (values.first().copied().unwrap_or(0.0), values.last().copied().unwrap_or(0.0));
+    let last = count.saturating_sub(1);
+    let ranks = PERCENT.map(|percent| ((percent / 100.0 * count as f64) as usize).min(last));
+    let places: Vec<usize> = [0].into_iter().chain(ranks).chain([last]).collect();
+    let found = if count == 0 { vec![0.0; places.len()] } else { at_places(&mut values, 0, &places) };
+    let (min, max, percentiles) = (found[0], found[found.len() - 1], &found[1..=PERCENT.len()]);
     let at = |limit: f32| values.iter().filter(|&&v| v == limit).count();
     // One value is no limit that data are clipped at.
     let at_limits = if min == max { 0 } else { at(min) + at(max) };
     let clipped = clipped(&values);
-    let at = |percent: f64| values.get((percent / 100.0 * count as f64) as usize).map_or(0.0, |&v| f64::from(v));
-    let (low, high) = match [at(PERCENT[0]), at(PERCENT[PERCENT.len() - 1])] {
+    let (low, high) = match [percentiles[0], percentiles[PERCENT.len() - 1]].map(f64::from) {
         [low, high] if low < 0.0 && high > 0.0 => (-high.max(-low), high.max(-low)),
         [low, high] if low < high => (low, high),
         [low, _] => (low - 0.5, low + 0.5),
@@ -148,7 +173,7 @@ fn describe(mut values: Vec<f32>) -> Statistics {
         max,
         mean,
         rms,
-        percentiles: PERCENT.iter().map(|&percent| [percent, at(percent)]).collect(),
+        percentiles: PERCENT.into_iter().zip(percentiles).map(|(percent, at)| [percent, f64::from(*at)]).collect(),
         zero,
         zero_traces: 0,
         non_finite: 0,
@@ -173,6 +198,25 @@ mod tests {
         assert_eq!(found.histogram.counts.iter().sum::<u64>(), 1001);
         let inner = &found.histogram.counts[1..COLUMNS - 1];
         assert!(inner.iter().all(|&c| (16..=17).contains(&c)), "{inner:?}");
+    }
+
+    #[test]
+    fn values_at_places_are_those_of_the_sorted_sequence() {
+        let mut state = 1u32;
+        for count in [1, 2, 3, 10, 57, 1000] {
+            let mut values: Vec<f32> = (0..count)
+                .map(|_| {
+                    state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                    ((state >> 24) as f32 - 128.0) / 8.0
+                })
+                .collect();
+            let mut sorted = values.clone();
+            sorted.sort_by(f32::total_cmp);
+            let places: Vec<usize> = [0, 0, count / 7, count / 3, count / 2, count / 2, count - 1].into();
+            let expected: Vec<f32> = places.iter().map(|place| sorted[*place]).collect();
+            assert_eq!(at_places(&mut values, 0, &places), expected);
+        }
+        assert_eq!(describe(Vec::new()).percentiles[4], [50.0, 0.0]);
     }
 
     #[test]
