@@ -7,11 +7,11 @@ use std::collections::VecDeque;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Plan {
     /// Inline and crossline index of its first trace.
-    pub low: [usize; 2],
+    pub(super) low: [usize; 2],
     /// Inlines and crosslines.
-    pub size: [usize; 2],
+    pub(super) size: [usize; 2],
     /// Whether a trace is covered, `[inline][crossline]`.
-    pub covers: Vec<bool>,
+    pub(super) covers: Vec<bool>,
 }
 
 /// Steps to the eight neighbours, one after another around.
@@ -21,7 +21,7 @@ const BESIDE: [usize; 4] = [1, 3, 5, 7];
 
 impl Plan {
     /// A plan around traces of a survey of `survey` traces, `margin` wider than they are.
-    pub fn around(traces: &[[usize; 2]], margin: usize, survey: [usize; 2]) -> Self {
+    pub(super) fn around(traces: &[[usize; 2]], margin: usize, survey: [usize; 2]) -> Self {
         let bounds = |axis: usize| {
             let all = || traces.iter().map(|trace| trace[axis]);
             let low = all().min().unwrap_or(0).saturating_sub(margin);
@@ -37,12 +37,12 @@ impl Plan {
     }
 
     /// The index of a trace of the plan.
-    pub fn cell(&self, [x, y]: [usize; 2]) -> usize {
+    pub(super) fn cell(&self, [x, y]: [usize; 2]) -> usize {
         (x - self.low[0]) * self.size[1] + y - self.low[1]
     }
 
     /// The inline and crossline index of a cell.
-    pub fn trace(&self, cell: usize) -> [usize; 2] {
+    pub(super) fn trace(&self, cell: usize) -> [usize; 2] {
         [self.low[0] + cell / self.size[1], self.low[1] + cell % self.size[1]]
     }
 
@@ -54,7 +54,7 @@ impl Plan {
     }
 
     /// The cells beside one, corners included.
-    pub fn around_cell(&self, cell: usize) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn around_cell(&self, cell: usize) -> impl Iterator<Item = usize> + '_ {
         AROUND.into_iter().filter_map(move |step| self.neighbour(cell, step))
     }
 
@@ -76,7 +76,7 @@ impl Plan {
 
     /// Steps from each cell to the closest that is not covered, 0 where the cell itself is not; those outside of the survey
     /// are not covered.
-    pub fn depths(&self, survey: [usize; 2]) -> Vec<usize> {
+    pub(super) fn depths(&self, survey: [usize; 2]) -> Vec<usize> {
         let mut steps = self.steps(|cell| !self.covers[cell]);
         for (cell, depth) in steps.iter_mut().enumerate() {
             let edge = self.trace(cell).into_iter().zip(survey).map(|(at, count)| (at + 1).min(count - at));
@@ -86,7 +86,7 @@ impl Plan {
     }
 
     /// The same with gaps of up to `2 reach` traces closed and with holes filled.
-    pub fn closed(self, reach: usize) -> Self {
+    pub(super) fn closed(self, reach: usize) -> Self {
         let grown = self.steps(|cell| self.covers[cell]);
         let kept = self.steps(|cell| grown[cell] > reach);
         let covers: Vec<bool> = kept.into_iter().map(|steps| steps > reach).collect();
@@ -114,7 +114,7 @@ impl Plan {
 
     /// Covers nothing but the largest part of what is left without its outermost trace, and what that touches. Where its rim
     /// would touch itself, in a corner or across a gap of one trace, it is closed.
-    pub fn whole(self) -> Self {
+    pub(super) fn whole(self) -> Self {
         let inner = self.steps(|cell| !self.covers[cell]);
         let mut part = vec![usize::MAX; self.covers.len()];
         let mut largest = (0, usize::MAX);
@@ -157,7 +157,7 @@ impl Plan {
 
     /// Values of the covered cells: those that are NaN are means of their neighbours, from the known ones inwards, then all
     /// are smoothed by the median and the mean of those around them.
-    pub fn filled(&self, mut values: Vec<f32>) -> Vec<f32> {
+    pub(super) fn filled(&self, mut values: Vec<f32>) -> Vec<f32> {
         loop {
             let missing = (0..values.len()).filter(|&cell| self.covers[cell] && values[cell].is_nan());
             let found: Vec<(usize, f32)> = missing
