@@ -1,13 +1,14 @@
 //! Isolated bodies: a strong event of limited extent that meets another one all around its rim.
 //!
-//! A flat spot ends where it meets the top of the gas above it, and the top of a build-up where it comes down to its base;
-//! beds run on. So a body is told by two patches: one that ends within the survey on all sides, and one above or below it
-//! from which it is farthest in its midst and closest at its rim, in every direction. Layers that thin towards one side,
-//! fragments of beds between faults and lenses of noise do not close all around. Of all pairs at one place the strongest
-//! is the body. Levels of time cannot draw it: each goes on beyond the rim, as a drape over the beds there.
+//! A flat spot ends where it meets the top of the gas above it, and the top of a build-up where it comes down to its
+//! base; beds run on. So a body is told by two patches: one that ends within the survey on all sides, and one above or
+//! below it from which it is farthest in its midst and closest at its rim, in every direction. Layers that thin
+//! towards one side, fragments of beds between faults and lenses of noise do not close all around, and a trough of
+//! beds below an erosion surface sags more than what lies over it bulges. Of all pairs at one place the strongest is
+//! the body. Levels of time cannot draw it: each goes on beyond the rim, as a drape over the beds there.
 //!
-//! Not told: bodies that reach the edge of the survey or a fault's zone along more than a tenth of their rim, whose event
-//! is broken into patches that each cover little of it, and those with one reflection alone.
+//! Not told: bodies that reach the edge of the survey or a fault's zone along more than a tenth of their rim, whose
+//! event is broken into patches that each cover little of it, and those with one reflection alone.
 
 mod plan;
 
@@ -248,7 +249,18 @@ impl Island {
             .filter(|at_rim| *at_rim <= MOST_IN_DIRECTION * midst)
             .count();
         let pairs = down.iter().map(|(cell, down)| [self.depth[*cell] as f32, down.abs()]);
-        closed >= LEAST_CLOSED && correlation(pairs) >= LEAST_CORRELATION
+        closed >= LEAST_CLOSED && correlation(pairs) >= LEAST_CORRELATION && self.bulges(down, deepest)
+    }
+
+    /// Whether the upper event rises more from the rim to the midst than the lower one falls: a mound, not a trough.
+    fn bulges(&self, down: &[(usize, f32)], deepest: f32) -> bool {
+        let middle = |is_counted: &dyn Fn(f32) -> bool| {
+            let counted = down.iter().filter(|(cell, _)| is_counted(self.depth[*cell] as f32));
+            median(counted.map(|(cell, down)| self.z[*cell] + 0.5 * down).collect())
+        };
+        let midst = middle(&|depth| depth >= MIDST * deepest);
+        let rim = middle(&|depth| depth >= 1.0 && depth <= RIM as f32);
+        midst.zip(rim).is_some_and(|(midst, rim)| midst <= rim)
     }
 
     /// The body between it and another event, on every trace of it.

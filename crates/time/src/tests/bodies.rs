@@ -139,3 +139,19 @@ fn a_bright_bed_a_wedge_and_noise_are_no_bodies() {
     });
     assert_eq!(bodies_of(&beds), []);
 }
+
+#[test]
+fn a_trough_of_beds_below_an_erosion_surface_is_no_body() {
+    // Beds sag by up to 24 samples below a level at 40; one of them is strong and ends there on all sides, as a lens does.
+    let strat = |x: f32, y: f32, z: f32| if z < 40.0 { z - 90.0 } else { z - dome(x, y) };
+    let mut all = volume(SIZE, strat);
+    noisy(&mut all);
+    each(&mut all, |x, y, trace| {
+        reflect(trace, 40.0, 4.0);
+        let bed = 28.0 + dome(x, y);
+        if bed > 40.0 {
+            reflect(trace, bed, -5.0);
+        }
+    });
+    assert_eq!(bodies_of(&all), []);
+}
