@@ -214,7 +214,8 @@ pub fn layers_by_time(project: &mut Project, layers: usize, progress: &Progress)
     }
     let chosen: Vec<f32> = levels.iter().map(|level| level.time).collect();
     let found = characters(&times.tau, &beside, &chosen);
-    drop((beside, times));
+    drop(beside);
+    drop(times);
     for (n, level) in levels.iter().enumerate() {
         let pick = PickByTime { level: TimeLevel::Chosen(level.time), horizon: format!("Level {}", n + 1) };
         project.apply(&Command::PickByTime(pick), progress)?;
