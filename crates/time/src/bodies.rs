@@ -4,8 +4,9 @@
 //! base; beds run on. So a body is told by two patches: one that ends within the survey on all sides, and one above or
 //! below it from which it is farthest in its midst and closest at its rim, in every direction. Layers that thin
 //! towards one side, fragments of beds between faults and lenses of noise do not close all around, and a trough of
-//! beds below an erosion surface sags more than what lies over it bulges. Of all pairs at one place the strongest is
-//! the body. Levels of time cannot draw it: each goes on beyond the rim, as a drape over the beds there.
+//! beds below an erosion surface sags more than what lies over it bulges. Of all pairs at one place the body is the
+//! one that is strongest for how far it closes. Levels of time cannot draw it: each goes on beyond the rim, as a drape
+//! over the beds there.
 //!
 //! Not told: bodies that reach the edge of the survey or a fault's zone along more than a tenth of their rim, whose
 //! event is broken into patches that each cover little of it, and those with one reflection alone.
@@ -152,20 +153,21 @@ fn strengths(hubs: &Hubs, volume: &Volume<f32>) -> Vec<f32> {
     hubs.means(&amplitudes).into_iter().map(|mean| mean.abs() / rms).collect()
 }
 
-/// The strongest body that a patch bounds, with the sum of the strengths of its events.
+/// The body that a patch bounds, with the strengths of its events together, as far as they close.
 fn body_of(hubs: &Hubs, hub: usize, strength: &[f32], volume: &Volume<f32>) -> Option<(f32, Body)> {
     let island = Island::of(hubs, hub, volume)?;
     let others = island.others(hubs, hub);
-    let stronger = |other: &&Other| strength[hub].max(strength[other.hub as usize]) >= LEAST_STRENGTH;
-    let best = others
+    let (evidence, best) = others
         .iter()
         .filter(|other| strength[other.hub as usize] >= LEAST_OTHER)
-        .filter(stronger)
-        .filter(|other| island.closes(&other.down))
-        .max_by(|a, b| strength[a.hub as usize].total_cmp(&strength[b.hub as usize]))?;
-    let strengths = [strength[hub], strength[best.hub as usize]];
-    let body = Body { columns: island.columns(&best.down), strength: strengths[0].max(strengths[1]) };
-    (!body.columns.is_empty()).then_some((strengths[0] + strengths[1], body))
+        .filter(|other| strength[hub].max(strength[other.hub as usize]) >= LEAST_STRENGTH)
+        .filter_map(|other| {
+            let closes = island.closes(&other.down)?;
+            Some((closes * (strength[hub] + strength[other.hub as usize]), other))
+        })
+        .max_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    let body = Body { columns: island.columns(&best.down), strength: strength[hub].max(strength[best.hub as usize]) };
+    (!body.columns.is_empty()).then_some((evidence, body))
 }
 
 impl Island {
@@ -219,20 +221,18 @@ impl Island {
         others.into_iter().filter(|(_, down)| lies_along(down)).map(|(hub, down)| Other { hub, down }).collect()
     }
 
-    /// Whether the distance to another event is greatest in the midst and least at the rim, in every direction.
-    fn closes(&self, down: &[(usize, f32)]) -> bool {
+    /// How far another event closes towards the rim, up to 1 where they meet; `None` where their distance is not greatest in
+    /// the midst and least at the rim, in every direction.
+    fn closes(&self, down: &[(usize, f32)]) -> Option<f32> {
         let deepest = self.depth.iter().copied().max().unwrap_or(0) as f32;
         let thickness = |is_counted: &dyn Fn(usize) -> bool| {
             median(down.iter().filter(|(cell, _)| is_counted(*cell)).map(|(_, down)| down.abs()).collect())
         };
         let is_rim = |cell: usize| (1..=RIM).contains(&self.depth[cell]);
-        let (Some(midst), Some(rim)) =
-            (thickness(&|cell| self.depth[cell] as f32 >= MIDST * deepest), thickness(&is_rim))
-        else {
-            return false;
-        };
+        let midst = thickness(&|cell| self.depth[cell] as f32 >= MIDST * deepest)?;
+        let rim = thickness(&is_rim)?;
         if midst < LEAST_THICKNESS || rim > MOST_AT_RIM * midst {
-            return false;
+            return None;
         }
         let covered = (0..self.depth.len()).filter(|&cell| self.plan.covers[cell]);
         let count = covered.clone().count() as f32;
@@ -249,7 +249,8 @@ impl Island {
             .filter(|at_rim| *at_rim <= MOST_IN_DIRECTION * midst)
             .count();
         let pairs = down.iter().map(|(cell, down)| [self.depth[*cell] as f32, down.abs()]);
-        closed >= LEAST_CLOSED && correlation(pairs) >= LEAST_CORRELATION && self.bulges(down, deepest)
+        let is_closed = closed >= LEAST_CLOSED && correlation(pairs) >= LEAST_CORRELATION && self.bulges(down, deepest);
+        is_closed.then_some(1.0 - rim / midst)
     }
 
     /// Whether the upper event rises more from the rim to the midst than the lower one falls: a mound, not a trough.

@@ -10,7 +10,7 @@ use crate::command::{
     AcceptFault, Command, ComputeTime, Extract, ImportVolume, OutlineBodies, PickByTime, ProposeFaults, SetLayer,
     TimeLevel, isolated,
 };
-use crate::document::{Document, Origin, Polarity};
+use crate::document::{Document, Polarity};
 use crate::error::ProjectError;
 use crate::folder::refuse_inside_project;
 use crate::interpretation::proposals;
@@ -138,9 +138,8 @@ pub fn run(
 
 /// What the boundaries are, and what patterns say.
 fn caption(document: &Document) -> String {
-    let has_bodies = document.horizons.iter().any(|horizon| horizon.origin == Origin::Outlined);
-    let bodies =
-        if has_bodies { " Bodies lie between two strong reflections that meet all around their rim." } else { "" };
+    let has_bodies = !document.outlined().is_empty();
+    let bodies = if has_bodies { " Bodies lie between two reflections that meet all around their rim." } else { "" };
     format!(
         "Boundaries are level surfaces of a geologic time that was computed from the reflections alone; patterns show how \
          strong and how continuous the reflections are, not which rock it is.{bodies}"

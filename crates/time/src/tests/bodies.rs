@@ -95,9 +95,11 @@ fn a_build_up_is_a_body_down_to_its_base() {
     let mut all = Volume::filled(SIZE, 0.0f32);
     each(&mut all, |x, y, trace| {
         let [top, base] = truth(x, y);
+        // A bed below it that is stronger than its base, and as far from it at the rim as in the midst.
+        reflect(trace, base + 13.0, 4.0);
         for (z, sample) in trace.iter_mut().enumerate() {
             let z = z as f32;
-            *sample = if z > top && z < base { 0.0 } else { 0.5 * beds(z - base) };
+            *sample += if z > top && z < base { 0.0 } else { 0.5 * beds(z - base) };
         }
         let is_mound = base - top > 1.0;
         reflect(trace, base, if is_mound { -2.5 } else { 3.0 });
