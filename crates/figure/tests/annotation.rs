@@ -75,6 +75,7 @@ impl Survey {
             source: SectionSource { data, raw: Some(&Self::raw()) },
             horizons: &[NamedColour { name: "H1".into(), colour: Colour::BLACK }],
             strata: &self.closed.stratigraphy.horizons,
+            outlined: &[],
             wells: &self.wells,
             faults: &["F1".to_owned()],
             fault_colours: &[],

@@ -69,6 +69,7 @@ fn made_of(
         source: SectionSource { data, raw: Some(&raw) },
         horizons: &horizons,
         strata: &model.stratigraphy().horizons,
+        outlined: &[],
         wells: &wells,
         faults: &["Northern boundary fault".to_owned()],
         fault_colours: &[],

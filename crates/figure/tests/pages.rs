@@ -57,6 +57,7 @@ fn made_of(
         source: SectionSource { data, raw: Some(&raw) },
         horizons: &horizons,
         strata: &model.stratigraphy().horizons,
+        outlined: &[],
         wells: &[],
         faults: &[],
         fault_colours: &[],

@@ -220,6 +220,11 @@ impl Hubs {
         self.starts[trace] as usize..self.starts[trace + 1] as usize
     }
 
+    /// The trace `x·crosslines + y` of a vertex.
+    pub(crate) fn trace_of(&self, v: u32) -> usize {
+        self.starts.partition_point(|start| *start <= v) - 1
+    }
+
     /// The vertices of the inline `x`.
     pub(crate) fn on_inline(&self, x: usize) -> Range<usize> {
         let ny = self.size[1];

@@ -31,11 +31,13 @@
 //! | beds laid flat, and where beds are missing | [`flattened`], [`rates`] |
 //! | slabs of a survey that does not fit into memory | [`Slabs`], [`JoinedSlabs`] |
 //! | levels that stand out | [`strongest_levels`], [`characters`] |
+//! | what no level draws: a flat spot, a build-up | [`Reflections::bodies`] |
 //!
 //! Space: voxels, x = inline index, y = crossline index, z = sample index, z down.
 //!
 //! Deliberately absent: files, projects, pictures, and the growing of candidates.
 
+mod bodies;
 mod claims;
 mod coherence;
 mod compute;
@@ -66,6 +68,7 @@ mod vectors;
 #[cfg(test)]
 mod tests;
 
+pub use bodies::{Body, Column};
 pub use compute::{GeologicTime, TimeSettings, geologic_time};
 pub use cuts::{Across, Cut};
 pub use error::TimeError;

@@ -59,8 +59,9 @@ pub(super) enum Action {
     /// Draw a block of a survey that nobody has interpreted, with layers of one geologic time
     #[command(after_help = "Example:\n  petroglyph illustrate survey.sgy block.png --layers 6\n\n\
                       It imports the survey into a new project beside the picture, extracts candidates, computes\n\
-                      geologic time and draws the strongest, most continuous levels. The picture says that it is\n\
-                      not interpreted.")]
+                      geologic time and draws the strongest, most continuous levels, and as bodies what reflects\n\
+                      strongly but ends on all sides: a flat spot, a build-up. The picture says that it is not\n\
+                      interpreted.")]
     Illustrate(IllustrateArgs),
     /// Make a synthetic survey with its interpretation and its truth
     #[command(after_help = "Example:\n  petroglyph synth out/synth --size 128x128x128 --seed 7 --snr 3")]

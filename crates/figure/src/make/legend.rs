@@ -230,11 +230,15 @@ impl Maker<'_> {
 
     /// The contacts of horizons that are seen, unconformities by their names.
     fn contacts(&self, seen: &Seen, plain: &Stroke, unconformity: &Stroke) -> Vec<LegendLine> {
-        let strata = || seen.horizons.iter().filter_map(|index| self.inputs.strata.get(*index));
-        let has_plain = strata().any(|horizon| horizon.contact == Contact::Conformable);
+        let strata = || seen.horizons.iter().filter_map(|index| Some((index, self.inputs.strata.get(*index)?)));
+        let has_plain = strata().any(|(_, horizon)| horizon.contact == Contact::Conformable);
         let mut lines = Vec::new();
         lines.extend(has_plain.then(|| LegendLine::new("Contact", GroupKind::Horizon, plain.clone())));
-        for horizon in strata() {
+        for (index, horizon) in strata() {
+            if self.inputs.outlined.contains(index) {
+                lines.push(LegendLine::new(&horizon.name, GroupKind::Horizon, plain.clone()));
+                continue;
+            }
             let (contact, stroke) = match horizon.contact {
                 Contact::Conformable => continue,
                 // That it is cut off can be seen.

@@ -57,6 +57,8 @@ pub struct FigureInputs<'a> {
     pub horizons: &'a [NamedColour],
     /// The same with what happens at each.
     pub strata: &'a [StratigraphicHorizon],
+    /// Which of these outline a body that the program found: how it came there nobody has said.
+    pub outlined: &'a [usize],
     /// Names of the faults.
     pub faults: &'a [String],
     /// The colours that they were given.

@@ -92,6 +92,7 @@ impl Fold {
             source: SectionSource { data: self.inputs(), raw: None },
             horizons: &horizons,
             strata: &self.model.stratigraphy().horizons,
+            outlined: &[],
             wells: &[],
             faults: &["F1".to_owned()],
             fault_colours: &[],

@@ -1,19 +1,20 @@
 //! `petroglyph illustrate`: a block diagram of a survey that nobody has interpreted.
 //!
 //! SEG-Y → import → candidates → faults where both sides match after a throw → geologic time → layers between its
-//! strongest, most continuous levels → patterns by the character of the reflections → a block with a legend. The project
-//! is kept, to go on from. A pattern does not claim a rock: the legend says how the reflections look, and the title says
-//! that nothing was interpreted.
+//! strongest, most continuous levels, and bodies where what reflects is isolated → patterns by the character of the
+//! reflections → a block with a legend. The project is kept, to go on from. A pattern does not claim a rock: the legend says
+//! how the reflections look, and the title says that nothing was interpreted.
 
 use crate::Project;
 use crate::command::{
-    AcceptFault, Command, ComputeTime, Extract, ImportVolume, PickByTime, ProposeFaults, SetLayer, TimeLevel,
+    AcceptFault, Command, ComputeTime, Extract, ImportVolume, OutlineBodies, PickByTime, ProposeFaults, SetLayer,
+    TimeLevel, isolated,
 };
-use crate::document::Polarity;
+use crate::document::{Document, Polarity};
 use crate::error::ProjectError;
 use crate::folder::refuse_inside_project;
 use crate::interpretation::proposals;
-use crate::interpretation::times::read_time;
+use crate::interpretation::times::Times;
 use crate::pictures::Device;
 use crate::pictures::figures::{self, FigureSettings, InterpreterView};
 use crate::pictures::scene;
@@ -22,6 +23,7 @@ use files::segy::SegyOptions;
 use interp::ExtractSettings;
 use page::FileFormat;
 use serde::Serialize;
+use std::borrow::Cow;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -114,11 +116,7 @@ pub fn run(
         scale_bar: true,
         annotate: vec![Annotation::Axes, Annotation::Provenance],
         title: Some(TITLE.to_owned()),
-        caption: Some(
-            "Boundaries are level surfaces of a geologic time that was computed from the reflections alone; patterns show \
-             how strong and how continuous the reflections are, not which rock it is."
-                .to_owned(),
-        ),
+        caption: Some(caption(document)),
         ..Figure::default()
     };
     let drawing = FigureSettings {
@@ -136,6 +134,16 @@ pub fn run(
         layers,
         seconds: start.elapsed().as_secs_f64(),
     })
+}
+
+/// What the boundaries are, and what patterns say.
+fn caption(document: &Document) -> String {
+    let has_bodies = !document.outlined().is_empty();
+    let bodies = if has_bodies { " Bodies lie between two reflections that meet all around their rim." } else { "" };
+    format!(
+        "Boundaries are level surfaces of a geologic time that was computed from the reflections alone; patterns show how \
+         strong and how continuous the reflections are, not which rock it is.{bodies}"
+    )
 }
 
 /// Everything up to the styles; returns the names of the layers.
@@ -158,12 +166,20 @@ fn build(
     layers_by_time(project, settings.layers, progress)
 }
 
+/// Most isolated bodies that are drawn.
+const MOST_BODIES: usize = 3;
+/// Samples above and below a body that its reflections take up.
+const BESIDE_BODY: f32 = 3.0;
+/// How a body looks: neither layered nor of a colour of the layers.
+const ISOLATED: (&str, &str) = ("strong, isolated", "plain");
+const BODY_COLOUR: [u8; 3] = [0xC8, 0x7A, 0x62];
+
 /// Number of layers where none is stated.
 pub const LAYERS: usize = 6;
 
-/// Gives a project with a volume and without horizons layers between levels of geologic time, and styles by the character
-/// of the reflections; what was extracted, the faults and geologic time are taken as they are where they exist. Returns the
-/// names of the layers. Each step can be undone.
+/// Gives a project with a volume and without horizons layers between levels of geologic time, outlines of isolated
+/// bodies, and styles by the character of the reflections; what was extracted, the faults and geologic time are taken as
+/// they are where they exist. Returns the names of the layers. Each step can be undone.
 ///
 /// # Errors
 /// No level of time stands out, data are damaged, or the user cancelled.
@@ -186,22 +202,32 @@ pub fn layers_by_time(project: &mut Project, layers: usize, progress: &Progress)
         let time = ComputeTime { name: "time".to_owned(), settings: TimeSettings::default(), memory_bytes: None };
         project.apply(&Command::Time(time), progress)?;
     }
-    let (tau, volume) = read_time(project.root(), project.document(), progress)?;
-    let levels = strongest_levels(&tau, &volume, layers.saturating_sub(1));
+    let times = Times::load(project.facts(), progress)?;
+    let bodies = isolated(&times, MOST_BODIES, project.document().frame()?);
+    // What reflects in a body is the body's: no level is drawn for it, nor does it count for the layers around it.
+    let mut beside = Cow::Borrowed(&times.amplitudes);
+    bodies.iter().for_each(|(body, _)| body.blank(beside.to_mut(), BESIDE_BODY));
+    let levels = strongest_levels(&times.tau, &beside, layers.saturating_sub(1));
     if levels.is_empty() {
         return Err(ProjectError::NoLevels);
     }
-    let times: Vec<f32> = levels.iter().map(|level| level.time).collect();
-    let found = characters(&tau, &volume, &times);
+    let chosen: Vec<f32> = levels.iter().map(|level| level.time).collect();
+    let found = characters(&times.tau, &beside, &chosen);
+    drop(beside);
+    drop(times);
     for (n, level) in levels.iter().enumerate() {
         let pick = PickByTime { level: TimeLevel::Chosen(level.time), horizon: format!("Level {}", n + 1) };
         project.apply(&Command::PickByTime(pick), progress)?;
     }
+    if !bodies.is_empty() {
+        let outlines = OutlineBodies { name: "Body".to_owned(), most: MOST_BODIES };
+        project.apply(&Command::OutlineBodies(outlines), progress)?;
+    }
+    let layered = found.iter().zip(COLOURS.into_iter().cycle()).map(|(character, colour)| (look(character), colour));
+    let looks = layered.chain(bodies.iter().map(|_| (ISOLATED, BODY_COLOUR)));
     let mut names = Vec::new();
-    for (n, (layer, character)) in project.document().layers().into_iter().zip(&found).enumerate() {
-        let (words, pattern) = look(character);
+    for (n, (layer, ((words, pattern), [r, g, b]))) in project.document().layers().into_iter().zip(looks).enumerate() {
         let name = format!("{}: {words}", n + 1);
-        let [r, g, b] = COLOURS[n % COLOURS.len()];
         let style = SetLayer {
             layer,
             name: Some(name.clone()),

@@ -19,6 +19,7 @@ mod layer;
 mod link;
 mod name;
 mod note;
+mod outline_bodies;
 mod parameterization;
 pub(crate) mod pick;
 mod pick_by_time;
@@ -47,6 +48,8 @@ pub use layer::{ResetLayer, SetLayer};
 pub use link::LinkVolume;
 pub use name::{Remove, Rename, SetColour};
 pub use note::AddNote;
+pub use outline_bodies::OutlineBodies;
+pub(crate) use outline_bodies::isolated;
 pub use parameterization::SetParameterization;
 pub use pick::{
     Climb, Move, MovePick, PickNode, PickNodes, Picked, RemovePick, ReplayPicks, Replayed, ReplayedPick, Unfit,
@@ -111,6 +114,8 @@ pub enum Command {
     PickByTime(PickByTime),
     /// Add a stack of horizons.
     StackHorizons(StackHorizons),
+    /// Add the outlines of isolated bodies.
+    OutlineBodies(OutlineBodies),
     /// Make several picks of one horizon.
     PickSeveral(PickNodes),
     /// Draw a line of a horizon, or track it from a place.
@@ -243,6 +248,7 @@ impl Command {
             Self::Time(change) => change.execute(draft, progress),
             Self::PickByTime(change) => change.execute(draft, progress),
             Self::StackHorizons(change) => change.execute(draft, progress),
+            Self::OutlineBodies(change) => change.execute(draft, progress),
             Self::ProposeFaults(change) => change.execute(draft, progress),
             Self::LinkVolume(change) => change.execute(draft, progress),
             Self::AddHorizon(change) => change.execute(draft, progress),

@@ -249,17 +249,35 @@ const SEED_OFF: f32 = 3.0;
 /// Nodes to either side over which a level of a picture is smoothed.
 const SMOOTHED: usize = 3;
 
-/// Replaces every depth by the median of those around it: steps stay, single spikes go.
+/// Replaces every depth by the median of those around it, each continued to its place along the slope there: steps stay,
+/// single spikes go, and a steep flank keeps its slope up to where it ends.
 fn smooth(sheet: &mut Sheet) {
     let [nu, nv] = sheet.grid.count;
+    let depth = &sheet.depth;
     let range = |at: usize, count: usize| at.saturating_sub(SMOOTHED)..(at + SMOOTHED + 1).min(count);
-    let median = |n: usize| {
-        let places = range(n / nv, nu).flat_map(|u| range(n % nv, nv).map(move |v| u * nv + v));
-        let mut near: Vec<f32> = places.map(|n| sheet.depth[n]).filter(|depth| depth.is_finite()).collect();
-        near.sort_by(f32::total_cmp);
-        if sheet.depth[n].is_finite() { near[near.len() / 2] } else { f32::NAN }
+    let smoothed = |n: usize| {
+        if !depth[n].is_finite() {
+            return f32::NAN;
+        }
+        let (u, v) = (n / nv, n % nv);
+        let (us, vs) = (range(u, nu), range(v, nv));
+        let places = || us.clone().flat_map(|u| vs.clone().map(move |v| (u, v)));
+        let step = |to: usize, from: usize| depth[to] - depth[from];
+        let along_u = median(places().filter(|(u, _)| u + 1 < us.end).map(|(u, v)| step((u + 1) * nv + v, u * nv + v)));
+        let along_v = median(places().filter(|(_, v)| v + 1 < vs.end).map(|(u, v)| step(u * nv + v + 1, u * nv + v)));
+        let [along_u, along_v] = [along_u, along_v].map(|slope| slope.unwrap_or(0.0));
+        let continued = places()
+            .map(|(i, j)| depth[i * nv + j] - along_u * (i as f32 - u as f32) - along_v * (j as f32 - v as f32));
+        median(continued).unwrap_or(depth[n])
     };
-    sheet.depth = (0..nu * nv).into_par_iter().map(median).collect();
+    sheet.depth = (0..nu * nv).into_par_iter().map(smoothed).collect();
+}
+
+/// The median of those that are finite; `None` without any.
+fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
+    let mut finite: Vec<f32> = values.filter(|value| value.is_finite()).collect();
+    finite.sort_by(f32::total_cmp);
+    finite.get(finite.len() / 2).copied()
 }
 
 #[cfg(test)]
@@ -270,6 +288,27 @@ mod tests {
     use crate::fixture::extracted;
     use ::time::TimeSettings;
     use survey::VerticalUnit;
+
+    #[test]
+    fn smoothing_takes_spikes_and_keeps_steps_and_the_slope_of_a_steep_flank_up_to_its_ends() {
+        let geometry = SurveyGeometry::regular([30, 20, 200], 25.0, 4.0, VerticalUnit::Metres);
+        // A flank of 12 m a trace with a step of 40 m, a hole, an end across it, and two spikes.
+        let truth = |u: usize, v: usize| 12.0 * u as f32 - 5.0 * v as f32 + if u < 14 { 0.0 } else { 40.0 };
+        let is_there = |u: usize, v: usize| u + v < 44 && !((4..7).contains(&u) && v < 6);
+        let depths = |u: usize, v: usize| match (u, v) {
+            (9, 11) | (20, 4) => truth(u, v) + 60.0,
+            _ if is_there(u, v) => truth(u, v),
+            _ => f32::NAN,
+        };
+        let all = (0..30).flat_map(|u| (0..20).map(move |v| depths(u, v))).collect();
+        let mut sheet = Sheet::new(NodeGrid::of_survey(&geometry), all, Quality::Filled);
+        smooth(&mut sheet);
+        for (u, v) in (0..30).flat_map(|u| (0..20).map(move |v| (u, v))) {
+            let found = sheet.depth[u * 20 + v];
+            assert_eq!(found.is_finite(), is_there(u, v));
+            assert!(!is_there(u, v) || (found - truth(u, v)).abs() < 0.01, "{u} {v}: {found}, not {}", truth(u, v));
+        }
+    }
 
     /// Whatever is drawn, a horizon, through a place of it.
     fn click(project: &mut Project, at: [f64; 3]) -> PickedByTime {

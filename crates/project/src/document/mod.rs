@@ -263,6 +263,12 @@ impl Document {
         Stratigraphy { horizons: self.horizons.iter().map(horizon).collect(), layer_names: self.layer_names.clone() }
     }
 
+    /// Which of the horizons outline a body that the program found.
+    pub fn outlined(&self) -> Vec<usize> {
+        let horizons = self.horizons.iter().enumerate();
+        horizons.filter(|(_, entry)| entry.origin == Origin::Outlined).map(|(index, _)| index).collect()
+    }
+
     /// The survey geometry.
     ///
     /// # Errors

@@ -66,6 +66,8 @@ pub enum Origin {
         /// Who chose it.
         chosen_by: Chooser,
     },
+    /// The outline of an isolated body that the program found along the reflections.
+    Outlined,
     /// A surface at a share of the thickness between two horizons.
     Share {
         /// The share, from the upper one.
@@ -221,6 +223,7 @@ impl fmt::Display for Origin {
             Self::Picked => f.write_str("assembled from picks"),
             Self::History => f.write_str("told by the geological history"),
             Self::Drawn => f.write_str("drawn"),
+            Self::Outlined => f.write_str("outline of an isolated body, which the program found"),
             Self::ByTime { seeds, .. } => {
                 f.write_str("geologic time through ")?;
                 if let Some([inline, crossline, z]) = seeds.first() {
@@ -262,7 +265,8 @@ impl fmt::Display for Uninterpreted {
 impl Document {
     /// Why it is no interpretation; `None`: a person chose one of its horizons at least.
     pub fn uninterpreted(&self) -> Option<Uninterpreted> {
-        let is_chosen = |origin: &Origin| !matches!(origin, Origin::Level { chosen_by: Chooser::Program, .. });
+        let is_chosen =
+            |origin: &Origin| !matches!(origin, Origin::Level { chosen_by: Chooser::Program, .. } | Origin::Outlined);
         match self.horizons.is_empty() {
             true => Some(Uninterpreted::RawData),
             false => {

@@ -223,20 +223,6 @@ pub(crate) fn time_volume(document: &Document) -> Result<&VolumeEntry, ProjectEr
     document.geologic_time().ok_or(ProjectError::NoTime)
 }
 
-/// Reads the newest geologic time and the amplitudes that it is of.
-///
-/// # Errors
-/// [`ProjectError::NoTime`], data are damaged, or the user cancelled.
-pub(crate) fn read_time(
-    root: &Path,
-    document: &Document,
-    progress: &Progress,
-) -> Result<(Volume<f32>, Volume<f32>), ProjectError> {
-    let frame = document.frame()?;
-    let tau = content::read_volume(root, time_volume(document)?, frame, progress)?;
-    Ok((tau, content::read_volume(root, document.amplitudes()?, frame, progress)?))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

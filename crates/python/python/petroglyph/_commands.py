@@ -322,6 +322,10 @@ class Commands:
         fields = _given(count=count, between=None if between is None else list(between), spacing=spacing, name=name)
         return self.apply({"stack-horizons": fields}, progress=progress)
 
+    def outline_bodies(self, name: str, *, most: int = 3, progress: Progress | None = None) -> Effect:
+        """Adds the outlines of isolated bodies (a flat spot, a build-up) as closed horizons, `name` with a number each."""
+        return self.apply({"outline-bodies": {"name": name, "most": most}}, progress=progress)
+
     def set_contact(self, horizon: str, contact: Contact) -> Effect:
         """States the contact of a horizon with its neighbours."""
         return self.apply({"set-contact": {"horizon": horizon, "contact": contact}})

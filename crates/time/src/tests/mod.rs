@@ -7,6 +7,7 @@ use crate::{
 use interp::{Extremum, GrowSettings, grow_surfaces};
 use survey::{Progress, Volume};
 
+mod bodies;
 mod chaos;
 mod interpretation;
 mod slabs;

@@ -173,6 +173,7 @@ fn page_of(
         source: SectionSource { data, raw: loaded.raw.as_ref() },
         horizons: &horizons,
         strata: &document.stratigraphy().horizons,
+        outlined: &document.outlined(),
         wells: &wells,
         faults: &document.faults.iter().map(|entry| entry.name.clone()).collect::<Vec<_>>(),
         fault_colours: &document.faults.iter().map(|entry| entry.colour).collect::<Vec<_>>(),
