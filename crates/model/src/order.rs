@@ -13,6 +13,7 @@ use super::settings::ModelSettings;
 use super::sheets::ExtendedSheet;
 use rayon::prelude::*;
 use survey::geometry::SurveyGeometry;
+use survey::horizon::Quality;
 
 /// Checks the picks and moves continued nodes that cross, `[horizon][block]`. `faults` tells where a moved
 /// node is inside its block.
@@ -25,8 +26,21 @@ pub(super) fn keep_order(
     settings: &ModelSettings,
     faults: &FaultNetwork,
 ) -> Result<Vec<ModelNote>, ModelError> {
-    let picked: Vec<Vec<Picks>> =
-        sheets.iter().map(|of| of.iter().map(|sheet| (&sheet.field.z[..], &sheet.known[..])).collect()).collect();
+    // What was stated past the end of the picks may be moved as what is continued here.
+    let fixed = |sheet: &ExtendedSheet| -> Vec<bool> {
+        sheet
+            .known
+            .iter()
+            .zip(&sheet.quality)
+            .map(|(known, quality)| *known && *quality != Quality::Extrapolated)
+            .collect()
+    };
+    let fixed: Vec<Vec<Vec<bool>>> = sheets.iter().map(|of| of.iter().map(fixed).collect()).collect();
+    let picked: Vec<Vec<Picks>> = sheets
+        .iter()
+        .zip(&fixed)
+        .map(|(of, fixed)| of.iter().zip(fixed).map(|(sheet, fixed)| (&sheet.field.z[..], &fixed[..])).collect())
+        .collect();
     let mut notes = check(geometry, lattice, rules, names, &picked, settings)?;
     let blocks = sheets.first().map_or(0, Vec::len);
     let pairs = pairs_in_order(rules, sheets.len());
@@ -41,11 +55,11 @@ pub(super) fn keep_order(
                 let mut moved = false;
                 for (pair, &(h, g)) in pairs.iter().enumerate() {
                     let (top, base) = (sheets[h][b].field.z[n], sheets[g][b].field.z[n]);
-                    let fixed = (sheets[h][b].known[n], sheets[g][b].known[n]);
-                    if top <= base || fixed == (true, true) {
+                    let both = (fixed[h][b][n], fixed[g][b][n]);
+                    if top <= base || both == (true, true) {
                         continue;
                     }
-                    let meet = match fixed {
+                    let meet = match both {
                         (true, false) => top,
                         (false, true) => base,
                         _ => 0.5 * (top + base),

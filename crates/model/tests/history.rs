@@ -2,8 +2,8 @@
 //! rock.
 
 use glam::{DVec3, Vec3};
-use history::{History, Place};
-use model::{ModelSettings, StructuralModel};
+use history::{FaultBlocks, History, Place};
+use model::{FaultNetwork, ModelSettings, StructuralModel};
 use survey::Progress;
 
 /// Shares of places of a block whose rock is that of the model's layer, and of those that have rock.
@@ -11,12 +11,15 @@ fn agreement(file: &str) -> Result<(f64, usize), String> {
     let path = format!("{}/../../examples/histories/{file}.toml", env!("CARGO_MANIFEST_DIR"));
     let history = History::from_toml(&std::fs::read_to_string(path).unwrap()).map_err(|error| error.to_string())?;
     let stage = history.last_stage();
-    let made = stage.interpretation();
+    let (geometry, faults) = (stage.geometry(), stage.faults());
+    let network = FaultNetwork::build(&geometry, &faults, &Progress::silent()).map_err(|error| error.to_string())?;
+    let at = |p: DVec3| network.block_at(geometry.voxel_from_world(p).as_vec3());
+    let made = stage.interpretation(&FaultBlocks { count: network.block_count(), at: &at });
     let model = StructuralModel::build(
         &made.geometry,
         &made.stratigraphy,
         &made.horizons,
-        &made.faults,
+        &faults,
         &ModelSettings::default(),
         &Progress::silent(),
     )
