@@ -13,7 +13,6 @@ use super::settings::ModelSettings;
 use super::sheets::ExtendedSheet;
 use rayon::prelude::*;
 use survey::geometry::SurveyGeometry;
-use survey::horizon::Quality;
 
 /// Checks the picks and moves continued nodes that cross, `[horizon][block]`. `faults` tells where a moved
 /// node is inside its block.
@@ -27,15 +26,8 @@ pub(super) fn keep_order(
     faults: &FaultNetwork,
 ) -> Result<Vec<ModelNote>, ModelError> {
     // What was stated past the end of the picks may be moved as what is continued here.
-    let fixed = |sheet: &ExtendedSheet| -> Vec<bool> {
-        sheet
-            .known
-            .iter()
-            .zip(&sheet.quality)
-            .map(|(known, quality)| *known && *quality != Quality::Extrapolated)
-            .collect()
-    };
-    let fixed: Vec<Vec<Vec<bool>>> = sheets.iter().map(|of| of.iter().map(fixed).collect()).collect();
+    let fixed: Vec<Vec<Vec<bool>>> =
+        sheets.iter().map(|of| of.iter().map(|sheet| sheet.fixed.clone()).collect()).collect();
     let picked: Vec<Vec<Picks>> = sheets
         .iter()
         .zip(&fixed)

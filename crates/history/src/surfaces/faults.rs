@@ -6,6 +6,7 @@
 
 use crate::deformation::Deformation;
 use crate::kinds::{Act, Fault as FaultAct};
+use crate::place::{Place, Rock};
 use crate::stage::{Known, Stage};
 use glam::{DVec2, DVec3};
 use std::collections::{BTreeSet, HashMap};
@@ -19,6 +20,11 @@ const RINGS: usize = 20;
 const AROUND: usize = 72;
 /// Halvings of a triangle's edge for the place where a fault ends.
 const HALVINGS: usize = 26;
+/// How far beyond the block's sides a fault is drawn, as a share of its longer edge: beyond its tip it would divide nothing,
+/// and sheets are continued that far by 0.12 of it in a model.
+const BEYOND: f64 = 0.15;
+/// So far above the ground a fault goes on, as a share of the block's height, so that its line on the ground is whole.
+const ABOVE_GROUND: f64 = 0.004;
 /// A piece of a fault whose area is a smaller share of the block's smallest face is left out.
 const SLIVER: f64 = 2e-3;
 
@@ -82,8 +88,21 @@ impl Stage<'_> {
         pieces
     }
 
-    /// Whether rock older than a fault lies on one of its sides, at a place on it.
+    /// Whether rock older than a fault lies on one of its sides, at a place on it, or would if the ground lay a little
+    /// higher.
     fn is_broken(&self, made: usize, p: DVec3) -> bool {
+        let around = self.around(made, p);
+        // What intrudes cuts the fault where it is drawn.
+        let is_older = |rock: &Rock| rock.act < made || !matches!(self.acts()[rock.act], Act::Beds(_));
+        if around.iter().any(|place| place.rock().is_some()) {
+            return around.iter().filter_map(Place::rock).any(is_older);
+        }
+        let below = self.around(made, p + DVec3::Z * ABOVE_GROUND * self.history().size().z);
+        below.iter().filter_map(Place::rock).any(is_older)
+    }
+
+    /// What lies on the sides of a fault at a place on it.
+    fn around(&self, made: usize, p: DVec3) -> Vec<Place> {
         let mut sides = self.sides_after(made, p);
         let q = self.before(made, &sides, p);
         let around: BTreeSet<i8> = match &self.acts()[made] {
@@ -92,12 +111,11 @@ impl Stage<'_> {
             }
             _ => BTreeSet::from([0, 1]),
         };
-        around.into_iter().any(|side| {
+        let on = |side: i8| {
             sides.0[made] = side;
-            let place = self.place_among(p, &Known { sides, from: made });
-            // What intrudes cuts the fault where it is drawn.
-            place.rock().is_some_and(|rock| rock.act < made || !matches!(self.acts()[rock.act], Act::Beds(_)))
-        })
+            self.place_among(p, &Known { sides, from: made })
+        };
+        around.into_iter().map(on).collect()
     }
 
     fn laid_out(&self, fault: &FaultAct) -> TriangleMesh {
@@ -148,9 +166,10 @@ impl Stage<'_> {
         pieces
     }
 
-    /// What lies in the block and just outside of its faces.
+    /// What lies in the block and around it, as far as a model continues its sheets.
     fn within(&self, mut mesh: TriangleMesh) -> TriangleMesh {
-        let (size, rim) = (self.history().size(), 0.02 * self.history().size());
+        let size = self.history().size();
+        let rim = (BEYOND * size.x.max(size.y)) * DVec3::new(1.0, 1.0, 0.0) + DVec3::Z * 0.02 * size.z;
         for axis in 0..3 {
             let low: Vec<f64> = mesh.vertices.iter().map(|p| -rim[axis] - p[axis]).collect();
             [mesh, _] = mesh.parted(&low);

@@ -1,6 +1,6 @@
 //! Names and rocks of the layers between surfaces.
 
-use super::{Node, Surface};
+use super::{Bedding, Node, Surface};
 use crate::kinds::Act;
 use crate::stage::Stage;
 
@@ -10,8 +10,8 @@ pub(super) struct Layers {
     pub names: Vec<String>,
     /// `None` for air.
     pub rocks: Vec<Option<String>>,
-    /// Whether the bed fills what was there, so that it is as level as its top.
-    pub fills: Vec<bool>,
+    /// How the bedding of each lies, where its boundaries do not say so.
+    pub bedding: Vec<Option<Bedding>>,
 }
 
 impl Stage<'_> {
@@ -23,16 +23,25 @@ impl Stage<'_> {
         unit.bed.is_some_and(|bed| bed == 0 && unit.act > 0 || is_cut(bed))
     }
 
+    /// How the bedding between two surfaces lies.
+    fn bedding(&self, above: Surface, below: Option<Surface>) -> Option<Bedding> {
+        match (above, below) {
+            _ if self.is_fill(above) => Some(Bedding::Level),
+            (Surface::Top(_), None | Some(Surface::Top(_))) => Some(Bedding::Copied),
+            _ => None,
+        }
+    }
+
     /// The layers between surfaces.
     pub(super) fn layers(&self, surfaces: &[Surface], columns: &[Vec<Node>]) -> Layers {
         let is_ground = |node: &Node| node.surface == Surface::Ground;
         let has_air = columns.iter().any(|column| column.iter().any(is_ground));
-        let Layers { mut names, mut rocks, mut fills } = Layers::default();
+        let Layers { mut names, mut rocks, mut bedding } = Layers::default();
         for n in 0..=surfaces.len() {
             let above = n.checked_sub(1).map(|n| surfaces[n]);
-            fills.push(above.is_some_and(|above| self.is_fill(above)));
             let is_bed = |surface: &&Surface| !matches!(surface, Surface::Body(_) | Surface::Baked(_));
             let below = surfaces[n..].iter().find(is_bed).copied();
+            bedding.push(above.and_then(|above| self.bedding(above, below)));
             let unit = match (above, below) {
                 (None, _) if has_air => None,
                 (Some(Surface::Body(unit) | Surface::Baked(unit)), _) => Some(unit),
@@ -54,7 +63,7 @@ impl Stage<'_> {
             names.push(name);
             rocks.push(Some(unit.rock.clone()));
         }
-        Layers { names, rocks, fills }
+        Layers { names, rocks, bedding }
     }
 
     /// The unit between two surfaces that follow one another.

@@ -4,7 +4,7 @@
 //!
 //! | surface | nodes | contact |
 //! |---|---|---|
-//! | `Top X` | where the top of bed X is left, under younger beds or air | conformable |
+//! | `Top X` | where the top of bed X is left, under younger beds or air | conformable; onlap if it was moved before they came |
 //! | `Base X`, or the erosion's name | where beds of a later event lie on older rock; also the base of a channel | erosional |
 //! | `Ground` | where rock lies under air | erosional |
 //! | a body's name | all of its outline, closed | intrusive |
@@ -63,10 +63,19 @@ pub struct Interpretation {
     pub horizons: Vec<Horizon>,
     /// The rock of each layer, youngest first; `None` for air.
     pub rocks: Vec<Option<String>>,
-    /// Whether each layer fills what lay below it, so that it is as level as its top.
-    pub fills: Vec<bool>,
+    /// How the bedding of each layer lies, youngest first, where its boundaries do not say so.
+    pub bedding: Vec<Option<Bedding>>,
     /// What is not in it, a sentence each.
     pub notes: Vec<String>,
+}
+
+/// How bedding lies between the top and the base of a layer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Bedding {
+    /// As the top: it was laid down level on what was there.
+    Level,
+    /// At the same share of the height between top and base along each vertical line.
+    Copied,
 }
 
 /// What a surface is.
@@ -130,7 +139,7 @@ impl Stage<'_> {
             })
             .collect();
         let surfaces = self.surfaces(&columns);
-        let Layers { names: layer_names, rocks, fills } = self.layers(&surfaces, &columns);
+        let Layers { names: layer_names, rocks, bedding } = self.layers(&surfaces, &columns);
         let mut notes = Vec::new();
         let flat: Vec<Surface> = surfaces.iter().copied().filter(|surface| self.is_map(*surface, &columns)).collect();
         let mut sheets = self.sheets(&flat, &grid, &columns, blocks).into_iter();
@@ -144,6 +153,7 @@ impl Stage<'_> {
         let named = |(surface, horizon): (&Surface, &Horizon)| StratigraphicHorizon {
             name: horizon.name.clone(),
             contact: match surface {
+                Surface::Top(unit) if self.is_lapped_on(*unit, &columns) => Contact::Onlap,
                 Surface::Top(_) => Contact::Conformable,
                 Surface::Ground | Surface::Base(_) | Surface::CutBase(_) => Contact::Erosional,
                 Surface::Body(unit) if self.is_laid(*unit) => Contact::Truncated,
@@ -154,7 +164,22 @@ impl Stage<'_> {
         if self.acts().iter().any(|act| matches!(act, Act::Metamorphism(_))) {
             notes.push("metamorphic rock is drawn as the rock that it was: it has no horizon".to_owned());
         }
-        Interpretation { geometry, stratigraphy, horizons, rocks, fills, notes }
+        Interpretation { geometry, stratigraphy, horizons, rocks, bedding, notes }
+    }
+
+    /// Whether beds of a later event lie on the top of a bed that was moved or worn down before.
+    fn is_lapped_on(&self, unit: usize, columns: &[Vec<Node>]) -> bool {
+        let made = self.history().units()[unit].act;
+        let is_still = |act: &Act| matches!(act, Act::Beds(_) | Act::Sea(_));
+        columns.iter().any(|column| {
+            let tops = column.iter().filter(|node| node.surface == Surface::Top(unit));
+            tops.into_iter().any(|top| {
+                column.iter().filter(|node| node.depth == top.depth).any(|node| match node.surface {
+                    Surface::Base(act) => act > made && !self.acts()[made..act].iter().all(is_still),
+                    _ => false,
+                })
+            })
+        })
     }
 
     fn unit(&self, rock: &Rock) -> &Unit {

@@ -20,6 +20,9 @@ const ASKED: [usize; 3] = [48, 48, 40];
 const HALVINGS: usize = 22;
 /// The first step away from where a surface is expected, as a share of the block's height.
 const STEP: f64 = 1.0 / 64.0;
+/// Nodes beyond each side of the block up to which sheets go: as far as a model of a lattice of [`super::CELLS`] cells
+/// continues what it is given.
+const BEYOND: usize = 16;
 /// How far above and below the block a surface is followed, in heights of the block.
 const FOLLOWED: [f64; 2] = [-0.95, 1.95];
 
@@ -40,6 +43,15 @@ impl BlockSides {
         }
         let most = counts.into_iter().max_by_key(|(sides, count)| (*count, *sides));
         most.map_or_else(Sides::default, |(sides, _)| sides)
+    }
+}
+
+/// The grid with some more nodes on each side.
+fn widened(grid: &NodeGrid) -> NodeGrid {
+    NodeGrid {
+        origin: grid.world_at(DVec2::splat(-(BEYOND as f64))),
+        count: grid.count.map(|count| count + 2 * BEYOND),
+        ..*grid
     }
 }
 
@@ -156,17 +168,24 @@ impl Stage<'_> {
     }
 
     fn sheet(&self, surface: Surface, block: usize, sides: &Sides, grid: &NodeGrid, columns: &[Vec<Node>]) -> Sheet {
-        let [nu, nv] = grid.count;
-        let mut depths = vec![f64::NAN; columns.len()];
-        let mut quality = vec![Quality::Extrapolated; columns.len()];
+        let (wide, [_, inner]) = (widened(grid), grid.count);
+        let [nu, nv] = wide.count;
+        let mut depths = vec![f64::NAN; nu * nv];
+        let mut quality = vec![Quality::Extrapolated; nu * nv];
+        // What the vertical line through a node met, if it lies over the block.
+        let column = |u: usize, v: usize| {
+            let (u, v) = (u.checked_sub(BEYOND)?, v.checked_sub(BEYOND)?);
+            if v < inner { columns.get(u * inner + v) } else { None }
+        };
         let mut of_row = 0.5 * self.history().size().z;
         for u in 0..nu {
             let mut expected = of_row;
             for v in 0..nv {
                 let n = u * nv + v;
-                let met = columns[n].iter().find(|node| node.surface == surface && node.block == block);
+                let nodes = column(u, v).map_or(&[][..], Vec::as_slice);
+                let met = nodes.iter().find(|node| node.surface == surface && node.block == block);
                 let from = met.map_or(expected, |node| node.depth);
-                let map = grid.world_at(DVec2::new(u as f64, v as f64));
+                let map = wide.world_at(DVec2::new(u as f64, v as f64));
                 let Some(depth) = self.depth_of(surface, sides, map, from) else {
                     quality[n] = Quality::Hole;
                     continue;
@@ -180,7 +199,7 @@ impl Stage<'_> {
                 }
             }
         }
-        Sheet { block: None, grid: *grid, depth: depths.into_iter().map(|depth| depth as f32).collect(), quality }
+        Sheet { block: None, grid: wide, depth: depths.into_iter().map(|depth| depth as f32).collect(), quality }
     }
 }
 
