@@ -53,6 +53,21 @@ enum State {
     Rock { unit: usize, altered: Option<usize>, act: usize, ijk: DVec3 },
 }
 
+/// Sides of faults on which a place is taken to lie, wherever it is, so that rock is continued past them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Known {
+    /// The sides.
+    pub sides: Sides,
+    /// Of this act and all after it; of those before, the side is the one on which the place lies.
+    pub from: usize,
+}
+
+impl Default for Known {
+    fn default() -> Self {
+        Self { sides: Sides::default(), from: usize::MAX }
+    }
+}
+
 impl<'h> Stage<'h> {
     /// After `progress` events: whole ones, and the share of the next one.
     pub(crate) fn new(history: &'h History, progress: f64) -> Self {
@@ -102,8 +117,13 @@ impl<'h> Stage<'h> {
 
     /// What is at a place, m east, north and down from the block's south-west corner at depth 0.
     pub fn place(&self, p: DVec3) -> Place {
+        self.place_among(p, &Known::default())
+    }
+
+    /// What would be at a place if it lay on the sides of faults that are known.
+    pub(crate) fn place_among(&self, p: DVec3, known: &Known) -> Place {
         let mut sides = Sides::default();
-        match self.state(self.acts.len(), p, &mut sides) {
+        match self.state(self.acts.len(), p, (known, &mut sides)) {
             State::Air => Place::Air,
             State::Water => Place::Water,
             State::Rock { unit, altered, act, ijk } => {
@@ -113,12 +133,18 @@ impl<'h> Stage<'h> {
         }
     }
 
-    fn state(&self, count: usize, p: DVec3, sides: &mut Sides) -> State {
+    /// Whether there would be rock at a place just after act `act`, on the sides of faults that are known.
+    pub(crate) fn is_rock_after(&self, act: usize, p: DVec3, known: &Known) -> bool {
+        matches!(self.state(act + 1, p, (known, &mut Sides::default())), State::Rock { .. })
+    }
+
+    /// What is at a place after `count` acts, and the sides on which it lies.
+    fn state(&self, count: usize, p: DVec3, (known, sides): (&Known, &mut Sides)) -> State {
         let Some(act) = count.checked_sub(1) else { return State::Air };
         let unit = |of: UnitOf| self.history.unit_of(act, of);
         let made = |of: UnitOf, ijk: DVec3| State::Rock { unit: unit(of), altered: None, act, ijk };
         match &self.acts[act] {
-            Act::Beds(beds) => match (self.state(act, p, sides), beds.at(p)) {
+            Act::Beds(beds) => match (self.state(act, p, (known, sides)), beds.at(p)) {
                 (State::Air | State::Water, Some(found)) => {
                     made(UnitOf::Bed { bed: found.bed, is_far: found.is_far }, p.with_z(found.k))
                 }
@@ -126,19 +152,19 @@ impl<'h> Stage<'h> {
             },
             Act::Erosion(erosion) if erosion.takes(p) => State::Air,
             Act::Terrain(terrain) if terrain.takes(p) => State::Air,
-            Act::Erosion(_) | Act::Terrain(_) => self.state(act, p, sides),
-            Act::Sea(sea) => match self.state(act, p, sides) {
+            Act::Erosion(_) | Act::Terrain(_) => self.state(act, p, (known, sides)),
+            Act::Sea(sea) => match self.state(act, p, (known, sides)) {
                 State::Air | State::Water if p.z >= sea.level_m => State::Water,
                 State::Water => State::Air,
                 older => older,
             },
-            Act::Metamorphism(change) => match self.state(act, p, sides) {
+            Act::Metamorphism(change) => match self.state(act, p, (known, sides)) {
                 State::Rock { unit: of, act, ijk, .. } if change.changes(p) => {
                     State::Rock { unit: of, altered: Some(unit(UnitOf::Altered)), act, ijk }
                 }
                 older => older,
             },
-            Act::Body(body) => match (self.state(act, p, sides), body.within(p)) {
+            Act::Body(body) => match (self.state(act, p, (known, sides)), body.within(p)) {
                 (State::Rock { .. }, Some(k)) => made(UnitOf::Body, p.with_z(k)),
                 (State::Rock { unit: of, act, ijk, .. }, None) if body.bakes(p) => {
                     State::Rock { unit: of, altered: Some(unit(UnitOf::Altered)), act, ijk }
@@ -146,7 +172,7 @@ impl<'h> Stage<'h> {
                 (older, _) => older,
             },
             Act::Volcano(volcano) => {
-                let older = self.state(act, p, sides);
+                let older = self.state(act, p, (known, sides));
                 match volcano.within(p, !matches!(older, State::Rock { .. })) {
                     Some(InVolcano::Pipe(below)) => made(UnitOf::Body, p.with_z(-below)),
                     Some(InVolcano::Cone { is_ash: false, k }) => made(UnitOf::Body, p.with_z(k)),
@@ -155,10 +181,10 @@ impl<'h> Stage<'h> {
                 }
             }
             moves => {
-                let Some(map) = moves.deformation() else { return self.state(act, p, sides) };
-                let side = map.side(p);
+                let Some(map) = moves.deformation() else { return self.state(act, p, (known, sides)) };
+                let side = if act >= known.from { known.sides.0[act] } else { map.side(p) };
                 sides.0[act] = side;
-                let older = self.state(act, map.undo(p, side), sides);
+                let older = self.state(act, map.undo(p, side), (known, sides));
                 match (&older, self.intrudes(moves, p)) {
                     (State::Rock { .. }, Some(k)) => made(UnitOf::Body, p.with_z(k)),
                     _ => older,

@@ -127,7 +127,8 @@ impl<'a> Native<'a> {
                     let node = DVec2::new((n / grid.count[1]) as f64, (n % grid.count[1]) as f64);
                     let voxel = geometry.voxel_from_world(grid.world_at(node).extend(0.0)).as_vec3();
                     *block = faults.block_at(voxel.truncate().extend(z[n]));
-                    count[usize::from(*block)] += 1;
+                    // What was continued past a fault does not say in which block a sheet lies.
+                    count[usize::from(*block)] += usize::from(sheet.quality[n] != Quality::Extrapolated);
                 }
             }
             if let Some(given) = sheet.block {

@@ -25,8 +25,14 @@ pub(super) fn keep_order(
     settings: &ModelSettings,
     faults: &FaultNetwork,
 ) -> Result<Vec<ModelNote>, ModelError> {
-    let picked: Vec<Vec<Picks>> =
-        sheets.iter().map(|of| of.iter().map(|sheet| (&sheet.field.z[..], &sheet.known[..])).collect()).collect();
+    // What was stated past the end of the picks may be moved as what is continued here.
+    let fixed: Vec<Vec<Vec<bool>>> =
+        sheets.iter().map(|of| of.iter().map(|sheet| sheet.fixed.clone()).collect()).collect();
+    let picked: Vec<Vec<Picks>> = sheets
+        .iter()
+        .zip(&fixed)
+        .map(|(of, fixed)| of.iter().zip(fixed).map(|(sheet, fixed)| (&sheet.field.z[..], &fixed[..])).collect())
+        .collect();
     let mut notes = check(geometry, lattice, rules, names, &picked, settings)?;
     let blocks = sheets.first().map_or(0, Vec::len);
     let pairs = pairs_in_order(rules, sheets.len());
@@ -41,11 +47,11 @@ pub(super) fn keep_order(
                 let mut moved = false;
                 for (pair, &(h, g)) in pairs.iter().enumerate() {
                     let (top, base) = (sheets[h][b].field.z[n], sheets[g][b].field.z[n]);
-                    let fixed = (sheets[h][b].known[n], sheets[g][b].known[n]);
-                    if top <= base || fixed == (true, true) {
+                    let both = (fixed[h][b][n], fixed[g][b][n]);
+                    if top <= base || both == (true, true) {
                         continue;
                     }
-                    let meet = match fixed {
+                    let meet = match both {
                         (true, false) => top,
                         (false, true) => base,
                         _ => 0.5 * (top + base),

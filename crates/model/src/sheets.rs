@@ -35,6 +35,8 @@ pub(super) struct ExtendedSheet {
     pub quality: Vec<Quality>,
     /// Which nodes are data, its own or shared.
     pub known: Vec<bool>,
+    /// Which of these may not be moved, since they were not extrapolated before they were given.
+    pub fixed: Vec<bool>,
     /// Number of its own nodes.
     pub own: usize,
 }
@@ -43,7 +45,7 @@ impl ExtendedSheet {
     /// The topmost part of a surface of any shape.
     pub(crate) fn of_level(lattice: MarginLattice, field: HeightField, own: usize) -> Self {
         let count = lattice.len();
-        Self { field, quality: vec![Quality::Picked; count], known: vec![true; count], own }
+        Self { field, quality: vec![Quality::Picked; count], known: vec![true; count], fixed: vec![true; count], own }
     }
 
     /// Which nodes are data or within a few nodes of it.
@@ -134,7 +136,13 @@ pub(super) fn extend_all(
             progress.check()?;
             let (field, by) = place(lattice, &sheets, &present, h, b, &wholes[h]);
             let quality = vec![Quality::Extrapolated; lattice.len()];
-            sheets[h][b] = Some(ExtendedSheet { field, quality, known: vec![false; lattice.len()], own: 0 });
+            sheets[h][b] = Some(ExtendedSheet {
+                field,
+                quality,
+                known: vec![false; lattice.len()],
+                fixed: vec![false; lattice.len()],
+                own: 0,
+            });
             notes.push(ModelNote::Placed { horizon: names[h].to_owned(), block: b as u16, by });
         }
     }
@@ -190,6 +198,12 @@ impl BlockPicks {
         (known.iter().filter(|&&k| k).count() >= fewest).then_some(Self { z, quality, known, own })
     }
 
+    /// Which nodes were picked, or computed between picks, rather than stated past the end of them.
+    pub(super) fn fixed(&self) -> Vec<bool> {
+        let known = self.known.iter().zip(&self.quality);
+        known.map(|(known, quality)| *known && *quality != Quality::Extrapolated).collect()
+    }
+
     /// How many nodes a block needs at least.
     pub(super) fn fewest(faults: &FaultNetwork, settings: &ModelSettings) -> usize {
         if faults.block_count() == 1 { 1 } else { settings.fewest_nodes.max(1) }
@@ -205,13 +219,21 @@ fn extend_one(
     (extension, window): (&Extension, Window),
     fewest: usize,
 ) -> Option<ExtendedSheet> {
-    let BlockPicks { mut z, mut quality, known, own } = BlockPicks::of(lattice, nodes, faults, block, fewest)?;
+    let picks = BlockPicks::of(lattice, nodes, faults, block, fewest)?;
+    let fixed = picks.fixed();
+    let BlockPicks { mut z, mut quality, known, own } = picks;
     // Among many blocks it is continued once, when it is joined with the others.
     if !faults.has_many_blocks() {
         window.extend(extension, lattice.size, &mut z)?;
     }
     grade(lattice.size, &mut quality);
-    Some(ExtendedSheet { field: HeightField { origin: lattice.origin, size: lattice.size, z }, quality, known, own })
+    Some(ExtendedSheet {
+        field: HeightField { origin: lattice.origin, size: lattice.size, z },
+        quality,
+        known,
+        fixed,
+        own,
+    })
 }
 
 /// Continues the sheets of one horizon as one surface wherever their blocks meet beyond the tips of all faults between

@@ -61,6 +61,17 @@ fn is_illustrated(block: &BlockPart) -> bool {
     has_blend && block.scene.media.faces != Faces::None
 }
 
+/// The layers without those that are a sliver above a layer of the same look, and called so ("Above Sand" on "Sand").
+fn told_apart(layers: Vec<LayerStyle>) -> Vec<LayerStyle> {
+    let is_same = |above: &LayerStyle, below: &LayerStyle| {
+        above.layer.strip_prefix("Above ").is_some_and(|of| of == below.layer)
+            && LayerStyle { layer: String::new(), ..above.clone() }
+                == LayerStyle { layer: String::new(), ..below.clone() }
+    };
+    let is_kept = |layer: &LayerStyle| !layers.iter().any(|below| is_same(layer, below));
+    layers.iter().filter(|layer| is_kept(layer)).cloned().collect()
+}
+
 /// Whether a place lies in the part of a section that is seen.
 fn is_seen(st: DVec2, extent: DVec2, zoom: Zoom) -> bool {
     let reach = 0.5 / zoom.factor.max(1.0) + 1e-9;
@@ -137,7 +148,9 @@ impl Maker<'_> {
             false => self
                 .water()
                 .into_iter()
-                .chain(layers.into_iter().filter_map(|layer| self.inputs.layers.get(layer).cloned()))
+                .chain(told_apart(
+                    layers.into_iter().filter_map(|layer| self.inputs.layers.get(layer).cloned()).collect(),
+                ))
                 .collect(),
         };
         let named = horizons.into_iter().filter_map(|horizon| self.inputs.horizons.get(horizon).cloned());

@@ -1,22 +1,50 @@
 //! Names and rocks of the layers between surfaces.
 
-use super::{Node, Surface};
+use super::{Bedding, Node, Surface};
 use crate::kinds::Act;
 use crate::stage::Stage;
 
+/// Layers, youngest first.
+#[derive(Default)]
+pub(super) struct Layers {
+    pub names: Vec<String>,
+    /// `None` for air.
+    pub rocks: Vec<Option<String>>,
+    /// How the bedding of each lies, where its boundaries do not say so.
+    pub bedding: Vec<Option<Bedding>>,
+}
+
 impl Stage<'_> {
-    /// Of each layer, youngest first: its name and its rock, `None` for air.
-    pub(super) fn layers(&self, surfaces: &[Surface], columns: &[Vec<Node>]) -> (Vec<String>, Vec<Option<String>>) {
+    /// Whether the bed below a surface fills what lies below it: the lowest of an event over older rock, or a channel.
+    fn is_fill(&self, above: Surface) -> bool {
+        let Surface::Top(unit) = above else { return false };
+        let unit = &self.history().units()[unit];
+        let is_cut = |bed: usize| matches!(&self.acts()[unit.act], Act::Beds(beds) if beds.beds[bed].is_cut());
+        unit.bed.is_some_and(|bed| bed == 0 && unit.act > 0 || is_cut(bed))
+    }
+
+    /// How the bedding between two surfaces lies.
+    fn bedding(&self, above: Surface, below: Option<Surface>) -> Option<Bedding> {
+        match (above, below) {
+            _ if self.is_fill(above) => Some(Bedding::Level),
+            (Surface::Top(_), None | Some(Surface::Top(_))) => Some(Bedding::Copied),
+            _ => None,
+        }
+    }
+
+    /// The layers between surfaces.
+    pub(super) fn layers(&self, surfaces: &[Surface], columns: &[Vec<Node>]) -> Layers {
         let is_ground = |node: &Node| node.surface == Surface::Ground;
         let has_air = columns.iter().any(|column| column.iter().any(is_ground));
-        let (mut names, mut rocks): (Vec<String>, Vec<Option<String>>) = (Vec::new(), Vec::new());
+        let Layers { mut names, mut rocks, mut bedding } = Layers::default();
         for n in 0..=surfaces.len() {
             let above = n.checked_sub(1).map(|n| surfaces[n]);
-            let is_bed = |surface: &&Surface| !matches!(surface, Surface::Body(_));
+            let is_bed = |surface: &&Surface| !matches!(surface, Surface::Body(_) | Surface::Baked(_));
             let below = surfaces[n..].iter().find(is_bed).copied();
+            bedding.push(above.and_then(|above| self.bedding(above, below)));
             let unit = match (above, below) {
                 (None, _) if has_air => None,
-                (Some(Surface::Body(unit)), _) => Some(unit),
+                (Some(Surface::Body(unit) | Surface::Baked(unit)), _) => Some(unit),
                 _ => self.between(above, below),
             };
             let Some(unit) = unit.map(|unit| &self.history().units()[unit]) else {
@@ -26,7 +54,7 @@ impl Stage<'_> {
             };
             // Above the top of the youngest bed there is hardly anything; it looks like the bed.
             let name = if names.contains(&unit.name) { format!("Above {}", unit.name) } else { unit.name.clone() };
-            let is_body = matches!(above, Some(Surface::Body(_)));
+            let is_body = matches!(above, Some(Surface::Body(_) | Surface::Baked(_)));
             let is_its_top =
                 |below: Surface| matches!(below, Surface::Top(top) if self.history().units()[top] == *unit);
             let is_upper = !is_body && below.is_some_and(is_its_top);
@@ -35,7 +63,7 @@ impl Stage<'_> {
             names.push(name);
             rocks.push(Some(unit.rock.clone()));
         }
-        (names, rocks)
+        Layers { names, rocks, bedding }
     }
 
     /// The unit between two surfaces that follow one another.

@@ -113,16 +113,39 @@ impl Stage<'_> {
         (0..lattice.count.iter().product::<usize>()).into_par_iter().any(|n| self.is_of(lattice.place(n), unit))
     }
 
+    /// Whether rock became that of a unit around a body, by its heat.
+    pub(super) fn is_baked(&self, unit: usize) -> bool {
+        let act = self.history().units()[unit].act;
+        let lattice = Lattice::new(self.history().size(), 0);
+        let is_baked = |p: DVec3| self.place(p).rock().is_some_and(|rock| rock.altered == Some(unit));
+        matches!(self.acts()[act], Act::Body(_))
+            && (0..lattice.count.iter().product::<usize>()).into_par_iter().any(|n| is_baked(lattice.place(n)))
+    }
+
+    /// The closed outline of a body and of what it baked.
+    pub(super) fn baked_mesh(&self, unit: usize) -> TriangleMesh {
+        let act = self.history().units()[unit].act;
+        self.outline(|p| {
+            let place = self.place(p);
+            place.rock().is_some_and(|rock| rock.altered == Some(unit) || rock.act == act)
+        })
+    }
+
     /// The closed outline of a body, just outside of the block's faces where it goes on there.
     pub(super) fn body_mesh(&self, unit: usize) -> TriangleMesh {
         if let Some(laid) = self.laid_outline(self.history().units()[unit].act) {
             return laid;
         }
+        self.outline(|p| self.is_of(p, unit))
+    }
+
+    /// The closed outline of what is in the block, just outside of its faces.
+    fn outline(&self, is_in: impl Fn(DVec3) -> bool + Sync) -> TriangleMesh {
         let (lattice, size) = (Lattice::new(self.history().size(), 1), self.history().size());
         let rim = 0.4 * lattice.step;
         lattice.cut(|p| {
             let is_near = p.cmpge(-rim).all() && p.cmple(size + rim).all();
-            Some(is_near && self.is_of(p.clamp(DVec3::ZERO, size), unit))
+            Some(is_near && is_in(p.clamp(DVec3::ZERO, size)))
         })
     }
 
@@ -138,7 +161,7 @@ impl Stage<'_> {
         for sides in self.blocks(&lattice, act) {
             let rock = Rock { unit, altered: None, act, ijk: DVec3::ZERO, sides };
             let part = lattice.cut(|p| {
-                if self.sides_of(act, p) != sides {
+                if self.sides_after(act, p) != sides {
                     return None;
                 }
                 let q = self.before(act, &rock.sides, p);
@@ -152,10 +175,15 @@ impl Stage<'_> {
     }
 
     /// The sides of a place for rock of an act.
-    fn sides_of(&self, act: usize, p: DVec3) -> Sides {
+    pub(super) fn sides_after(&self, act: usize, p: DVec3) -> Sides {
+        self.sides_since(act + 1, p)
+    }
+
+    /// The sides of a place, of act `first` and all later ones.
+    pub(super) fn sides_since(&self, first: usize, p: DVec3) -> Sides {
         let mut sides = Sides::default();
         let mut q = p;
-        for (n, act) in self.acts().iter().enumerate().skip(act + 1).rev() {
+        for (n, act) in self.acts().iter().enumerate().skip(first).rev() {
             if let Some(map) = act.deformation() {
                 sides.0[n] = map.side(q);
                 q = map.undo(q, sides.0[n]);
@@ -167,7 +195,7 @@ impl Stage<'_> {
     /// All blocks of rock of an act.
     fn blocks(&self, lattice: &Lattice, act: usize) -> Vec<Sides> {
         let total = lattice.count.iter().product::<usize>();
-        let found = (0..total).into_par_iter().step_by(5).map(|n| self.sides_of(act, lattice.place(n)));
+        let found = (0..total).into_par_iter().step_by(5).map(|n| self.sides_after(act, lattice.place(n)));
         let mut found: Vec<Sides> = found.collect();
         found.sort_unstable();
         found.dedup();

@@ -4,37 +4,55 @@
 //!
 //! | surface | nodes | contact |
 //! |---|---|---|
-//! | `Top X` | where the top of bed X is left, under younger beds or air | conformable |
+//! | `Top X` | where the top of bed X is left, under younger beds or air | conformable; onlap if it was moved before they came |
 //! | `Base X`, or the erosion's name | where beds of a later event lie on older rock; also the base of a channel | erosional |
 //! | `Ground` | where rock lies under air | erosional |
 //! | a body's name | all of its outline, closed | intrusive |
+//! | a baked rock's name | the outline of the body and what it baked, closed | intrusive |
 //!
-//! A surface that has one depth at each place of each fault block is a sheet for each block; others are triangles. A surface
-//! that is everywhere the top of a bed is that top and nothing else.
+//! A surface that has one depth at each place of each fault block is a sheet for each block ([`sheets`]); others are
+//! triangles. A surface that is everywhere the top of a bed is that top and nothing else.
 
 mod faults;
 mod layers;
 mod mesh;
 mod outlines;
+mod sheets;
 
 use crate::history::Unit;
 use crate::kinds::{Act, Beds};
 use crate::place::{Place, Rock, Sides};
 use crate::stage::Stage;
 use glam::{DVec2, DVec3};
+use layers::Layers;
 use rayon::prelude::*;
-use std::collections::{BTreeMap, BTreeSet};
-use survey::{
-    Contact, Fault, Horizon, NodeGrid, Quality, Sheet, StratigraphicHorizon, Stratigraphy, SurveyGeometry, VerticalUnit,
-};
+use std::collections::BTreeSet;
+use survey::{Contact, Horizon, NodeGrid, StratigraphicHorizon, Stratigraphy, SurveyGeometry, VerticalUnit};
 
 /// Cells of the lattice along the block's longer edge, and down.
 const CELLS: f64 = 128.0;
 const CELLS_DOWN: f64 = 128.0;
 /// Within so many metres of the top of a bed a boundary is this top.
 const AT_TOP_M: f64 = 0.01;
+/// So near a fault a boundary is the fault, m.
+const ON_FAULT_M: f64 = 0.005;
 
-/// Horizons, faults and layers of a stage.
+/// The fault blocks of a model of the stage's faults.
+pub struct FaultBlocks<'a> {
+    /// How many there are.
+    pub count: usize,
+    /// In which of them a place lies, m.
+    pub at: &'a (dyn Fn(DVec3) -> u16 + Sync),
+}
+
+impl FaultBlocks<'_> {
+    /// One block: a model without faults.
+    pub fn whole() -> Self {
+        Self { count: 1, at: &|_| 0 }
+    }
+}
+
+/// Horizons and layers of a stage.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interpretation {
     /// The lattice: from corner to corner of the block, in m.
@@ -43,12 +61,21 @@ pub struct Interpretation {
     pub stratigraphy: Stratigraphy,
     /// The horizons in that order.
     pub horizons: Vec<Horizon>,
-    /// The faults.
-    pub faults: Vec<Fault>,
     /// The rock of each layer, youngest first; `None` for air.
     pub rocks: Vec<Option<String>>,
+    /// How the bedding of each layer lies, youngest first, where its boundaries do not say so.
+    pub bedding: Vec<Option<Bedding>>,
     /// What is not in it, a sentence each.
     pub notes: Vec<String>,
+}
+
+/// How bedding lies between the top and the base of a layer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Bedding {
+    /// As the top: it was laid down level on what was there.
+    Level,
+    /// At the same share of the height between top and base along each vertical line.
+    Copied,
 }
 
 /// What a surface is.
@@ -64,6 +91,8 @@ enum Surface {
     Base(usize),
     /// The outline of a body.
     Body(usize),
+    /// The outline of a body and of what it has baked.
+    Baked(usize),
 }
 
 /// A place of a surface.
@@ -72,6 +101,8 @@ struct Node {
     surface: Surface,
     sides: Sides,
     depth: f64,
+    /// The block of the model in which it lies.
+    block: usize,
 }
 
 /// The lattice of a block.
@@ -86,39 +117,69 @@ fn lattice(size: DVec3) -> SurveyGeometry {
 }
 
 impl Stage<'_> {
-    /// The stage as horizons, faults and layers. Takes a second or some.
-    pub fn interpretation(&self) -> Interpretation {
-        let geometry = lattice(self.history().size());
+    /// The lattice of the block, from corner to corner.
+    pub fn geometry(&self) -> SurveyGeometry {
+        lattice(self.history().size())
+    }
+
+    /// The stage as horizons and layers among the blocks of its faults ([`Stage::faults`]). Takes a second or some.
+    pub fn interpretation(&self, blocks: &FaultBlocks<'_>) -> Interpretation {
+        let geometry = self.geometry();
         let grid = NodeGrid::of_survey(&geometry);
         let columns: Vec<Vec<Node>> = (0..grid.count[0] * grid.count[1])
             .into_par_iter()
             .map(|n| {
                 let node = DVec2::new((n / grid.count[1]) as f64, (n % grid.count[1]) as f64);
-                self.nodes(grid.world_at(node))
+                let map = grid.world_at(node);
+                let mut found = self.nodes(map);
+                for node in &mut found {
+                    node.block = usize::from((blocks.at)(map.extend(node.depth)));
+                }
+                found
             })
             .collect();
         let surfaces = self.surfaces(&columns);
-        let (layer_names, rocks) = self.layers(&surfaces, &columns);
+        let Layers { names: layer_names, rocks, bedding } = self.layers(&surfaces, &columns);
         let mut notes = Vec::new();
-        let horizons: Vec<Horizon> = surfaces.iter().map(|surface| self.horizon(*surface, &grid, &columns)).collect();
+        let flat: Vec<Surface> = surfaces.iter().copied().filter(|surface| self.is_map(*surface, &columns)).collect();
+        let mut sheets = self.sheets(&flat, &grid, &columns, blocks).into_iter();
+        let mut horizon = |surface: &Surface| match (surface, flat.contains(surface)) {
+            (Surface::Body(unit), _) => Horizon::of_surface(self.name(*surface), self.body_mesh(*unit)),
+            (Surface::Baked(unit), _) => Horizon::of_surface(self.name(*surface), self.baked_mesh(*unit)),
+            (Surface::Top(unit), false) => Horizon::of_surface(self.name(*surface), self.top_mesh(*unit)),
+            _ => Horizon::new(self.name(*surface), sheets.next().unwrap_or_default()),
+        };
+        let horizons: Vec<Horizon> = surfaces.iter().map(&mut horizon).collect();
         let named = |(surface, horizon): (&Surface, &Horizon)| StratigraphicHorizon {
             name: horizon.name.clone(),
             contact: match surface {
+                Surface::Top(unit) if self.is_lapped_on(*unit, &columns) => Contact::Onlap,
                 Surface::Top(_) => Contact::Conformable,
                 Surface::Ground | Surface::Base(_) | Surface::CutBase(_) => Contact::Erosional,
                 Surface::Body(unit) if self.is_laid(*unit) => Contact::Truncated,
-                Surface::Body(_) => Contact::Intrusive,
+                Surface::Body(_) | Surface::Baked(_) => Contact::Intrusive,
             },
         };
         let stratigraphy = Stratigraphy { horizons: surfaces.iter().zip(&horizons).map(named).collect(), layer_names };
-        let changes = self
-            .acts()
-            .iter()
-            .any(|act| matches!(act, Act::Metamorphism(_)) || matches!(act, Act::Body(body) if body.aureole.is_some()));
-        if changes {
-            notes.push("baked and metamorphic rock is drawn as the rock that it was: it has no horizon".to_owned());
+        if self.acts().iter().any(|act| matches!(act, Act::Metamorphism(_))) {
+            notes.push("metamorphic rock is drawn as the rock that it was: it has no horizon".to_owned());
         }
-        Interpretation { geometry, stratigraphy, horizons, faults: self.faults(), rocks, notes }
+        Interpretation { geometry, stratigraphy, horizons, rocks, bedding, notes }
+    }
+
+    /// Whether beds of a later event lie on the top of a bed that was moved or worn down before.
+    fn is_lapped_on(&self, unit: usize, columns: &[Vec<Node>]) -> bool {
+        let made = self.history().units()[unit].act;
+        let is_still = |act: &Act| matches!(act, Act::Beds(_) | Act::Sea(_));
+        columns.iter().any(|column| {
+            let tops = column.iter().filter(|node| node.surface == Surface::Top(unit));
+            tops.into_iter().any(|top| {
+                column.iter().filter(|node| node.depth == top.depth).any(|node| match node.surface {
+                    Surface::Base(act) => act > made && !self.acts()[made..act].iter().all(is_still),
+                    _ => false,
+                })
+            })
+        })
     }
 
     fn unit(&self, rock: &Rock) -> &Unit {
@@ -151,8 +212,9 @@ impl Stage<'_> {
             let Place::Rock(below) = pair[1].place else { continue };
             let p = map.extend(depth);
             match pair[0].place {
+                Place::Air | Place::Water if self.is_scarp(p) => {}
                 Place::Air | Place::Water => {
-                    found.push(Node { surface: Surface::Ground, sides: Sides::default(), depth });
+                    found.push(Node { surface: Surface::Ground, sides: Sides::default(), depth, block: 0 });
                     self.tops(&mut found, p, &below, None);
                 }
                 Place::Rock(above) if above.act == below.act => {
@@ -161,8 +223,8 @@ impl Stage<'_> {
                         self.tops(&mut found, p, &below, Some(bed));
                     }
                 }
-                Place::Rock(above) if above.act > below.act && self.beds_of(&above).is_some() => {
-                    found.push(Node { surface: Surface::Base(above.act), sides: above.sides, depth });
+                Place::Rock(above) if above.act > below.act && self.is_laid_on(&above, p) => {
+                    found.push(Node { surface: Surface::Base(above.act), sides: above.sides, depth, block: 0 });
                     self.tops(&mut found, p, &below, None);
                 }
                 Place::Rock(_) => {}
@@ -171,13 +233,24 @@ impl Stage<'_> {
         found
     }
 
+    /// Whether beds at `p` lie on what is below, and not against the scarp of a fault.
+    fn is_laid_on(&self, above: &Rock, p: DVec3) -> bool {
+        self.beds_of(above).is_some() && !self.is_scarp(p)
+    }
+
+    /// Whether a vertical line passes through a fault at `p`, so that it is the fault that bounds rock there.
+    fn is_scarp(&self, p: DVec3) -> bool {
+        let [above, below] = [-ON_FAULT_M, ON_FAULT_M].map(|off| self.sides_since(0, p + DVec3::Z * off));
+        above != below
+    }
+
     /// The tops that lie at the top of the bed at `p`: its own, and those of beds that have no thickness there. `above` is
     /// the bed that lies on it, if it is of the same event.
     fn tops(&self, found: &mut Vec<Node>, p: DVec3, below: &Rock, above: Option<usize>) {
         let Some((beds, bed)) = self.beds_of(below) else { return };
         let map = self.before(below.act, &below.sides, p).truncate();
         let above = above.unwrap_or(beds.beds.len());
-        let mut add = |surface: Surface| found.push(Node { surface, sides: below.sides, depth: p.z });
+        let mut add = |surface: Surface| found.push(Node { surface, sides: below.sides, depth: p.z, block: 0 });
         let off_m = (1.0 - self.coordinates(below, p).z).abs() * beds.beds[bed].thickness_m;
         let is_at_top = off_m < AT_TOP_M;
         let of = |bed: usize| self.bed_unit(below.act, bed);
@@ -232,21 +305,28 @@ impl Stage<'_> {
             let units = self.history().units().iter().enumerate();
             units.filter(move |(_, unit)| unit.act == n && unit.bed.is_none()).map(|(unit, _)| unit)
         });
+        let mut baked = Vec::new();
         for unit in units.collect::<Vec<_>>() {
             if self.is_laid(unit) {
                 let made = self.history().units()[unit].act;
                 let is_younger = |surface: &Surface| match *surface {
                     Surface::Ground => true,
                     Surface::Base(act) => act > made,
-                    Surface::CutBase(unit) | Surface::Body(unit) => self.history().units()[unit].act > made,
+                    Surface::CutBase(unit) | Surface::Body(unit) | Surface::Baked(unit) => {
+                        self.history().units()[unit].act > made
+                    }
                     Surface::Top(_) => false,
                 };
                 let at = order.iter().rposition(is_younger).map_or(0, |n| n + 1);
                 order.insert(at, Surface::Body(unit));
             } else if self.has_body(unit) {
                 order.push(Surface::Body(unit));
+            } else if self.is_baked(unit) {
+                // Older than the body in it, so that this comes first.
+                baked.push(Surface::Baked(unit));
             }
         }
+        order.extend(baked);
         order
     }
 
@@ -271,33 +351,25 @@ impl Stage<'_> {
                 let oldest = self.bed_unit(act, 0).map_or("", |unit| &units[unit].name);
                 named.map_or_else(|| format!("Base {oldest}"), str::to_owned)
             }
-            Surface::Body(unit) => units[unit].name.clone(),
+            Surface::Body(unit) | Surface::Baked(unit) => units[unit].name.clone(),
         }
     }
 
-    fn horizon(&self, surface: Surface, grid: &NodeGrid, columns: &[Vec<Node>]) -> Horizon {
-        let name = self.name(surface);
-        if let Surface::Body(unit) = surface {
-            return Horizon::of_surface(name, self.body_mesh(unit));
-        }
-        let of_surface = |column: &Vec<Node>| -> Vec<Node> {
+    /// Whether a surface has one depth at each place of a block.
+    fn is_map(&self, surface: Surface, columns: &[Vec<Node>]) -> bool {
+        let of = |column: &Vec<Node>| -> Vec<Node> {
             column.iter().filter(|node| node.surface == surface).copied().collect()
         };
-        let nodes: Vec<Vec<Node>> = columns.iter().map(of_surface).collect();
-        // One depth at each place of a block, or several.
-        let mut is_map = true;
-        let mut sheets: BTreeMap<Sides, Vec<f32>> = BTreeMap::new();
-        for (n, column) in nodes.iter().enumerate() {
-            for node in column {
-                let depths = sheets.entry(node.sides).or_insert_with(|| vec![f32::NAN; columns.len()]);
-                is_map &= depths[n].is_nan() || (f64::from(depths[n]) - node.depth).abs() < AT_TOP_M;
-                depths[n] = node.depth as f32;
-            }
+        let is_single = |column: &Vec<Node>| {
+            let nodes = of(column);
+            nodes.iter().enumerate().all(|(n, node)| {
+                nodes[..n].iter().all(|other| other.sides != node.sides || (other.depth - node.depth).abs() < AT_TOP_M)
+            })
+        };
+        match surface {
+            Surface::Body(_) | Surface::Baked(_) => false,
+            Surface::Top(_) => columns.iter().all(is_single),
+            _ => true,
         }
-        if let (false, Surface::Top(unit)) = (is_map, surface) {
-            return Horizon::of_surface(name, self.top_mesh(unit));
-        }
-        let sheets = sheets.into_values().map(|depths| Sheet::new(*grid, depths, Quality::Picked));
-        Horizon::new(name, sheets.collect())
     }
 }

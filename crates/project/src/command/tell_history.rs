@@ -9,7 +9,10 @@ use crate::content;
 use crate::document::{FaultEntry, HorizonEntry, Id, Origin};
 use crate::folder::Draft;
 use crate::styles;
-use history::History;
+use glam::DVec3;
+use history::{Bedding, FaultBlocks, History};
+use model::FaultNetwork;
+use param::KDefinition;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use survey::Progress;
@@ -74,16 +77,17 @@ impl TellHistory {
         let patterns: Vec<&str> = library.patterns().map(|pattern| pattern.name.as_str()).collect();
         let history = read(&self.text, &patterns)?;
         progress.begin("block", 3);
-        let made = history.last_stage().interpretation();
-        progress.step(1)?;
+        let stage = history.last_stage();
+        let geometry = stage.geometry();
         let mut notes: Vec<String> = history.notes().iter().map(ToString::to_string).collect();
-        notes.extend(made.notes);
-        draft.document.geometry = Some(made.geometry.clone());
+        draft.document.geometry = Some(geometry.clone());
         draft.document.geological_history = Some(self.text.clone());
-        for fault in &made.faults {
-            let Parts { faults, told } = fault_parts::of_surface(&draft.document, &made.geometry, fault)?;
-            notes.extend(told);
+        let mut all = Vec::new();
+        for fault in &stage.faults() {
+            let Parts { faults, told } = fault_parts::of_surface(&draft.document, &geometry, fault)?;
+            notes.extend(told.map(|told| format!("fault {}: {told}", fault.name)));
             for fault in faults {
+                all.push(fault.clone());
                 let hash = content::hash_fault(&fault);
                 let (file, new) = draft.generation("faults", &fault.name, "json")?;
                 store::write_fault(&new, &fault)?;
@@ -99,6 +103,12 @@ impl TellHistory {
                 });
             }
         }
+        // The sheets of horizons are those of the blocks between the faults as the model sees them.
+        let network = FaultNetwork::build(&geometry, &all, &Progress::silent())?;
+        let at = |p: DVec3| network.block_at(geometry.voxel_from_world(p).as_vec3());
+        progress.step(1)?;
+        let made = stage.interpretation(&FaultBlocks { count: network.block_count(), at: &at });
+        notes.extend(made.notes);
         progress.step(1)?;
         for (position, (horizon, of)) in made.horizons.iter().zip(&made.stratigraphy.horizons).enumerate() {
             let hash = content::hash_horizon(horizon);
@@ -122,8 +132,12 @@ impl TellHistory {
         for (position, name) in made.stratigraphy.layer_names.iter().enumerate() {
             draft.document.name_layer(position, name)?;
         }
-        for (layer, rock) in made.stratigraphy.layer_names.iter().zip(&made.rocks) {
+        for ((layer, rock), bedding) in made.stratigraphy.layer_names.iter().zip(&made.rocks).zip(&made.bedding) {
             let mut style = SetLayer { layer: layer.clone(), rock: rock.clone(), ..SetLayer::default() };
+            style.k = bedding.map(|bedding| match bedding {
+                Bedding::Level => KDefinition::ParallelToTop,
+                Bedding::Copied => KDefinition::Proportional,
+            });
             if rock.is_none() {
                 style.pattern = Some("plain".to_owned());
                 style.colour = Some(Colour::WHITE);

@@ -1,12 +1,26 @@
 //! Writes a horizon or fault of a project, or the values of volumes along a horizon, as a file for other programs.
 
+use crate::document::{HorizonEntry, Origin};
 use crate::error::{Noun, ProjectError};
 use crate::exports::values;
 use crate::folder::refuse_inside_project;
 use crate::{Project, content};
 use files::{ExportOptions, ExportReport, Format, SurfaceKind};
 use std::path::Path;
-use survey::Progress;
+use survey::{Horizon, Progress, Quality};
+
+/// A horizon without what only continues it past faults and the sides of a block told by its history.
+fn stated(mut horizon: Horizon, entry: &HorizonEntry) -> Horizon {
+    let continued = horizon.sheets.iter_mut().filter(|_| matches!(entry.origin, Origin::History));
+    for sheet in continued {
+        for (depth, quality) in sheet.depth.iter_mut().zip(&mut sheet.quality) {
+            if *quality == Quality::Extrapolated {
+                (*depth, *quality) = (f32::NAN, Quality::Hole);
+            }
+        }
+    }
+    horizon
+}
 
 /// Writes the surface of this kind and name.
 ///
@@ -26,7 +40,7 @@ pub fn write(
     Ok(match kind {
         SurfaceKind::Horizon => {
             let entry = &document.horizons[document.position(Noun::Horizon, name)?];
-            let horizon = content::read_horizon(root, entry, progress)?;
+            let horizon = stated(content::read_horizon(root, entry, progress)?, entry);
             files::write_horizon_as(out, &horizon, frame, format, options)?
         }
         SurfaceKind::Fault => {
@@ -54,7 +68,8 @@ pub fn write_values(
     refuse_inside_project(out)?;
     let (document, root) = (project.document(), project.root());
     let frame = document.frame()?;
-    let horizon = content::read_horizon(root, &document.horizons[document.position(Noun::Horizon, name)?], progress)?;
+    let entry = &document.horizons[document.position(Noun::Horizon, name)?];
+    let horizon = stated(content::read_horizon(root, entry, progress)?, entry);
     let mut read = Vec::new();
     for volume in volumes {
         let entry = &document.volumes[document.position(Noun::Volume, volume)?];

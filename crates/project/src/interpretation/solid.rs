@@ -39,9 +39,10 @@ pub(crate) fn check_coordinates(size: [usize; 3], settings: &ParamSettings) -> R
 }
 
 /// The settings with which a project is parameterized: the flow of layers does not follow what is smaller than a
-/// pattern's tile.
+/// pattern's tile, but for a geological history, whose horizons are as smooth as they are meant.
 pub(crate) fn param_settings(document: &Document) -> ParamSettings {
-    let flow_wave_m = document.geometry.as_ref().map_or(0.0, |geometry| TILE_MM * metres_per_mm(geometry));
+    let picked = document.geometry.as_ref().filter(|_| document.geological_history.is_none());
+    let flow_wave_m = picked.map_or(0.0, |geometry| TILE_MM * metres_per_mm(geometry));
     let voxels = document.geometry.as_ref().map_or(0.0, |geometry| geometry.size().iter().product::<usize>() as f64);
     let spacing = ParamSettings::default().level_spacing;
     let level_spacing = (spacing * (voxels / FINE_VOXELS) as f32).clamp(spacing, MOST_SPACING);
