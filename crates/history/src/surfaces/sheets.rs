@@ -128,7 +128,8 @@ impl Stage<'_> {
             let middle = 0.5 * (near + far);
             if is_below(middle) == starts_below { near = middle } else { far = middle }
         }
-        Some(0.5 * (near + far))
+        // To a millimetre: what is level is exactly so in all blocks, and lies on the block's top if it is meant to.
+        Some((500.0 * (near + far)).round() / 1000.0)
     }
 
     /// The sheets of surfaces, `[surface][block]`; `columns` have what vertical lines of the grid met.

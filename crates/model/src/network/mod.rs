@@ -339,6 +339,10 @@ const REACHED_SHARE: f64 = 0.5;
 /// A fault that ends within this many voxels of the outer boundary reaches it in any case: the border of the data.
 const BORDER_VOXELS: f64 = 1.5;
 
+/// Cells by which the extent of a fault goes on past the one that it ends at. It does not exist there; but its end at that
+/// one is no tip, near which patterns on its two sides would be joined.
+const PAST_CELLS: f64 = 32.0;
+
 /// Signed distance of fault `f` to the rim of its extent at its grid nodes, m, after its rim was extended to
 /// what it nearly reaches, and grown as stated.
 fn extent(
@@ -371,7 +375,7 @@ fn extent(
         boundary.push(Box::new(move |q, spacing| to_border(voxel(q)[axis], DVec3::AXES[axis], spacing)));
         boundary.push(Box::new(move |q, spacing| to_border(last - voxel(q)[axis], -DVec3::AXES[axis], spacing)));
     }
-    // Past the outer boundary of the volume the strip continues to the end of the grid, past a fault by a few cells.
+    // Past the outer boundary of the volume the strip continues to the end of the grid, past a fault by some cells.
     let [nu, nv] = surface.surface.size;
     let mut reaches: Vec<(Reach, f64)> = boundary.iter().map(|face| (&**face as Reach, (nu + nv) as f64)).collect();
     let by = truncation.map(|t| (&built[t.by].surface, if t.positive { 1.0 } else { -1.0 }));
@@ -384,7 +388,7 @@ fn extent(
         }
     });
     if let Some(to_fault) = &to_fault {
-        reaches.push((to_fault, REACHED_VOXELS));
+        reaches.push((to_fault, PAST_CELLS));
     }
     let mut reached = patch.clone();
     reached.reach(&reaches);
