@@ -78,8 +78,9 @@ const GEAR: [&str; 24] = [
 const SPREAD: [&str; 11] =
     ["BIN", "BINS", "SPACING", "GROUP", "OFFSET", "GRID", "CDP", "CMP", "INLINE", "CROSSLINE", "SHOT"];
 
-/// Words of a sample interval.
-const SAMPLING: [&str; 5] = ["SAMPLE", "SAMPLING", "STEP", "INCREMENT", "RATE"];
+/// What a sample interval is called, and behind how many words after it its number stands at most.
+const SAMPLING: [&str; 6] = ["SAMPLE INTERVAL", "SAMPLE RATE", "SAMPLING", "INCREMENT", "STEP", "RATE"];
+const BEHIND: usize = 5;
 
 impl Words {
     /// Reads the lines of a header; `interval` is the sample interval as the file holds it, in thousandths.
@@ -102,7 +103,7 @@ impl Words {
                 }
             }
             if !is_of_gear {
-                found.note_lengths(said, interval, words.iter().any(|word| SAMPLING.contains(word)), line);
+                found.note_lengths(said, interval, line);
             }
             let is_only = |word: &str| is_answer && words.first() == Some(&word);
             let answer = |word: &str| is_only(word).then_some(Weight::Axis);
@@ -116,18 +117,25 @@ impl Words {
     }
 
     /// Notes the lengths of a line that are no unit of the axis, but may be meant so.
-    fn note_lengths(&mut self, said: &str, interval: f64, is_of_sampling: bool, line: &str) {
-        for said in words::statements(said).into_iter().filter(|said| !said.unit.is_time()) {
-            match (said.number, said.quantity) {
-                (None, None) if self.unowned.is_none() => self.unowned = Some((axis_unit(said.unit), line.to_owned())),
-                (Some(number), _) if is_of_sampling && self.other_interval.is_none() => {
-                    let differs = (number * to_thousandths(said.unit) - interval).abs() > 1e-6 * interval;
-                    self.other_interval = differs.then(|| (number, said.unit, line.to_owned()));
-                }
-                _ => {}
-            }
+    fn note_lengths(&mut self, said: &str, interval: f64, line: &str) {
+        let lengths = |said: &str| words::statements(said).into_iter().filter(|said| !said.unit.is_time());
+        if let Some(said) = lengths(said).find(|said| said.number.is_none() && said.quantity.is_none()) {
+            self.unowned.get_or_insert_with(|| (axis_unit(said.unit), line.to_owned()));
+        }
+        let Some(said) = of_sampling(said).and_then(|said| lengths(&said).next()) else { return };
+        let Some(number) = said.number else { return };
+        if (number * to_thousandths(said.unit) - interval).abs() > 1e-6 * interval {
+            self.other_interval.get_or_insert_with(|| (number, said.unit, line.to_owned()));
         }
     }
+}
+
+/// The few words that say how long the sample interval is; a range is none.
+fn of_sampling(said: &str) -> Option<String> {
+    let tail = SAMPLING.iter().find_map(|name| Some(&said[said.find(name)?..]))?;
+    let tail = tail.split([',', ';']).next()?;
+    let few: Vec<&str> = tail.split_whitespace().take_while(|word| *word != "AND").take(BEHIND).collect();
+    (!few.contains(&"TO")).then(|| few.join(" "))
 }
 
 /// A line that gives the sample interval or the first sample, both as the file holds them in thousandths, without a unit:

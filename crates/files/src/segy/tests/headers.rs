@@ -299,8 +299,15 @@ fn the_domain_is_what_the_text_says() {
     for (text, own) in [("SAMPLE RATE 10 FT", 4000), ("DEPTH DOMAIN, INCREMENT 20FT", 10_000)] {
         assert!(has(&unit(text, own, 1).warnings, "text header gives a sample interval"), "{text}");
     }
-    let ranges = unit("DEPTH INTERVAL 0 TO 5000 M, SHOT STEP 25 M", 10_000, 1).warnings;
-    assert!(!has(&ranges, "text header gives a sample interval"), "{ranges:?}");
+    for text in [
+        "DEPTH INTERVAL 0 TO 5000 M, SHOT STEP 25 M",
+        "DEPTH. SAMPLE INTERVAL 10 M AND FIRST SAMPLE 1166 M",
+        "DEPTH SAMPLES 0 TO 5000 M",
+        "DEPTH, FIRST SAMPLE 20 M, SAMPLING: 10 M, 501 SAMPLES, LAST SAMPLE 5000 M",
+    ] {
+        let warnings = unit(text, 10_000, 1).warnings;
+        assert!(!has(&warnings, "text header gives a sample interval"), "{text}: {warnings:?}");
+    }
     let stated = SegyOptions { vertical_unit: Some(ZUnit::Feet), ..SegyOptions::default() };
     assert_eq!(built().scan(&stated).unwrap().vertical_unit, ZUnit::Feet);
 }
