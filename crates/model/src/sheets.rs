@@ -166,6 +166,8 @@ pub(super) struct BlockPicks {
     pub z: Vec<f32>,
     quality: Vec<Quality>,
     pub known: Vec<bool>,
+    /// Which nodes were picked, or computed between picks, rather than stated past the end of them.
+    pub fixed: Vec<bool>,
     own: usize,
 }
 
@@ -195,13 +197,9 @@ impl BlockPicks {
             }
         }
         let known: Vec<bool> = z.iter().map(|z| z.is_finite()).collect();
-        (known.iter().filter(|&&k| k).count() >= fewest).then_some(Self { z, quality, known, own })
-    }
-
-    /// Which nodes were picked, or computed between picks, rather than stated past the end of them.
-    pub(super) fn fixed(&self) -> Vec<bool> {
-        let known = self.known.iter().zip(&self.quality);
-        known.map(|(known, quality)| *known && *quality != Quality::Extrapolated).collect()
+        let is_fixed = |(known, quality): (&bool, &Quality)| *known && *quality != Quality::Extrapolated;
+        let fixed = known.iter().zip(&quality).map(is_fixed).collect();
+        (known.iter().filter(|&&k| k).count() >= fewest).then_some(Self { z, quality, known, fixed, own })
     }
 
     /// How many nodes a block needs at least.
@@ -220,8 +218,7 @@ fn extend_one(
     fewest: usize,
 ) -> Option<ExtendedSheet> {
     let picks = BlockPicks::of(lattice, nodes, faults, block, fewest)?;
-    let fixed = picks.fixed();
-    let BlockPicks { mut z, mut quality, known, own } = picks;
+    let BlockPicks { mut z, mut quality, known, fixed, own } = picks;
     // Among many blocks it is continued once, when it is joined with the others.
     if !faults.has_many_blocks() {
         window.extend(extension, lattice.size, &mut z)?;

@@ -224,17 +224,9 @@ impl StructuralModel {
         let picks: Vec<Vec<Option<BlockPicks>>> = nodes.par_iter().map(of_horizon).collect();
         let nothing = (vec![f32::NAN; lattice.len()], vec![false; lattice.len()]);
         let of_block = |found| -> order::Picks<'_> {
-            Option::<&(BlockPicks, Vec<bool>)>::map_or(found, (&nothing.0, &nothing.1), |(found, fixed)| {
-                (&found.z, fixed)
-            })
+            // What was stated past the end of the picks gives way to others.
+            Option::<&BlockPicks>::map_or(found, (&nothing.0, &nothing.1), |found| (&found.z, &found.fixed))
         };
-        // What was stated past the end of the picks gives way to others.
-        let fixed = |of: Vec<Option<BlockPicks>>| -> Vec<Option<(BlockPicks, Vec<bool>)>> {
-            of.into_iter()
-                .map(|found| found.map(|found| (found.fixed(), found)).map(|(fixed, found)| (found, fixed)))
-                .collect()
-        };
-        let picks: Vec<Vec<Option<(BlockPicks, Vec<bool>)>>> = picks.into_iter().map(fixed).collect();
         let picks: Vec<Vec<_>> =
             picks.iter().map(|of| of.iter().map(|found| of_block(found.as_ref())).collect()).collect();
         let names: Vec<&str> = ordered.iter().map(|horizon| horizon.name.as_str()).collect();
