@@ -129,13 +129,13 @@ fn fill(trace: &[f32], filled: &mut Vec<f32>) {
     let mut from = 0;
     while let Some(start) = (from..trace.len()).find(|&n| !trace[n].is_finite()) {
         let end = (start..trace.len()).find(|&n| trace[n].is_finite()).unwrap_or(trace.len());
-        for n in start..end {
+        for (n, value) in filled.iter_mut().enumerate().take(end).skip(start) {
             // As far on the other side of the nearer edge of the gap as `n` is on this one.
             let source = match n - start < end - 1 - n && start > 0 || end == trace.len() {
                 true => (n - start < MIRRORED).then(|| (2 * start).checked_sub(n + 1)).flatten(),
                 false => (end - 1 - n < MIRRORED).then_some(2 * end - 1 - n),
             };
-            filled[n] = source.and_then(|source| trace.get(source)).copied().filter(|a| a.is_finite()).unwrap_or(0.0);
+            *value = source.and_then(|source| trace.get(source)).copied().filter(|a| a.is_finite()).unwrap_or(0.0);
         }
         from = end;
     }
