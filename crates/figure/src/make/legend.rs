@@ -62,7 +62,7 @@ fn is_illustrated(block: &BlockPart) -> bool {
 }
 
 /// The layers without those that are a sliver above a layer of the same look, and called so ("Above Sand" on "Sand").
-fn told_apart(layers: Vec<LayerStyle>) -> Vec<LayerStyle> {
+fn told_apart(layers: &[LayerStyle]) -> Vec<LayerStyle> {
     let is_same = |above: &LayerStyle, below: &LayerStyle| {
         above.layer.strip_prefix("Above ").is_some_and(|of| of == below.layer)
             && LayerStyle { layer: String::new(), ..above.clone() }
@@ -149,7 +149,7 @@ impl Maker<'_> {
                 .water()
                 .into_iter()
                 .chain(told_apart(
-                    layers.into_iter().filter_map(|layer| self.inputs.layers.get(layer).cloned()).collect(),
+                    &layers.into_iter().filter_map(|layer| self.inputs.layers.get(layer).cloned()).collect::<Vec<_>>(),
                 ))
                 .collect(),
         };
