@@ -67,7 +67,7 @@ impl ArrayHeader {
         let (word, endian) = number_type(descr).ok_or_else(|| {
             bad(format!(
                 "numbers of the kind {}: save it with astype('float32')",
-                excerpt(&descr[..descr.len().min(12)])
+                excerpt(&descr.chars().take(12).collect::<String>())
             ))
         })?;
         let shape = value("shape").and_then(|text| text.strip_prefix('(')?.split_once(')')).map(|(inside, _)| inside);

@@ -388,6 +388,7 @@ fn arrays_of_numpy_are_horizons_over_the_survey_or_points() {
         (npy(1, &head("<c8", "False", "(31, 31)"), &f8), "astype"),
         (npy(1, "{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (3,), }", &f8), "astype"),
         (npy(1, &head("|O", "False", "(31, 31)"), &f8), "astype"),
+        (npy(1, &head("<€€€€€€", "False", "(31, 31)"), &f8), "astype"),
         (npy(1, "{'descr': '<f8', 'fortran_order': False, }", &f8), "shape"),
         (npy(9, &head("<f8", "False", "(31, 31)"), &f8), "version 9"),
         (npy(2, "", &[0xff; 40])[..9].to_vec(), "cut off"),
