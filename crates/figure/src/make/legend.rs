@@ -62,7 +62,7 @@ fn is_illustrated(block: &BlockPart) -> bool {
 }
 
 /// The layers without those that are a sliver above a layer of the same look, and called so ("Above Sand" on "Sand").
-fn told_apart(layers: Vec<LayerStyle>) -> Vec<LayerStyle> {
+fn told_apart(layers: &[LayerStyle]) -> Vec<LayerStyle> {
     let is_same = |above: &LayerStyle, below: &LayerStyle| {
         above.layer.strip_prefix("Above ").is_some_and(|of| of == below.layer)
             && LayerStyle { layer: String::new(), ..above.clone() }
@@ -143,15 +143,10 @@ impl Maker<'_> {
         }
         let is_measured =
             |part: &Part| matches!(part, Part::Block(block) if block.scene.face_data == FaceData::Distortion);
+        let styles = layers.into_iter().filter_map(|layer| self.inputs.layers.get(layer).cloned());
         listed.layers = match self.figure.parts.iter().any(is_measured) {
             true => distortion_classes(),
-            false => self
-                .water()
-                .into_iter()
-                .chain(told_apart(
-                    layers.into_iter().filter_map(|layer| self.inputs.layers.get(layer).cloned()).collect(),
-                ))
-                .collect(),
+            false => self.water().into_iter().chain(told_apart(&styles.collect::<Vec<_>>())).collect(),
         };
         let named = horizons.into_iter().filter_map(|horizon| self.inputs.horizons.get(horizon).cloned());
         listed.horizons.extend(named);
