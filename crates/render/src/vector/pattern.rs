@@ -399,6 +399,13 @@ impl MappedCells<'_> {
         narrowest < SQUEEZED * aside * px_per_tile
     }
 
+    /// Whether a straight stretch passes one of these cells, though its ends may lie beside them.
+    fn are_passed(&self, [a, b]: &[TracedEnd; 2]) -> bool {
+        let steps = (2.0 * ((b.st - a.st) / self.lattice.step).abs().max_element()).ceil().max(1.0) as usize;
+        let cell = |n: usize| self.lattice.cell_at(a.st.lerp(b.st, n as f64 / steps as f64));
+        (0..=steps).filter_map(cell).any(|cell| self.is_mine[cell])
+    }
+
     /// Whether lines run around the place near which they were looked for.
     fn is_around(&self, lines: &[Polyline], near: DVec2) -> bool {
         let at = self.face.px(near);
@@ -567,6 +574,7 @@ impl Trace<'_> {
             self.divide(segment, a, middle, depth + 1);
             self.divide(segment, middle, b, depth + 1);
         } else if is_straight || (all_found && a.px.distance(b.px) < TORN_PX) {
+            self.reaches = self.reaches || [[a, middle], [middle, b]].iter().any(|ends| self.cells.are_passed(ends));
             self.push(b);
         } else {
             self.is_torn = true;

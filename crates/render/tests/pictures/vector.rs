@@ -6,7 +6,7 @@ use render::vector::{AreaFill, Polyline, VectorBlock, VectorLineKind, vectors};
 use render::{Background, Camera, CutShape, DrawnWell, Ground, Inputs, Outlines, Scene, VoxelBox};
 use survey::{Progress, SurveyGeometry, VerticalUnit};
 use synth::closed_form::ClosedForm;
-use ttf::{Colour, LayerStyle, TextureLibrary, TransferFunctions};
+use ttf::{Colour, Frequency, LayerStyle, TextureLibrary, TransferFunctions};
 
 fn library() -> TextureLibrary {
     TextureLibrary::builtin().unwrap()
@@ -83,6 +83,35 @@ fn bricks_on_a_cylindrical_fold_lie_along_it_and_their_joints_across() {
     assert!(askew * 50 < joints, "{askew} of {joints} joints are not across");
     assert!(oblique < 0.01 * length, "{oblique} of {length} pixels of courses leave the bedding");
     assert!(joints > 50 && courses > 10, "{joints} joints, {courses} courses");
+}
+
+#[test]
+fn courses_whose_ends_and_middle_lie_beside_a_narrow_block_cross_it() {
+    let geometry = SurveyGeometry::regular([9, 9, 61], 10.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::flat(&geometry, &[12.0, 48.0]);
+    let scene = head_on([400, 1600]);
+    let view = scene.view(&geometry);
+    let [left, right] = [0.0, 8.0].map(|i| view.project(DVec3::new(i, 0.0, 30.0)).x);
+    let [low, high] = [left.min(right), left.max(right)];
+    // So many tiles over the block, from those that are narrower to one that hangs over both sides.
+    for across in [3.0, 1.0, 0.7, 0.5, 0.45, 0.4, 0.35, 0.3] {
+        let mut functions = TransferFunctions::default();
+        let style = LayerStyle::textured(&closed.stratigraphy.layer_names_bottom_up()[1], Colour::WHITE, "limestone");
+        functions.layers.set(LayerStyle { frequency: Some(Frequency { horizontal: across, vertical: 2.0 }), ..style });
+        let block = Block::of(&closed, &functions, &library());
+        // So coarse that a course is one straight piece.
+        let found = vectors(&scene, &block.inputs(&[]), &library(), 1.0, scene.size_px, &Progress::silent());
+        let found = found.unwrap().unwrap();
+        let at = |line: &Polyline, x: f64| {
+            let spans = line.points.windows(2).any(|ends| (ends[0].x - x) * (ends[1].x - x) <= 0.0);
+            spans && (line.points[0].y - line.points[line.points.len() - 1].y).abs() < 2.0
+        };
+        let courses = |x: f64| lines(&found, 1).iter().filter(|line| at(line, x)).count();
+        for share in [0.2, 0.5, 0.8] {
+            let courses = courses(low + share * (high - low));
+            assert!(courses >= 8, "{courses} courses at {share} of the width under {across} tiles");
+        }
+    }
 }
 
 #[test]
