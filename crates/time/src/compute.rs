@@ -71,9 +71,9 @@ const MISFIT: f32 = 1.5;
 ///
 /// No link crosses a fault; a picked horizon has one τ, at which τ jumps where it is an unconformity.
 ///
-/// τ is not known, and NaN, on dead traces, at samples without data, farther than [`TimeSettings::reach`] from every patch, in parts of the
-/// volume that no patch and no fault with a throw joins to the largest, and where traces correlate along it no better than
-/// noise does. Without candidates it is known nowhere.
+/// τ is not known, and NaN, on dead traces, at samples without data, farther than [`TimeSettings::reach`] from every
+/// patch, in parts of the volume that no patch and no fault with a throw joins to the largest, and where traces correlate
+/// along it no better than noise does. Without candidates it is known nowhere.
 ///
 /// Memory: at most 40 bytes a voxel beside the volume and its candidates, at its peak while s is solved for. The result
 /// does not depend on the number of threads. Cost: some hundred sweeps over the volume where there are faults.

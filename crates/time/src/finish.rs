@@ -217,8 +217,8 @@ fn around(z: f32, reach: usize, nz: usize) -> std::ops::Range<usize> {
     at.saturating_sub(reach)..(at + reach + 1).min(nz)
 }
 
-/// Makes τ NaN on dead traces, at samples without data, farther than `reach` samples from every vertex of its trace and of the traces beside it,
-/// and in parts that neither patches nor ties join to the largest.
+/// Makes τ NaN on dead traces, at samples without data, farther than `reach` samples from every vertex of its trace and
+/// of the traces beside it, and in parts that neither patches nor ties join to the largest.
 pub(crate) fn hide_unknown(
     tau: &mut [f32],
     hubs: &Hubs,
