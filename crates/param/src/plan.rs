@@ -119,9 +119,14 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
             let (low, high) = (depths[0].max(0.0), depths[1].min(last));
             (0..=((high - low) / step) as usize).map(move |n| low + n as f32 * step).filter(move |&z| met(column, z))
         };
+        // Where rock is gone, copies of a sheet go on from where it was, at most a volume's height outside of it.
+        let beyond = match self.definition(region).unwrap_or_default() {
+            KDefinition::Flow | KDefinition::Harmonic => 0.0,
+            _ => last,
+        };
         let height = |column: [i32; 2], depths: [f32; 2]| match (self.definition(region), &bottom, &top) {
-            (_, Some(bottom), None) => node(bottom, column).min(last),
-            (_, None, Some(top)) => last - node(top, column).max(0.0),
+            (_, Some(bottom), None) => node(bottom, column).min(last + beyond),
+            (_, None, Some(top)) => last - node(top, column).max(-beyond),
             (Some(KDefinition::ParallelToBottom), Some(bottom), _) => {
                 depths_met(column, depths).next().map_or(0.0, |z| node(bottom, column) - z + step)
             }

@@ -128,6 +128,23 @@ fn roughness_dies_out_with_the_distance_from_the_one_horizon() {
 }
 
 #[test]
+fn copies_of_a_horizon_that_leaves_the_volume_reach_its_other_side() {
+    // The horizon stands above the volume on one side (over an open layer below it), or lies below on the other.
+    let model = ClosedForm::new([60, 12, 50], 1, |_, x, _| 60.0 - 1.5 * x);
+    for definition in [KDefinition::Proportional, KDefinition::ParallelToTop, KDefinition::ParallelToBottom] {
+        let param = parameterize(&model, definition);
+        for (layer, x, z) in [(0, 58.0, 48.0), (0, 50.0, 44.0), (1, 1.0, 1.0)] {
+            let region = Region { layer, block: 0 };
+            let k = |z: f32| param.lookup_in(&model, Vec3::new(x, 6.0, z), region).0.k;
+            let change = (k(z) - k(z + 1.0)) * param.grid(region).thickness_m.unwrap() as f32;
+            // A voxel down is a voxel, or its distance to the plane.
+            let expected = if definition == KDefinition::Proportional { 1.0 } else { 1.0 / 1.5f32.hypot(1.0) };
+            assert!((change - expected).abs() < 0.02, "{definition:?}, layer {layer} at {x}, {z}: {change}");
+        }
+    }
+}
+
+#[test]
 fn every_definition_is_accurate_on_folds() {
     let model = ClosedForm::folded();
     use KDefinition::{DistanceRatio, Flow, Harmonic, ParallelToBottom, ParallelToTop, Proportional};
