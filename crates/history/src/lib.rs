@@ -41,4 +41,4 @@ pub use kinds::{
 pub use place::{MOST_ACTS, Place, Rock, Sides};
 pub use rock::impedance;
 pub use stage::Stage;
-pub use surfaces::{Bedding, FaultBlocks, Interpretation};
+pub use surfaces::{FaultBlocks, Interpretation};

@@ -234,6 +234,14 @@ impl<'h> Stage<'h> {
         }
     }
 
+    /// Metres from k = 0 to k = 1 where the bed of `rock` is thickest; `None` for rock that is no bed.
+    pub fn bed_thickness_m(&self, rock: &Rock) -> Option<f64> {
+        match (&self.acts[rock.act], self.history.units()[rock.unit].bed) {
+            (Act::Beds(beds), Some(bed)) => Some(beds.beds[bed].thickness_m),
+            _ => None,
+        }
+    }
+
     /// Derivatives of (i, j, k) by the place, a row for each: central differences over a centimetre.
     pub fn gradient(&self, rock: &Rock, p: DVec3) -> DMat3 {
         const STEP_M: f64 = 0.01;

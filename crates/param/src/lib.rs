@@ -21,7 +21,8 @@
 //!    region comes from the model and the fraction between the sheets from the sheets.
 //!    [`Parameterization::voxel_volumes`] samples it at voxels; [`PackedVolume`] is the paper's 3-component
 //!    volume with the paper's lookups.
-//! 5. [`Parameterization::of_volumes`] takes i, j, k from elsewhere instead.
+//! 5. [`Parameterization::of_volumes`] takes i, j, k from elsewhere instead, [`Parameterization::of_known`] from what is
+//!    known in closed form.
 //! 6. [`accuracy`] measures both lookups.
 //!
 //! # Spaces and units
@@ -91,6 +92,7 @@ mod error;
 mod flow;
 mod foreign;
 mod grid;
+mod known;
 mod lattice;
 mod layer;
 mod metric;
@@ -114,6 +116,7 @@ pub use compute::ComputeCost;
 pub use error::ParamError;
 pub use foreign::Taken;
 pub use grid::{FlatPoint, RegionGrid, SheetRef, SheetSource};
+pub use known::KnownPlaces;
 pub use model::{LayerModel, Region};
 pub use packed_volume::PackedVolume;
 pub use parameterization::Parameterization;

@@ -1,6 +1,6 @@
 //! Names and rocks of the layers between surfaces.
 
-use super::{Bedding, Node, Surface};
+use super::{Node, Surface};
 use crate::kinds::Act;
 use crate::stage::Stage;
 
@@ -10,38 +10,18 @@ pub(super) struct Layers {
     pub names: Vec<String>,
     /// `None` for air.
     pub rocks: Vec<Option<String>>,
-    /// How the bedding of each lies, where its boundaries do not say so.
-    pub bedding: Vec<Option<Bedding>>,
 }
 
 impl Stage<'_> {
-    /// Whether the bed below a surface fills what lies below it: the lowest of an event over older rock, or a channel.
-    fn is_fill(&self, above: Surface) -> bool {
-        let Surface::Top(unit) = above else { return false };
-        let unit = &self.history().units()[unit];
-        let is_cut = |bed: usize| matches!(&self.acts()[unit.act], Act::Beds(beds) if beds.beds[bed].is_cut());
-        unit.bed.is_some_and(|bed| bed == 0 && unit.act > 0 || is_cut(bed))
-    }
-
-    /// How the bedding between two surfaces lies.
-    fn bedding(&self, above: Surface, below: Option<Surface>) -> Option<Bedding> {
-        match (above, below) {
-            _ if self.is_fill(above) => Some(Bedding::Level),
-            (Surface::Top(_), None | Some(Surface::Top(_))) => Some(Bedding::Copied),
-            _ => None,
-        }
-    }
-
     /// The layers between surfaces.
     pub(super) fn layers(&self, surfaces: &[Surface], columns: &[Vec<Node>]) -> Layers {
         let is_ground = |node: &Node| node.surface == Surface::Ground;
         let has_air = columns.iter().any(|column| column.iter().any(is_ground));
-        let Layers { mut names, mut rocks, mut bedding } = Layers::default();
+        let Layers { mut names, mut rocks } = Layers::default();
         for n in 0..=surfaces.len() {
             let above = n.checked_sub(1).map(|n| surfaces[n]);
             let is_bed = |surface: &&Surface| !matches!(surface, Surface::Body(_) | Surface::Baked(_));
             let below = surfaces[n..].iter().find(is_bed).copied();
-            bedding.push(above.and_then(|above| self.bedding(above, below)));
             let unit = match (above, below) {
                 (None, _) if has_air => None,
                 (Some(Surface::Body(unit) | Surface::Baked(unit)), _) => Some(unit),
@@ -63,7 +43,7 @@ impl Stage<'_> {
             names.push(name);
             rocks.push(Some(unit.rock.clone()));
         }
-        Layers { names, rocks, bedding }
+        Layers { names, rocks }
     }
 
     /// The unit between two surfaces that follow one another.

@@ -63,19 +63,8 @@ pub struct Interpretation {
     pub horizons: Vec<Horizon>,
     /// The rock of each layer, youngest first; `None` for air.
     pub rocks: Vec<Option<String>>,
-    /// How the bedding of each layer lies, youngest first, where its boundaries do not say so.
-    pub bedding: Vec<Option<Bedding>>,
     /// What is not in it, a sentence each.
     pub notes: Vec<String>,
-}
-
-/// How bedding lies between the top and the base of a layer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Bedding {
-    /// As the top: it was laid down level on what was there.
-    Level,
-    /// At the same share of the height between top and base along each vertical line.
-    Copied,
 }
 
 /// What a surface is.
@@ -139,7 +128,7 @@ impl Stage<'_> {
             })
             .collect();
         let surfaces = self.surfaces(&columns);
-        let Layers { names: layer_names, rocks, bedding } = self.layers(&surfaces, &columns);
+        let Layers { names: layer_names, rocks } = self.layers(&surfaces, &columns);
         let mut notes = Vec::new();
         let flat: Vec<Surface> = surfaces.iter().copied().filter(|surface| self.is_map(*surface, &columns)).collect();
         let mut sheets = self.sheets(&flat, &grid, &columns, blocks).into_iter();
@@ -164,7 +153,7 @@ impl Stage<'_> {
         if self.acts().iter().any(|act| matches!(act, Act::Metamorphism(_))) {
             notes.push("metamorphic rock is drawn as the rock that it was: it has no horizon".to_owned());
         }
-        Interpretation { geometry, stratigraphy, horizons, rocks, bedding, notes }
+        Interpretation { geometry, stratigraphy, horizons, rocks, notes }
     }
 
     /// Whether beds of a later event lie on the top of a bed that was moved or worn down before.

@@ -10,9 +10,8 @@ use crate::document::{FaultEntry, HorizonEntry, Id, Origin};
 use crate::folder::Draft;
 use crate::styles;
 use glam::DVec3;
-use history::{Bedding, FaultBlocks, History};
+use history::{FaultBlocks, History};
 use model::FaultNetwork;
-use param::KDefinition;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use survey::Progress;
@@ -132,12 +131,8 @@ impl TellHistory {
         for (position, name) in made.stratigraphy.layer_names.iter().enumerate() {
             draft.document.name_layer(position, name)?;
         }
-        for ((layer, rock), bedding) in made.stratigraphy.layer_names.iter().zip(&made.rocks).zip(&made.bedding) {
+        for (layer, rock) in made.stratigraphy.layer_names.iter().zip(&made.rocks) {
             let mut style = SetLayer { layer: layer.clone(), rock: rock.clone(), ..SetLayer::default() };
-            style.k = bedding.map(|bedding| match bedding {
-                Bedding::Level => KDefinition::ParallelToTop,
-                Bedding::Copied => KDefinition::Proportional,
-            });
             if rock.is_none() {
                 style.pattern = Some("plain".to_owned());
                 style.colour = Some(Colour::WHITE);

@@ -63,6 +63,8 @@ pub(crate) fn parameterization_key(document: &Document, model: &ModelSettings, s
         model: &'a ModelSettings,
         settings: &'a ParamSettings,
         taken: Option<&'a str>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        told: Option<&'a str>,
     }
     let ModelInputs { revision: of_model, geometry, horizons, faults, model } = ModelInputs::of(document, model);
     key_of(&Inputs {
@@ -73,6 +75,7 @@ pub(crate) fn parameterization_key(document: &Document, model: &ModelSettings, s
         model,
         settings,
         taken: document.parameterization.as_ref().map(|entry| entry.hash.as_str()),
+        told: document.history_of_coordinates(),
     })
 }
 

@@ -15,5 +15,6 @@ pub(crate) mod scattered;
 mod sheets;
 pub mod solid;
 pub mod times;
+pub(crate) mod told;
 
 pub use sheets::HorizonSheets;

@@ -6,6 +6,7 @@ use crate::document::Document;
 use crate::error::ProjectError;
 use crate::facts::{Facts, Query};
 use crate::interpretation::solid::{self, SolidModel};
+use crate::interpretation::told;
 use crate::pictures::shown_candidates::ShownCandidates;
 pub use crate::pictures::volumes::{LoadedSamples, LoadedVolume};
 use crate::pictures::volumes::{Reading, SMALL_BYTES, read_volumes};
@@ -126,7 +127,10 @@ impl Query for SolidRock {
         }
         let start = Instant::now();
         let computed = match &document.parameterization {
-            None => Parameterization::compute(&*model, &settings, progress)?,
+            None => match told::parameterization(document, &model, &settings, progress)? {
+                Some(told) => told,
+                None => Parameterization::compute(&*model, &settings, progress)?,
+            },
             Some(entry) => {
                 let arrays = derived::voxels_of(content::read_parameterization(root, entry, progress)?);
                 Parameterization::of_volumes(&*model, &arrays, &settings, progress)?.0
