@@ -15,18 +15,24 @@ pub(crate) struct FaceMap {
     voxel_m: Vec3,
 }
 
+/// The mean thickness of a layer, m.
+fn thickness_m(tables: &TtfTables, layer: u16) -> f32 {
+    tables.layers.get(usize::from(layer)).map_or(1.0, |layer| layer.thickness_m)
+}
+
 impl FaceMap {
     /// The stretch of each mapping in a layer where flat space changes by this Jacobian, per voxel.
     pub(crate) fn stretches(&self, tables: &TtfTables, layer: u16, jacobian: &[[f32; 3]; 3]) -> [Stretch; 3] {
-        let thickness_m = tables.layers.get(usize::from(layer)).map_or(1.0, |layer| layer.thickness_m);
         let changes = self.metre_steps.map(|step| jacobian.map(|row| Vec3::from_array(row).dot(step)));
-        self.frame.stretches(tables.globals.aspect_j, [tables.globals.extent_i_m, thickness_m], changes)
+        self.frame.stretches(tables.globals.aspect_j, [tables.globals.extent_i_m, thickness_m(tables, layer)], changes)
     }
 
     /// The weights of the mappings there.
     pub(crate) fn weights(&self, tables: &TtfTables, layer: u16, jacobian: &[[f32; 3]; 3]) -> MappingWeights {
-        let grad_k = (Vec3::from_array(jacobian[2]) / self.voxel_m).to_array();
-        self.frame.weights(grad_k, &self.stretches(tables, layer, jacobian))
+        let k = Vec3::from_array(jacobian[2]);
+        let [_, _, on_map] = self.stretches(tables, layer, jacobian);
+        let [p, q] = self.metre_steps.map(|step| thickness_m(tables, layer) * k.dot(step));
+        self.frame.weights((k / self.voxel_m).to_array(), p.hypot(q), on_map)
     }
 }
 

@@ -15,16 +15,18 @@
 //! and k then change together and nothing changes along y, so the pattern smears into stripes. We take the
 //! horizontal coordinate that runs along strike. Where the face is nearly parallel to the layer, k hardly changes, and the
 //! way across t takes its place: j on a top face, the way down the layer on a side face that shows a steep limb. A thick
-//! layer comes to that at larger angles than a thin one. So what counts is how calm the pattern would be on the face
-//! ([`crate::Stretch::calmness`]). In a layer of its nominal thickness that is |s|, the sine of the angle between face and
-//! layer; s = n × g is the strike line on the face, for face normal n and g = ∇k/|∇k|. From 0.6 the map begins to replace k,
-//! from 0.5 on, the limit of what is calm, it alone is used, unless it is no calmer.
+//! layer comes to that at larger angles than a thin one. So what counts is q, the nominal metres of k on a metre of the
+//! face. In a layer of its nominal thickness that is |s|, the sine of the angle between face and layer; s = n × g is the
+//! strike line on the face, for face normal n and g = ∇k/|∇k|. Where k is dense since beds are thin, q says how many times too
+//! dense; where they were sheared, as in the limbs of a similar fold, they cross the face at a large angle and are drawn.
+//! From c = 0.6 the map begins to replace k, from 0.5 on, the limit of what is calm, it alone is used, unless it is no
+//! calmer ([`crate::Stretch::calmness`]).
 //!
-//! With S(a, b, x) the cubic smoothstep, c₀, c₁ and c₂ the calmness of along, across and map:
+//! With S(a, b, x) the cubic smoothstep, c₂ the calmness of the map:
 //!
 //! ```text
 //! r = (s·t)²/((s·t)² + (s·t′)²)         along t, a share of R = S(0.35, 0.65, r); t′ = t turned by 90°
-//! c² = R·c₀² + (1 − R)·c₁²
+//! c = q where q ≤ 1, else the larger of 1/q and |s|
 //! map = (1 − S(0.5², 0.6², c²))·(1 − S(0.8, 1, c²/c₂²)),   along = (1 − map)·R,   across = 1 − map − along
 //! ```
 //!
@@ -113,21 +115,21 @@ impl FaceFrame {
         Self { normal: unit(normal), along, shift }
     }
 
-    /// The weights at a point where k rises along `grad_k` (any length) and the mappings have these stretches
-    /// ([`Self::stretches`]). A gradient that is zero or NaN gives the along mapping alone.
+    /// The weights at a point where k rises along `grad_k` (any length), by `k_rate` nominal metres for a metre of the face, and
+    /// the map has this stretch ([`Self::stretches`]). A gradient that is zero or NaN gives the along mapping alone.
     ///
     /// ```
     /// use ttf::FaceFrame;
     /// // i, j and k over 1 km by 1 km by 100 m; a flat layer on a top face is seen as a map.
     /// let top = FaceFrame::new([0.0, 0.0, 1.0]);
     /// let on_top = top.stretches(1.0, [1e3, 1e2], [[1e-3, 0.0, 0.0], [0.0, 1e-3, 0.0]]);
-    /// assert_eq!(top.weights([0.0, 0.0, -1e-2], &on_top).to_array(), [0.0, 0.0, 1.0]);
+    /// assert_eq!(top.weights([0.0, 0.0, -1e-2], 0.0, on_top[2]).to_array(), [0.0, 0.0, 1.0]);
     /// // On a side face k runs upwards.
     /// let side = FaceFrame::new([1.0, 0.0, 0.0]);
     /// let on_side = side.stretches(1.0, [1e3, 1e2], [[0.0, 1e-3, 0.0], [0.0, 0.0, -1e-2]]);
-    /// assert_eq!(side.weights([0.0, 0.0, -1e-2], &on_side).to_array(), [1.0, 0.0, 0.0]);
+    /// assert_eq!(side.weights([0.0, 0.0, -1e-2], 1.0, on_side[2]).to_array(), [1.0, 0.0, 0.0]);
     /// ```
-    pub fn weights(&self, grad_k: [f32; 3], stretches: &[Stretch; 3]) -> MappingWeights {
+    pub fn weights(&self, grad_k: [f32; 3], k_rate: f32, map: Stretch) -> MappingWeights {
         let g = unit(grad_k);
         let n = self.normal;
         let s = [n[1] * g[2] - n[2] * g[1], n[2] * g[0] - n[0] * g[2], n[0] * g[1] - n[1] * g[0]];
@@ -139,8 +141,10 @@ impl FaceFrame {
         let horizontal_sq = along_t * along_t + across_t * across_t;
         let share = if horizontal_sq > 1e-12 { along_t * along_t / horizontal_sq } else { 1.0 };
         let share = smoothstep(ACROSS_ONLY_SHARE, ALONG_ONLY_SHARE, share);
-        let [along_sq, across_sq, map_sq] = stretches.map(|stretch| stretch.calmness() * stretch.calmness());
-        let k_sq = across_sq + share * (along_sq - across_sq);
+        let sine_sq = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
+        let rate_sq = k_rate * k_rate;
+        let k_sq = if rate_sq <= 1.0 { rate_sq } else { sine_sq.max(1.0 / rate_sq) };
+        let map_sq = map.calmness() * map.calmness();
         let sparse = 1.0 - smoothstep(MAP_ONLY_CALMNESS_SQ, NO_MAP_CALMNESS_SQ, k_sq);
         let better = if map_sq > 0.0 { 1.0 - smoothstep(MAP_RATHER_SQ, 1.0, k_sq / map_sq) } else { 0.0 };
         let map = sparse * better;
@@ -228,12 +232,11 @@ mod tests {
 
     /// The weights in a layer of its nominal thickness whose (i, j) are lengths along it.
     fn weights(normal: [f32; 3], grad_k: [f32; 3]) -> [f32; 3] {
-        let frame = FaceFrame::new(normal);
-        frame.weights(grad_k, &stretches(&frame, grad_k, 1.0)).to_array()
+        weights_at(&FaceFrame::new(normal), grad_k, 1.0)
     }
 
-    /// The stretches where k rises so many times as fast as in a layer of its nominal thickness.
-    fn stretches(frame: &FaceFrame, grad_k: [f32; 3], rate: f32) -> [Stretch; 3] {
+    /// The weights where k rises so many times as fast as in a layer of its nominal thickness.
+    fn weights_at(frame: &FaceFrame, grad_k: [f32; 3], rate: f32) -> [f32; 3] {
         let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let cross = |a: [f32; 3], b: [f32; 3]| {
             [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
@@ -250,7 +253,9 @@ mod tests {
         let p = unit(cross(n, if n[0].abs() < 0.7 { [1.0, 0.0, 0.0] } else { UP }));
         let change =
             |step| [dot(step, turned([1.0, 0.0, 0.0])), dot(step, turned([0.0, 1.0, 0.0])), rate * dot(step, g)];
-        frame.stretches(1.0, [1.0; 2], [change(p), change(cross(n, p))])
+        let changes = [change(p), change(cross(n, p))];
+        let [_, _, map] = frame.stretches(1.0, [1.0; 2], changes);
+        frame.weights(grad_k, changes[0][2].hypot(changes[1][2]), map).to_array()
     }
 
     fn near(found: [f32; 3], expected: [f32; 3]) {
@@ -290,7 +295,7 @@ mod tests {
         for rate in [0.7, 1.0, 1.5] {
             let at = |sin: f32| {
                 let grad_k = [0.0, sin, -(1.0 - sin * sin).sqrt()];
-                top.weights(grad_k, &stretches(&top, grad_k, rate)).to_array()
+                weights_at(&top, grad_k, rate)
             };
             near(at(0.49 / rate), [0.0, 0.0, 1.0]);
             near(at(0.61 / rate), [1.0, 0.0, 0.0]);
@@ -308,7 +313,17 @@ mod tests {
     fn the_map_is_not_taken_where_it_is_no_calmer() {
         // A layer four times as thick as usual in a section across it: i alone changes with the map.
         let (face, grad_k) = (FaceFrame::new([0.0, 1.0, 0.0]), [0.0, 0.0, -1.0]);
-        near(face.weights(grad_k, &stretches(&face, grad_k, 0.25)).to_array(), [1.0, 0.0, 0.0]);
+        near(weights_at(&face, grad_k, 0.25), [1.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn sheared_beds_are_drawn_on_a_section_across_them() {
+        // The limb of a similar fold: k was displaced by five times the way along x, and a plunge makes j change with z.
+        let (face, grad_k) = (FaceFrame::new([0.0, 1.0, 0.0]), [5.0, 0.0, -1.0]);
+        let changes = [[1.0, 0.0, 5.0], [0.0, 0.4, -1.0]];
+        let [along, _, map] = face.stretches(1.0, [1.0; 2], changes);
+        assert!(map.calmness() > 4.0 * along.calmness(), "{map:?} {along:?}");
+        near(face.weights(grad_k, 26f32.sqrt(), map).to_array(), [1.0, 0.0, 0.0]);
     }
 
     #[test]

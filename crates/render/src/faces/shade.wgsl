@@ -145,19 +145,19 @@ fn face_mappings(plane: u32, point: ShadePoint, thickness_m: f32) -> Mappings {
         share = along_t * along_t / horizontal_sq;
     }
     share = smoothstep(ACROSS_ONLY_SHARE, ALONG_ONLY_SHARE, share);
-    var squares: vec3<f32>;
-    for (var mapping = 0u; mapping < 3u; mapping += 1u) {
-        let nominal_m = vec2(ttf.extent_i_m, select(thickness_m, ttf.extent_i_m, mapping == 2u));
-        let p = nominal_m * map_flat(mappings, mapping, point.metre_p);
-        let q = nominal_m * map_flat(mappings, mapping, point.metre_q);
-        let calm = calmness(vec4(p.x, q.x, p.y, q.y));
-        squares[mapping] = calm * calm;
+    let rate = thickness_m * vec2(point.metre_p.z, point.metre_q.z);
+    var over_k = dot(rate, rate);
+    if !(over_k <= 1.0) {
+        over_k = max(dot(s, s), 1.0 / over_k);
     }
-    let over_k = squares.y + share * (squares.x - squares.y);
+    let p = ttf.extent_i_m * map_flat(mappings, 2u, point.metre_p);
+    let q = ttf.extent_i_m * map_flat(mappings, 2u, point.metre_q);
+    let on_map = calmness(vec4(p.x, q.x, p.y, q.y));
+    let map_sq = on_map * on_map;
     let sparse = 1.0 - smoothstep(MAP_ONLY_CALMNESS_SQ, NO_MAP_CALMNESS_SQ, over_k);
     var map = 0.0;
-    if squares.z > 0.0 {
-        map = sparse * (1.0 - smoothstep(MAP_RATHER_SQ, 1.0, over_k / squares.z));
+    if map_sq > 0.0 {
+        map = sparse * (1.0 - smoothstep(MAP_RATHER_SQ, 1.0, over_k / map_sq));
     }
     let along = (1.0 - map) * share;
     mappings.weights = vec3(along, max(1.0 - map - along, 0.0), map);
