@@ -9,6 +9,8 @@ use glam::{DVec3, Vec3};
 use model::FaultNetwork;
 use rayon::prelude::*;
 
+/// Share of a trace by which what can be stepped over is cut short: sides are rounded.
+const ROUNDED: f32 = 0.05;
 /// Rounds in which the place of a found surface on a line settles.
 const SETTLED: usize = 8;
 
@@ -125,11 +127,19 @@ impl Cut {
                     Across::Inlines => Vec3::new(at, line as f32, z as f32),
                     Across::Crosslines => Vec3::new(line as f32, at, z as f32),
                 };
+                let most = faults.most_change(f, point(1.0, 0, 0));
                 let place = |line: usize, z: usize| {
                     let side = |at: usize| faults.side(f, point(at as f32, line, z));
-                    let mut before = side(0);
-                    for at in 1..count {
+                    let (mut at, mut before) = (0, side(0));
+                    while at + 1 < count {
+                        // So many traces on it cannot have changed its sign.
+                        let far = ((before.abs() / most - ROUNDED) as usize).min(count - 1 - at);
+                        at += far.max(1);
                         let after = side(at);
+                        if far > 0 {
+                            before = after;
+                            continue;
+                        }
                         if (before > 0.0) != (after > 0.0) {
                             let place = at as f32 - after / (after - before);
                             let p = point(place, line, z);
@@ -150,6 +160,43 @@ impl Cut {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use survey::{Fault, Progress, SurveyGeometry, TriangleMesh, VerticalUnit};
+
+    #[test]
+    fn a_fault_of_a_network_is_cut_at_its_first_crossing_of_every_line() {
+        let size = [40, 36, 50];
+        let geometry = SurveyGeometry::regular(size, 25.0, 10.0, VerticalUnit::Metres);
+        // One that waves by ten traces and is crossed several times on some lines, and a plain one that dips the other way.
+        let fault = |name: &str, x: &dyn Fn(f64, f64) -> f64| {
+            let at = |n: usize| {
+                let (y, z) = ((n / 13) as f64 * 3.0, (n % 13) as f64 * 4.0);
+                geometry.world_from_voxel(DVec3::new(x(y, z), y, z))
+            };
+            let cell = |n: usize| [[n, n + 13, n + 14], [n, n + 14, n + 1]].map(|t| t.map(|corner| corner as u32));
+            let triangles = (0..12 * 13).filter(|n| n % 13 < 12).flat_map(cell).collect();
+            Fault::new(name, TriangleMesh { vertices: (0..13 * 13).map(at).collect(), triangles })
+        };
+        let waving = fault("waving", &|y, z| 14.0 + 10.0 * (0.3 * y + 0.05 * z).sin() + 0.1 * z);
+        let plain = fault("plain", &|y, z| 30.0 - 0.15 * y - 0.2 * (z - 25.0));
+        let network = FaultNetwork::build(&geometry, &[waving, plain], &Progress::silent()).unwrap();
+        let cuts = Cut::of_network(&network, size);
+        let mut crossed = 0;
+        for (f, cut) in cuts.iter().enumerate() {
+            let count = if cut.across == Across::Inlines { size[0] } else { size[1] };
+            for (line, z) in (0..cut.size[0]).flat_map(|line| (0..50).map(move |z| (line, z))) {
+                let side = |at: usize| {
+                    let [x, y] = cut.trace(at, line).map(|at| at as f32);
+                    network.side(f, Vec3::new(x, y, z as f32))
+                };
+                let first = (1..count).find(|&at| (side(at - 1) > 0.0) != (side(at) > 0.0));
+                let place = cut.place[line * 50 + z];
+                let is_there = first.is_some_and(|at| (place - at as f32 + 0.5).abs() <= 0.5);
+                assert!(place.is_nan() || is_there, "{f} {line} {z}: {place}, not {first:?}");
+                crossed += usize::from(place.is_finite());
+            }
+        }
+        assert!(crossed > 1500, "{crossed}");
+    }
 
     #[test]
     fn a_fault_that_ends_separates_nothing_beyond_its_tip() {

@@ -68,7 +68,15 @@ fn whole(tau: &Volume<f32>, volume: &Volume<f32>) -> (Log, f32, usize) {
 /// Distance from a level within which a trace has its reflection, samples: τ is a little off here and there.
 const BESIDE: f32 = 1.5;
 /// Share of the mean amplitude along a level from which on a trace has the reflection, too.
-const ALIKE: f32 = 0.4;
+pub(crate) const ALIKE: f32 = 0.4;
+
+/// The strongest amplitude of a sign on a trace beside a depth; −∞ where there is none.
+pub(crate) fn beside(trace: &[f32], at: f32, sign: f32) -> f32 {
+    let low = (at - BESIDE).ceil().max(0.0) as usize;
+    let high = ((at + BESIDE).floor().max(0.0) as usize).min(trace.len() - 1);
+    trace.get(low..=high).into_iter().flatten().map(|a| sign * a).fold(f32::NEG_INFINITY, f32::max)
+}
+
 /// Thickness of a layer that can be seen in a picture, as a share of the samples, and least share of the traces of two levels
 /// on which what lies between them has it.
 const SEEN_THICKNESS: f32 = 0.025;
@@ -87,13 +95,11 @@ impl Candidate {
     /// A level of a time at which amplitudes have a sign on the average. On each trace it has the strongest amplitude of that
     /// sign beside it, so that a strong reflection along which τ is a sample off here and there counts as what it is.
     fn new(tau: &Volume<f32>, volume: &Volume<f32>, time: f32, sign: f32, rms: f32, live: usize) -> Self {
-        let [nx, ny, nz] = tau.size();
+        let [nx, ny, _] = tau.size();
         let on = |trace: usize| {
             let (x, y) = (trace / ny, trace % ny);
             let at = crossings(tau.trace(x, y), time).next().filter(|_| volume.is_live(x, y))?;
-            let low = (at - BESIDE).ceil().max(0.0) as usize;
-            let high = ((at + BESIDE).floor() as usize).min(nz - 1);
-            let amplitude = volume.trace(x, y)[low..=high].iter().map(|a| sign * a).fold(f32::NEG_INFINITY, f32::max);
+            let amplitude = beside(volume.trace(x, y), at, sign);
             amplitude.is_finite().then_some((at, amplitude))
         };
         let all: Vec<Option<(f32, f32)>> = (0..nx * ny).into_par_iter().map(on).collect();

@@ -38,6 +38,7 @@
 //! Deliberately absent: files, projects, pictures, and the growing of candidates.
 
 mod bodies;
+mod bridges;
 mod claims;
 mod coherence;
 mod compute;
@@ -69,6 +70,7 @@ mod vectors;
 mod tests;
 
 pub use bodies::{Body, Column};
+pub use bridges::bridge;
 pub use compute::{GeologicTime, TimeSettings, geologic_time};
 pub use cuts::{Across, Cut};
 pub use error::TimeError;

@@ -234,6 +234,13 @@ impl FaultNetwork {
         self.surfaces[fault].side(p.as_dvec3()) as f32
     }
 
+    /// An upper bound of what [`Self::side`] of a fault changes by over a step of so many voxels, m.
+    pub fn most_change(&self, fault: usize, step: Vec3) -> f32 {
+        let surface = &self.surfaces[fault];
+        let [u, v, w] = (surface.frame_from_voxel * step.as_dvec3()).to_array();
+        (w.abs() + surface.steepest() * surface.spacing_m * u.hypot(v)) as f32
+    }
+
     /// Side bits at voxel position `p`: bit f set on the positive side of fault f (or on it).
     pub fn bits_at(&self, p: Vec3) -> u64 {
         let p = p.as_dvec3();

@@ -7,7 +7,7 @@ use crate::document::{Chooser, Document, HorizonQuery, Origin, QueryBorder};
 use crate::folder::Draft;
 use crate::interpretation::assembly;
 use crate::interpretation::times::Times;
-use ::time::{Crossing, Doubt, Event, Node, Reflections, Seed, Support, isochron};
+use ::time::{Crossing, Doubt, Event, Node, Reflections, Seed, Support, bridge, isochron};
 use glam::{DVec2, Vec3};
 use interp::Extremum;
 use model::FaultNetwork;
@@ -103,7 +103,10 @@ impl PickByTime {
             return Err(ProjectError::NoIsochron { time: event.time });
         }
         let voxels = origin.seeds().iter().map(|at| voxel(*at, &geometry)).collect::<Result<Vec<_>, _>>()?;
-        let sheets = sheets(&event, &geometry, &blocks, &voxels);
+        let mut sheets = sheets(&event, &geometry, &blocks, &voxels);
+        if matches!(self.level, TimeLevel::Chosen(_)) {
+            lay_over_islands(&mut sheets, &times.amplitudes, &geometry);
+        }
         let count = |quality: Quality| -> usize {
             sheets.iter().flat_map(|sheet| &sheet.quality).filter(|found| **found == quality).count()
         };
@@ -241,6 +244,19 @@ fn sheets(event: &Event, geometry: &SurveyGeometry, blocks: &FaultNetwork, seeds
         sheets.values_mut().for_each(smooth);
     }
     sheets.into_values().collect()
+}
+
+/// Lays the sheets of a level that was chosen for its reflection over the islands in which they leave it.
+fn lay_over_islands(sheets: &mut [Sheet], amplitudes: &Volume<f32>, geometry: &SurveyGeometry) {
+    let sample = |depth: &f32| geometry.vertical.index_of(f64::from(*depth)) as f32;
+    let mut samples: Vec<Vec<f32>> = sheets.iter().map(|sheet| sheet.depth.iter().map(sample).collect()).collect();
+    let moved = bridge(&mut samples, amplitudes);
+    for ((sheet, samples), moved) in sheets.iter_mut().zip(samples).zip(moved) {
+        for n in (0..moved.len()).filter(|n| moved[*n]) {
+            sheet.depth[n] = geometry.vertical.value_at(f64::from(samples[n])) as f32;
+            sheet.quality[n] = Quality::Filled;
+        }
+    }
 }
 
 /// Distance between a place that was pointed at and the node that it made, samples.
