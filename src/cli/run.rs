@@ -198,7 +198,7 @@ fn create(
     });
     let text = text.transpose()?;
     let mut new = Project::create(&path, geometry)?;
-    let told = text.map(|text| new.project().apply(&Command::TellHistory(TellHistory { text }), progress)).transpose();
+    let told = text.map(|text| new.project().apply(&Command::TellHistory(TellHistory { text, ..TellHistory::default() }), progress)).transpose();
     let told = told.with_context(|| history.map_or_else(String::new, |file| file.display().to_string()))?;
     new.publish()?;
     let mut report = Report::line(format!("created {}", path.display()));

@@ -291,6 +291,33 @@ pub enum ProjectError {
         "a history makes a whole block, and this project has horizons or faults already; create a new project for it"
     )]
     HistoryOverBlock,
+    /// A project without a geological history.
+    #[error("the project was not made from a geological history, so that it has no stages")]
+    NoHistory,
+    /// A stage before the first event or after the last.
+    #[error("there is no stage {asked}: the history has {events} events, so that stages lie above 0 and up to {events}")]
+    NoStage {
+        /// What was asked for.
+        asked: f64,
+        /// How many events there are.
+        events: usize,
+    },
+    /// A stage at which there is no rock in the block.
+    #[error("at stage {stage} there is no rock in the block yet")]
+    BareStage {
+        /// The stage.
+        stage: f64,
+    },
+    /// A stage that cannot be made.
+    #[error("the block at stage {stage} ({event}) cannot be made: {source}")]
+    Stage {
+        /// The stage.
+        stage: f64,
+        /// The event that is under way or has just happened.
+        event: String,
+        /// Why.
+        source: Box<ProjectError>,
+    },
     /// The layers could not be parameterized.
     #[error(transparent)]
     Param(#[from] param::ParamError),
