@@ -27,8 +27,7 @@ const MOST_NAMED: usize = 6;
 /// Directions within so many degrees of a point of the compass are called by it.
 const NEAR_POINT_DEG: f64 = 3.0;
 /// The points of the compass, clockwise.
-const POINTS: [&str; 8] =
-    ["north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west"];
+const POINTS: [&str; 8] = ["north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west"];
 
 impl History {
     /// What an event does, in words; `event` counts from 0.
@@ -68,7 +67,8 @@ impl History {
             }
             [Act::Body(body)] => {
                 let what = unit(body.name.as_deref(), &body.rock, &article(body.name.as_deref(), found.kind));
-                let baked = body.aureole.as_ref().map_or(String::new(), |(_, rock)| format!(", its rim baked to {rock}"));
+                let baked =
+                    body.aureole.as_ref().map_or(String::new(), |(_, rock)| format!(", its rim baked to {rock}"));
                 format!("Intrusion of {what}{baked}")
             }
             [Act::Volcano(volcano)] => match &volcano.name {
@@ -257,12 +257,18 @@ mod tests {
                 "{ kind = \"fold\", wavelength = 1800, amplitude = 120, plunge = 10, axis = 45 }",
                 "Folding: wavelength 1800 m, amplitude 120 m, plunging 10° towards north-east",
             ),
-            ("{ kind = \"fold\", shape = \"basin\", wavelength = 1800, amplitude = 120 }", "Basin, 1800 m wide and 120 m deep"),
+            (
+                "{ kind = \"fold\", shape = \"basin\", wavelength = 1800, amplitude = 120 }",
+                "Basin, 1800 m wide and 120 m deep",
+            ),
             ("{ kind = \"fault\", name = \"F7\", slip = 200 }", "Normal fault F7, throw 173 m"),
             ("{ kind = \"fault\", slip = -200, dip = 30 }", "Thrust F1, throw 100 m"),
             ("{ kind = \"fault\", dip = 90, dextral = 700 }", "Dextral strike-slip fault F1, offset 700 m"),
             ("{ kind = \"erosion\", depth = 200, name = \"Angular\" }", "Erosion to 200 m (Angular)"),
-            ("{ kind = \"dyke\", thickness = 30, count = 3, spacing = 300 }", "Intrusion of 3 dykes of basalt, each 30 m thick"),
+            (
+                "{ kind = \"dyke\", thickness = 30, count = 3, spacing = 300 }",
+                "Intrusion of 3 dykes of basalt, each 30 m thick",
+            ),
             ("{ kind = \"laccolith\", thickness = 150 }", "Intrusion of a laccolith of granite, 150 m thick"),
             (
                 "{ kind = \"pluton\", radius = 400, aureole = 100 }",

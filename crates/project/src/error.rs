@@ -295,7 +295,9 @@ pub enum ProjectError {
     #[error("the project was not made from a geological history, so that it has no stages")]
     NoHistory,
     /// A stage before the first event or after the last.
-    #[error("there is no stage {asked}: the history has {events} events, so that stages lie above 0 and up to {events}")]
+    #[error(
+        "there is no stage {asked}: the history has {events} events, so that stages lie above 0 and up to {events}"
+    )]
     NoStage {
         /// What was asked for.
         asked: f64,

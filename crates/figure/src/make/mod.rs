@@ -21,11 +21,11 @@ use crate::interpretation::DrawnInterpretation;
 use crate::map::{HorizonMap, MapSource, Mapped};
 use crate::spec::{BlockPart, CorrelationPart, FencePart, Figure, MapPart, Part, SectionPart};
 use contents::Prepared;
-pub use series::{SeriesLegend, SeriesPage};
 use glam::DVec2;
 use page::Rect;
 use page::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH};
 use render::{Background, FaceData, Faces, Scene, Unpicked};
+pub use series::{SeriesLegend, SeriesPage, panel_letter};
 use survey::{StratigraphicHorizon, SurveyGeometry, Well};
 use ttf::{Colour, LayerStyle, RawColour, TextureLibrary};
 

@@ -97,7 +97,11 @@ fn block(figure: &Figure) -> Option<&BlockPart> {
 fn shape(block: Option<&BlockPart>, geometry: &SurveyGeometry) -> f64 {
     const USUAL: f64 = 0.75;
     let Some(block) = block else { return USUAL };
-    let scene = Scene { size_px: [MEASURED_PX; 2], camera: Camera { pan: [0.0; 2], zoom: 1.0, ..block.scene.camera }, ..block.scene.clone() };
+    let scene = Scene {
+        size_px: [MEASURED_PX; 2],
+        camera: Camera { pan: [0.0; 2], zoom: 1.0, ..block.scene.camera },
+        ..block.scene.clone()
+    };
     let (view, bounds) = (scene.view(geometry), scene.box_in(geometry));
     let corners = (0..8).map(|n| {
         let of = |axis: usize| if n >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
@@ -182,10 +186,10 @@ impl Grid {
     }
 }
 
-/// The name of a panel: a … z, then aa, ab …
-fn letter(panel: usize) -> String {
+/// The letter of a panel of a series, counted from 0: a … z, then aa, ab …
+pub fn panel_letter(panel: usize) -> String {
     let last = char::from(b'a' + (panel % 26) as u8);
-    if panel < 26 { last.to_string() } else { format!("{}{last}", letter(panel / 26 - 1)) }
+    if panel < 26 { last.to_string() } else { format!("{}{last}", panel_letter(panel / 26 - 1)) }
 }
 
 /// A page that is laid out, and takes one block after the other.
@@ -268,7 +272,7 @@ impl SeriesPage {
         let at_baseline = |at: DVec2, words: &str, size: f64| {
             Text::new(at, words).sized(size).anchored(Across::Start, Upright::Baseline)
         };
-        heading.push(at_baseline(baseline(0), &letter(panel), LETTER_PT).inked(INK));
+        heading.push(at_baseline(baseline(0), &panel_letter(panel), LETTER_PT).inked(INK));
         for (n, line) in lines.iter().enumerate() {
             let text = at_baseline(baseline(n) + DVec2::new(LETTER_ROOM_PT, 0.0), line, TEXT_PT).inked(QUIET_INK);
             heading.push(text.fitted(self.grid.column - LETTER_ROOM_PT));
@@ -279,7 +283,8 @@ impl SeriesPage {
         if panel + 1 == self.grid.captions.len() {
             self.list.items.extend(maker.strip(part, self.strip, &drawn));
         }
-        self.panels.push(Group::new(GroupKind::Panel, letter(panel)).with([heading.into(), drawn.group.into()]).into());
+        self.panels
+            .push(Group::new(GroupKind::Panel, panel_letter(panel)).with([heading.into(), drawn.group.into()]).into());
         Ok(())
     }
 
@@ -300,7 +305,7 @@ mod tests {
 
     #[test]
     fn panels_are_lettered_on_and_on() {
-        let letters = [0, 1, 25, 26, 27, 52].map(letter);
+        let letters = [0, 1, 25, 26, 27, 52].map(panel_letter);
         assert_eq!(letters, ["a", "b", "z", "aa", "ab", "ba"]);
     }
 

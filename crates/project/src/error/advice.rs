@@ -56,7 +56,9 @@ impl ProjectError {
             Self::BadNote(_) => {
                 "list the notes and their numbers with `petroglyph note list`, and the survey's lines with `petroglyph info`"
             }
-            Self::NoHistory => "make a block from a text of events: `petroglyph create BLOCK.petro --history FILE.toml`",
+            Self::NoHistory => {
+                "make a block from a text of events: `petroglyph create BLOCK.petro --history FILE.toml`"
+            }
             Self::NoStage { .. } => "stage 2 is the block after its second event, 2.5 after half of the third",
             Self::BareStage { .. } => "ask for a later stage",
             Self::BadGrowth { .. } => "state metres, 0 or more",

@@ -11,7 +11,7 @@ use crate::pictures::load::{self, Loaded, Request};
 use crate::pictures::{Painter, scene};
 use crate::styles;
 use figure::{Annotation, BlockPart, Figure, FigureError, FigureInputs, PageSize, SeriesLegend, SeriesPage};
-use render::{Media, Scene};
+use render::Scene;
 use survey::Progress;
 use system::memory;
 
@@ -49,11 +49,7 @@ pub struct Series<'a> {
 impl Series<'_> {
     /// The figure of one panel: what the project has of the scene.
     fn of(&self, project: &Project) -> Result<Figure, ProjectError> {
-        let mut shown = self.scene.clone();
-        if project.document().volumes.is_empty() {
-            // Without a volume there is nothing to see through, nor to blend with.
-            shown = Scene { blend: 0.0, raw: None, media: Media::default(), ..shown };
-        }
+        let mut shown = scene::of_what_is_there(project.document(), self.scene);
         scene::prepare(project.document(), &mut shown, &Progress::silent())?;
         let size = match self.size {
             SeriesSize::Page(size) => size,
@@ -110,7 +106,11 @@ fn lettered(
     if let SeriesSize::Width(width) = series.size {
         figure.size = PageSize::Cm(legend.size_cm(width, &figure, &captions, known));
     }
-    memory::check("the page", &figure.size_px().map(|side| side.min(super::LONGEST_SIDE) as usize), super::PIXEL_BYTES)?;
+    memory::check(
+        "the page",
+        &figure.size_px().map(|side| side.min(super::LONGEST_SIDE) as usize),
+        super::PIXEL_BYTES,
+    )?;
     let origin = format!("Petroglyph {} · {}", env!("CARGO_PKG_VERSION"), last.title());
     let said = std::iter::once(origin).chain(series.figure.credit.iter().map(|credit| format!("data: {credit}")));
     let provenance = said.collect::<Vec<_>>().join(" · ");
