@@ -37,6 +37,8 @@ const BELOW_SHARE: f64 = 0.4;
 const BESIDE_SHARE: f64 = 0.3;
 /// Greatest height of a page whose height is free, cm.
 const HIGHEST_CM: f64 = 25.0;
+/// Steps along the sides of a block's foot at which it is looked for what is not cut away.
+const FOOT_STEPS: u32 = 60;
 /// Side of the picture in which the shape of a block is measured, pixels.
 const MEASURED_PX: u32 = 2000;
 
@@ -78,7 +80,7 @@ impl SeriesLegend {
             _ => 3,
         };
         let width = points(width_cm) - 2.0 * MARGIN_PT;
-        let grid = Grid::of_width(captions, columns, width, shape(block(figure), geometry));
+        let grid = Grid::of_width(captions, columns, width, Shape::of(block(figure), geometry));
         let legend = self.of(figure, library).map_or(0.0, |legend| legend.across(width).1 + GAP_PT);
         let tall = Rect::sized(DVec2::ZERO, DVec2::new(width, points(HIGHEST_CM)));
         let words = write_words(figure, None, &mut DisplayList::new(tall.size()), tall);
@@ -93,25 +95,45 @@ fn block(figure: &Figure) -> Option<&BlockPart> {
     figure.parts.iter().find_map(|part| if let Part::Block(block) = part { Some(&**block) } else { None })
 }
 
-/// The height of a block as its scene shows it, over its width.
-fn shape(block: Option<&BlockPart>, geometry: &SurveyGeometry) -> f64 {
-    const USUAL: f64 = 0.75;
-    let Some(block) = block else { return USUAL };
-    let scene = Scene {
-        size_px: [MEASURED_PX; 2],
-        camera: Camera { pan: [0.0; 2], zoom: 1.0, ..block.scene.camera },
-        ..block.scene.clone()
-    };
-    let (view, bounds) = (scene.view(geometry), scene.box_in(geometry));
-    let corners = (0..8).map(|n| {
-        let of = |axis: usize| if n >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
-        view.project(DVec3::new(of(0), of(1), of(2)))
-    });
-    let (low, high) = corners.fold((DVec2::MAX, DVec2::MIN), |(low, high), px| (low.min(px), high.max(px)));
-    let size = (high - low) / f64::from(MEASURED_PX);
-    let margin = (1.0 - size.max_element()).clamp(0.0, 0.3);
-    let found = (size.y + margin) / (size.x + margin);
-    if found.is_finite() { found.clamp(0.2, 3.0) } else { USUAL }
+/// The room that a block takes as its scene shows it.
+#[derive(Debug, Clone, Copy)]
+struct Shape {
+    /// Its height over its width.
+    height: f64,
+    /// Share of the height that is empty at its foot, where the nearest corner is cut away.
+    empty: f64,
+}
+
+impl Shape {
+    fn of(block: Option<&BlockPart>, geometry: &SurveyGeometry) -> Self {
+        const USUAL: Shape = Shape { height: 0.75, empty: 0.0 };
+        let Some(block) = block else { return USUAL };
+        let camera = Camera { pan: [0.0; 2], zoom: 1.0, ..block.scene.camera };
+        let scene = Scene { size_px: [MEASURED_PX; 2], camera, ..block.scene.clone() };
+        let (view, bounds) = (scene.view(geometry), scene.box_in(geometry));
+        let [low, high] = [bounds.low(), bounds.high()];
+        let around = |places: &mut dyn Iterator<Item = DVec3>| {
+            let px = places.map(|voxel| view.project(voxel));
+            px.fold((DVec2::MAX, DVec2::MIN), |(low, high), px| (low.min(px), high.max(px)))
+        };
+        let whole = around(&mut on_box(1).map(|share| low + (high - low) * share));
+        let is_cut = |p: &DVec3| scene.cut_outs.iter().any(|cut| p.cmpge(cut.low()).all() && p.cmple(cut.high()).all());
+        let seen = around(&mut on_box(FOOT_STEPS).map(|share| low + (high - low) * share).filter(|p| !is_cut(p)));
+        let size = (whole.1 - whole.0) / f64::from(MEASURED_PX);
+        let margin = (1.0 - size.max_element()).clamp(0.0, 0.3);
+        let height = (size.y + margin) / (size.x + margin);
+        let empty = (whole.1.y - seen.1.y) / f64::from(MEASURED_PX) / (size.y + margin);
+        let is_sound = height.is_finite() && empty.is_finite() && block.scene.camera.zoom <= 1.0;
+        if is_sound { Self { height: height.clamp(0.2, 3.0), empty: empty.clamp(0.0, 0.4) } } else { USUAL }
+    }
+}
+
+/// Places on the foot and the top of a box, as shares of its sides, with so many steps along each.
+fn on_box(steps: u32) -> impl Iterator<Item = DVec3> {
+    let share = move |n: u32| f64::from(n) / f64::from(steps);
+    let across =
+        move |z: f64| (0..=steps).flat_map(move |x| (0..=steps).map(move |y| DVec3::new(share(x), share(y), z)));
+    across(0.0).chain(across(1.0))
 }
 
 /// Height of the strip that holds scale bar and north arrow, points.
@@ -129,28 +151,30 @@ struct Grid {
     columns: usize,
     /// Width of a column.
     column: f64,
-    /// Size of a block.
+    /// Size of a block, and the share of its height down to its foot.
     pane: DVec2,
+    filled: f64,
     /// The lines of each caption.
     captions: Vec<Vec<String>>,
 }
 
 impl Grid {
     /// In so many columns of a width, with blocks as wide as a column.
-    fn of_width(captions: &[String], columns: usize, width: f64, shape: f64) -> Self {
+    fn of_width(captions: &[String], columns: usize, width: f64, shape: Shape) -> Self {
         let column = (width - GAP_PT * (columns as f64 - 1.0)) / columns as f64;
         let lines = |caption: &String| broken(caption, TEXT_PT, column - LETTER_ROOM_PT, MOST_LINES);
-        let pane = DVec2::new(column, column * shape);
-        Self { columns, column, pane, captions: captions.iter().map(lines).collect() }
+        let pane = DVec2::new(column, column * shape.height);
+        Self { filled: 1.0 - shape.empty, columns, column, pane, captions: captions.iter().map(lines).collect() }
     }
 
     /// In the columns that make blocks largest in a room.
-    fn fitted(captions: &[String], room: DVec2, shape: f64) -> Option<Self> {
+    fn fitted(captions: &[String], room: DVec2, shape: Shape) -> Option<Self> {
         let fitted = |columns: usize| {
             let mut grid = Self::of_width(captions, columns, room.x, shape);
             let rows = grid.rows() as f64;
-            let free = (room.y - (grid.height() - rows * grid.pane.y)) / rows;
-            grid.pane *= (free / grid.pane.y).min(1.0);
+            let taken = grid.filled * grid.pane.y;
+            let free = (room.y - (grid.height() - rows * taken)) / rows;
+            grid.pane *= (free / taken).min(1.0);
             grid
         };
         let all = (1..=captions.len()).map(fitted);
@@ -174,13 +198,13 @@ impl Grid {
     fn height(&self) -> f64 {
         let rows = self.rows();
         let headings: f64 = (0..rows).map(|row| self.heading(row)).sum();
-        headings + rows as f64 * self.pane.y + rows.saturating_sub(1) as f64 * ROW_GAP_PT
+        headings + rows as f64 * self.filled * self.pane.y + rows.saturating_sub(1) as f64 * ROW_GAP_PT
     }
 
     /// Where a panel's caption begins, and where its block stands.
     fn place(&self, panel: usize, origin: DVec2) -> (DVec2, Rect) {
         let (row, column) = (panel / self.columns, panel % self.columns);
-        let above: f64 = (0..row).map(|row| self.heading(row) + self.pane.y + ROW_GAP_PT).sum();
+        let above: f64 = (0..row).map(|row| self.heading(row) + self.filled * self.pane.y + ROW_GAP_PT).sum();
         let corner = origin + DVec2::new(column as f64 * (self.column + GAP_PT), above);
         (corner, Rect::sized(corner + DVec2::new(0.0, self.heading(row)), self.pane))
     }
@@ -228,7 +252,7 @@ impl SeriesPage {
         if !(room.size().min_element() >= LEAST_BLOCK_PT) {
             return Err(no_room());
         }
-        let shape = shape(Some(part), geometry);
+        let shape = Shape::of(Some(part), geometry);
         let mut below = room;
         if let Some(legend) = legend.of(figure, library) {
             // Below or beside the panels, wherever it leaves more room for blocks.
@@ -313,7 +337,7 @@ mod tests {
     fn blocks_are_as_large_as_the_room_allows_and_never_meet() {
         let captions: Vec<String> = (0..5).map(|n| "words ".repeat(1 + 3 * n)).collect();
         for room in [DVec2::new(460.0, 600.0), DVec2::new(700.0, 300.0), DVec2::new(150.0, 900.0)] {
-            let grid = Grid::fitted(&captions, room, 0.7).unwrap();
+            let grid = Grid::fitted(&captions, room, Shape { height: 0.7, empty: 0.0 }).unwrap();
             assert!(grid.height() <= room.y + 1e-6, "{grid:?}");
             let panes: Vec<Rect> = (0..5).map(|panel| grid.place(panel, DVec2::ZERO).1).collect();
             for (n, pane) in panes.iter().enumerate() {
@@ -323,6 +347,6 @@ mod tests {
                 assert!(pane.min.y - corner.y >= PITCH_PT * grid.captions[n].len() as f64);
             }
         }
-        assert!(Grid::fitted(&captions, DVec2::new(60.0, 60.0), 0.7).is_none());
+        assert!(Grid::fitted(&captions, DVec2::new(60.0, 60.0), Shape { height: 0.7, empty: 0.1 }).is_none());
     }
 }

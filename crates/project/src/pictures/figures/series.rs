@@ -2,8 +2,8 @@
 //! caption, at one scale and with one legend.
 
 use super::{
-    Asked, FigurePainter, FigureSettings, InterpreterView, MadeFigure, faces, little_room, look_alikes, warn_of_boxes,
-    with_inputs,
+    Asked, FigurePainter, FigureSettings, InterpreterView, MadeFigure, NamedConfusion, faces, little_room, look_alikes,
+    warn_of_boxes, with_inputs,
 };
 use crate::Project;
 use crate::error::ProjectError;
@@ -93,7 +93,7 @@ fn lettered(
         let add = |inputs: &FigureInputs, _: &mut FigurePainter| legend.add(&figure.0, inputs);
         stages.extend(with_inputs(&asked, &loaded, &mut painter, &progress.muted(), add)?.1);
         for pair in look_alikes(&asked, &loaded)? {
-            if !confusions.contains(&pair) {
+            if !confusions.iter().any(|known: &NamedConfusion| known.layers == pair.layers) && !is_sliver(&pair) {
                 confusions.push(pair);
             }
         }
@@ -129,6 +129,12 @@ fn lettered(
     warn_of_boxes(&page, progress);
     let device = painter.as_ref().map(|painter| painter.device().to_owned());
     Ok((MadeFigure { page, device, stages, confusions }, figure))
+}
+
+/// Whether one of two layers is what is left above the top of the other, of no thickness.
+fn is_sliver(pair: &NamedConfusion) -> bool {
+    let [one, other] = &pair.layers;
+    [(one, other), (other, one)].iter().any(|(above, of)| above.strip_prefix("Above ") == Some(of.as_str()))
 }
 
 /// The figure of a panel with the scene that is loaded for it, and what was loaded.
