@@ -7,6 +7,7 @@ use super::args::AnimateArgs;
 use super::draw::choose;
 use super::report::Report;
 use super::request::{Usage, drawing};
+use super::through_time::Passage;
 use super::view::ViewChanges;
 use anyhow::Context;
 use image::RgbaImage;
@@ -52,6 +53,8 @@ enum Moving {
     Section {
         axis: usize,
     },
+    /// Through the geological history.
+    History,
     /// To a scene of the project or of a file.
     Scenes {
         to: String,
@@ -94,8 +97,11 @@ impl TryFrom<AnimateArgs> for AnimateRequest {
             ("turntable", None) => Moving::Turntable { turn_deg: typed.turn },
             ("blend", None) => Moving::Blend,
             ("section", None) => Moving::Section { axis },
+            ("history", None) => Moving::History,
             ("scenes", None) => return Err("--motion scenes: name the scene that it leads to with --to".to_owned()),
-            (other, None) => return Err(format!("--motion {other}: expected turntable, blend, section or scenes")),
+            (other, None) => {
+                return Err(format!("--motion {other}: expected turntable, blend, section, history or scenes"));
+            }
         };
         if !(FRAMES[0]..=FRAMES[1]).contains(&typed.frames) {
             return Err(format!("--frames {}: expected {} to {}", typed.frames, FRAMES[0], FRAMES[1]));
@@ -173,6 +179,7 @@ pub(super) fn animate(request: &AnimateRequest, progress: &Progress) -> anyhow::
     }
     let start = prepared(request, &project, progress)?;
     let motion = match &request.moving {
+        Moving::History => return animate_history(request, &project, &start, started, progress),
         Moving::Turntable { turn_deg } => Motion::Turntable { turn_deg: *turn_deg },
         Moving::Section { axis } => Motion::Section { axis: *axis },
         Moving::Scenes { to } => {
@@ -207,6 +214,29 @@ pub(super) fn animate(request: &AnimateRequest, progress: &Progress) -> anyhow::
     let shape = AnimationShape { size_px: start.size_px, frames: request.frames, rate: request.rate };
     let bytes = write(&request.out, request.target, shape, draw, progress)?;
     Ok(told(request, shape, bytes, painter.device(), started))
+}
+
+/// Draws and writes the frames of a block that goes through its geological history.
+fn animate_history(
+    request: &AnimateRequest,
+    project: &Project,
+    start: &Scene,
+    started: Instant,
+    progress: &Progress,
+) -> anyhow::Result<Report> {
+    let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
+    let pace = (request.frames, request.rate);
+    let mut passage = Passage::new(project, start, pace, (volume_bytes, FRAME_DPI), progress)?;
+    let mut painter = Painter::new(request.device, progress)?;
+    progress.begin("frames", u64::from(request.frames));
+    let shape = AnimationShape { size_px: start.size_px, frames: request.frames, rate: request.rate };
+    let draw = |frame: u32| passage.draw(frame, &mut painter, &progress.muted());
+    let bytes = write(&request.out, request.target, shape, draw, progress)?;
+    let mut report = told(request, shape, bytes, painter.device(), started);
+    passage.note().into_iter().for_each(|note| {
+        report.note(note);
+    });
+    Ok(report)
 }
 
 /// The scene that the motion starts from.

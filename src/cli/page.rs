@@ -207,7 +207,7 @@ fn section_blend(blend: f32) -> Result<f32, Usage> {
 }
 
 /// Parses width and height in centimetres.
-fn size_cm(text: &str) -> Result<[f64; 2], Usage> {
+pub(super) fn size_cm(text: &str) -> Result<[f64; 2], Usage> {
     let usage = || format!("--size-cm {text}: expected width and height in centimetres such as 16x11");
     let size: [f64; 2] = numbers("--size-cm", &text.replace(['X', '×'], "x"), 'x').map_err(|_| usage())?;
     if size.iter().all(|side| *side > 0.0) { Ok(size) } else { Err(usage()) }

@@ -8,6 +8,7 @@ use super::args::{
 use super::frame::frame;
 use super::page::PageRequest;
 use super::review::{ModelRequest, ReviewRequest};
+use super::series::SeriesRequest;
 use super::view::ViewChanges;
 use super::well;
 use super::{assembly, extraction, interpretation};
@@ -88,6 +89,8 @@ pub(super) enum Request {
     },
     /// Draw a picture.
     Render(RenderRequest),
+    /// Draw the stages of a history on one page.
+    Series(SeriesRequest),
     /// Draw an animation.
     Animate(AnimateRequest),
     /// Make all figures of a project, with at most so many bytes of memory for the samples of a volume.
@@ -202,6 +205,7 @@ impl TryFrom<Action> for Request {
                 Self::Parameterize { project: typed.project, size, change, memory }
             }
             Action::Render(typed) => Self::Render(render_request(*typed)?),
+            Action::History(typed) => Self::Series((*typed).try_into()?),
             Action::Animate(typed) => Self::Animate((*typed).try_into()?),
             Action::Review(typed) => Self::Review(typed.try_into()?),
             Action::Note(action) => note(action)?,
@@ -415,7 +419,7 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
 }
 
 /// The kind of file that the ending of a name says.
-fn page_format(out: &Path) -> Result<&'static FileFormat, Usage> {
+pub(super) fn page_format(out: &Path) -> Result<&'static FileFormat, Usage> {
     FileFormat::of_page(out)
         .ok_or_else(|| format!("{}: its name must end in {}", out.display(), page::endings_of_pages()))
 }

@@ -3,7 +3,7 @@
 use super::report::Report;
 use super::request::{Request, Usage};
 use super::terminal::Terminal;
-use super::{animate, assembly, check, draw, info, list, option, review};
+use super::{animate, assembly, check, draw, info, list, option, review, series};
 use crate::bench;
 use anyhow::Context;
 use files::{ExportOptions, Format, SurfaceKind};
@@ -120,6 +120,7 @@ pub(super) fn carry_out(request: Request, wait: Duration, progress: &Progress) -
             parameterize(open(&project)?, (size, memory), change, progress)?
         }
         Request::Render(request) => draw::draw(&request, progress)?,
+        Request::Series(request) => series::draw(&request, progress)?,
         Request::Animate(request) => animate::animate(&request, progress)?,
         Request::Review(request) => review::review(&request, progress)?,
         Request::ExportModel(request) => review::export_model(&request, progress)?,
@@ -198,7 +199,11 @@ fn create(
     });
     let text = text.transpose()?;
     let mut new = Project::create(&path, geometry)?;
-    let told = text.map(|text| new.project().apply(&Command::TellHistory(TellHistory { text }), progress)).transpose();
+    let told = text
+        .map(|text| {
+            new.project().apply(&Command::TellHistory(TellHistory { text, ..TellHistory::default() }), progress)
+        })
+        .transpose();
     let told = told.with_context(|| history.map_or_else(String::new, |file| file.display().to_string()))?;
     new.publish()?;
     let mut report = Report::line(format!("created {}", path.display()));

@@ -33,5 +33,5 @@ pub mod style;
 pub use annotation::Annotation;
 pub use cut::SectionKind;
 pub use error::FigureError;
-pub use make::{FigureInputs, make};
+pub use make::{FigureInputs, SeriesLegend, SeriesPage, make, panel_letter};
 pub use spec::{BlockPart, CorrelationPart, FencePart, Figure, MapPart, PageSize, Part, SectionPart, ThrowPart};

@@ -12,6 +12,7 @@
 //!
 //! Deliberately absent: files, pictures, projects, and any lattice but that of carved ground.
 
+mod caption;
 mod column;
 mod context;
 mod deformation;

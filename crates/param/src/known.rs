@@ -124,9 +124,7 @@ fn fill<M: LayerModel + ?Sized>(
     let ([_, ny], levels, region) = (grid.size, grid.levels, grid.region);
     // k of the bed in the reference thickness of a layer that is measured from one sheet.
     let scaled = |k: f32| match (known.thickness_m(region), grid.thickness_m) {
-        (Some(of_bed), Some(of_layer)) if definition == KDefinition::ParallelToBottom => {
-            k * (of_bed / of_layer) as f32
-        }
+        (Some(of_bed), Some(of_layer)) if definition == KDefinition::ParallelToBottom => k * (of_bed / of_layer) as f32,
         (Some(of_bed), Some(of_layer)) => 1.0 - (1.0 - k) * (of_bed / of_layer) as f32,
         _ => k,
     };

@@ -4,10 +4,12 @@ mod advice;
 mod causes;
 mod fault_edit;
 mod noun;
+mod stage;
 
 pub use advice::remedy_of;
 pub use fault_edit::FaultEditError;
 pub use noun::Noun;
+pub use stage::StageError;
 
 use crate::placement::PlacementError;
 use files::FormatError;
@@ -286,11 +288,17 @@ pub enum ProjectError {
         /// What is wrong, and its line.
         source: history::HistoryError,
     },
-    /// The project has something already, which a history would replace.
+    /// The project has something already, which a whole block would replace.
     #[error(
-        "a history makes a whole block, and this project has horizons or faults already; create a new project for it"
+        "{made} is a whole block, and this project has horizons, faults or volumes already; create a new project for it"
     )]
-    HistoryOverBlock,
+    OverBlock {
+        /// What was to be made.
+        made: &'static str,
+    },
+    /// There is no block at a stage of a geological history.
+    #[error(transparent)]
+    Stage(#[from] StageError),
     /// The layers could not be parameterized.
     #[error(transparent)]
     Param(#[from] param::ParamError),

@@ -36,6 +36,7 @@ VALUES = {
     "name": "Alpha",
     "scene": ["corner", "front"],
     "slice": [-4.0, 100.5],
+    "stages": [1, 2.5],
     "stick": [[(100, 200, 10), (100, 201, 60)], [(110, 200, 10), (110, 201, 60)]],
     "values": ["seismic", "envelope"],
 }

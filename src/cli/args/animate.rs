@@ -25,9 +25,9 @@ pub(in crate::cli) struct AnimateArgs {
     /// Named scene of the project to start from, or a TOML file [default: the project's first, else a three-quarter view]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(in crate::cli) scene: Option<String>,
-    /// What moves: the camera around the block, the blend from illustration to raw data, a section through the block, or
-    /// everything from the scene to that of --to
-    #[arg(long, value_name = "turntable|blend|section|scenes", default_value = "turntable")]
+    /// What moves: the camera around the block, the blend from illustration to raw data, a section through the block, the
+    /// block through its geological history (create --history), or everything from the scene to that of --to
+    #[arg(long, value_name = "turntable|blend|section|history|scenes", default_value = "turntable")]
     pub(in crate::cli) motion: String,
     /// Degrees that the camera turns, clockwise seen from above; negative: the other way around
     #[arg(long, value_name = "DEG", default_value_t = 360.0, allow_hyphen_values = true)]
@@ -44,7 +44,7 @@ pub(in crate::cli) struct AnimateArgs {
     /// Frames a second, 0.1 to 50
     #[arg(long, value_name = "RATE", default_value_t = 12.0)]
     pub(in crate::cli) rate: f64,
-    /// End at the end: otherwise all but whole turns go back to the beginning in the second half of the frames
+    /// End at the end: otherwise all but whole turns and histories go back to the beginning in the second half of the frames
     #[arg(long)]
     pub(in crate::cli) once: bool,
     #[command(flatten)]

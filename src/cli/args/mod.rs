@@ -5,6 +5,7 @@ mod assembly;
 mod attribute;
 mod extraction;
 mod figure;
+mod history;
 mod interpretation;
 mod layer;
 mod output;
@@ -21,6 +22,7 @@ pub(super) use assembly::{
 pub(super) use attribute::AttributeArgs;
 pub(super) use extraction::ExtractArgs;
 pub(super) use figure::FigureArgs;
+pub(super) use history::HistoryArgs;
 pub(super) use interpretation::{
     ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, StackArgs,
     VolumeAction,
@@ -198,11 +200,19 @@ pub(super) enum Action {
                       A figure in project.toml, with the words of `render --figure` (guide: Batches of figures):\
                       \n  [[figures]]\n  file = \"block.pdf\"\n  scene = \"corner\"\n  size = { cm = [16.0, 11.0] }\n  legend = true")]
     Figures(FiguresArgs),
-    /// Draw an animation: around the block, from illustration to raw data, through the block, or between two scenes
+    /// Draw the block after each event of its geological history, side by side on one page
+    #[command(after_help = "Examples:\n  petroglyph history horst.petro horst.pdf\
+                      \n  petroglyph history horst.petro horst.svg --stages 1,3,5 --size-cm 17x9 --exaggeration 1.5\
+                      \n\nThe block has a history if it was made by `petroglyph create BLOCK.petro --history FILE.toml`. All panels\
+                      \nhave the same camera, the same scale and one legend; layers look as in the project.")]
+    History(Box<HistoryArgs>),
+    /// Draw an animation: around the block, from illustration to raw data, through the block or its history, or between
+    /// two scenes
     #[command(after_help = "Animated PNG, GIF and numbered frames are written; animated WebP and films are not.\n\n\
                       Examples:\n  petroglyph animate north.petro turn.png --frames 72 --size 800x600\
                       \n  petroglyph animate north.petro blend.gif --motion blend --cut nearest,0.45,0.45\
                       \n  petroglyph animate north.petro sections.gif --motion section --along crossline\
+                      \n  petroglyph animate horst.petro time.png --motion history --frames 60\
                       \n  petroglyph animate north.petro frames --scene overview --to corner --once")]
     Animate(Box<AnimateArgs>),
     /// Write a page for any browser: the block in 3D, to turn, cut, blend and read, without a network

@@ -44,7 +44,7 @@ pub fn provenance(room: Rect, words: &str) -> (Group, Rect) {
 }
 
 /// Words of a size in `most` lines that are no wider than `room`, as far as single words allow.
-pub(super) fn broken(words: &str, size: f64, room: f64, most: usize) -> Vec<String> {
+pub(crate) fn broken(words: &str, size: f64, room: f64, most: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in words.split_whitespace() {
         // The last line takes what is left and is shortened where it is drawn.

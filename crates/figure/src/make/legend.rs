@@ -20,7 +20,7 @@ use render::distortion::{self, Stretch};
 use render::{FaceData, Faces, Scene, Unpicked};
 use std::collections::BTreeSet;
 use survey::Contact;
-use ttf::{Colour, LayerStyle};
+use ttf::{Colour, LayerStyle, TextureLibrary};
 
 /// No line of a legend is finer, points.
 const FINEST_PT: f64 = 0.35;
@@ -109,9 +109,32 @@ impl Listed {
 
     /// The legend; `None` where there is nothing to list.
     pub(super) fn legend<'a>(&'a self, maker: &Maker<'a>) -> Option<Legend<'a>> {
-        let layers = maker.inputs.library.map(|library| (&self.layers[..], library));
-        let legend = Legend { layers, horizons: &self.horizons, lines: &self.lines, dpi: maker.figure.dpi };
+        self.drawn_with(maker.inputs.library, maker.figure.dpi)
+    }
+
+    /// The same with the library that has the patterns.
+    pub(super) fn drawn_with<'a>(&'a self, library: Option<&'a TextureLibrary>, dpi: f64) -> Option<Legend<'a>> {
+        let layers = library.map(|library| (&self.layers[..], library));
+        let legend = Legend { layers, horizons: &self.horizons, lines: &self.lines, dpi };
         (!legend.is_empty()).then_some(legend)
+    }
+
+    /// Adds what another block of a series shows. A layer that is new stands above the one that it lies on there.
+    pub(super) fn join(&mut self, other: Self) {
+        let mut above = self.layers.len();
+        for layer in other.layers.into_iter().rev() {
+            match self.layers.iter().position(|known| known.layer == layer.layer) {
+                Some(known) => above = known,
+                None => self.layers.insert(above, layer),
+            }
+        }
+        self.layers = told_apart(&self.layers);
+        for horizon in other.horizons {
+            if !self.horizons.iter().any(|known| known.name == horizon.name) {
+                self.horizons.push(horizon);
+            }
+        }
+        self.add_lines(other.lines);
     }
 }
 

@@ -3,13 +3,14 @@
 mod contents;
 mod legend;
 mod rock;
+mod series;
 
 use crate::annotation::Annotation;
 use crate::correlation::{self, Column};
 use crate::cut::{SectionKind, SectionSource, value_at};
 use crate::draw::annotation::BlockAnnotation;
 use crate::draw::axes::{Axis, axis_title};
-use crate::draw::block::{BlockPainter, BlockPanel, Comparison};
+use crate::draw::block::{BlockPainter, BlockPanel, Comparison, DrawnBlock};
 use crate::draw::correlation::CorrelationPanel;
 use crate::draw::map::{MapPanel, title};
 use crate::draw::section::Marks;
@@ -24,6 +25,7 @@ use glam::DVec2;
 use page::Rect;
 use page::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH};
 use render::{Background, FaceData, Faces, Scene, Unpicked};
+pub use series::{SeriesLegend, SeriesPage, panel_letter};
 use survey::{StratigraphicHorizon, SurveyGeometry, Well};
 use ttf::{Colour, LayerStyle, RawColour, TextureLibrary};
 
@@ -106,18 +108,7 @@ pub fn make(
     if !is_bare {
         room = room.grown(-MARGIN_PT);
     }
-    let words = [
-        (&figure.title, words::title as fn(Rect, &str) -> (Group, Rect)),
-        (&provenance, words::provenance),
-        (&figure.caption, words::caption),
-    ];
-    for (said, place) in words {
-        if let Some(said) = said {
-            let (group, rest) = place(room, said);
-            list.items.push(group.into());
-            room = rest;
-        }
-    }
+    room = write_words(figure, provenance.as_ref(), &mut list, room);
     if !is_bare && room.size().min_element() < LEAST_PT {
         return Err(maker.no_room());
     }
@@ -165,6 +156,23 @@ pub fn make(
     list.items = panels;
     list.print(figure.printed_in());
     Ok(list)
+}
+
+/// Writes title, provenance and caption; returns the room that is left.
+fn write_words(figure: &Figure, provenance: Option<&String>, list: &mut DisplayList, mut room: Rect) -> Rect {
+    let words = [
+        (figure.title.as_ref(), words::title as fn(Rect, &str) -> (Group, Rect)),
+        (provenance, words::provenance),
+        (figure.caption.as_ref(), words::caption),
+    ];
+    for (said, place) in words {
+        if let Some(said) = said {
+            let (group, rest) = place(room, said);
+            list.items.push(group.into());
+            room = rest;
+        }
+    }
+    room
 }
 
 /// What the page is made of: the block's own background where that is a paper's, white where volumes lie on
@@ -286,13 +294,48 @@ impl<'a> Maker<'a> {
     }
 
     fn block(&self, part: &BlockPart, room: Rect, painter: &mut dyn BlockPainter) -> Result<Group, FigureError> {
-        let strip = match (self.figure.north_arrow, self.figure.scale_bar) {
+        let body = room.inside([0.0, 0.0, 0.0, self.strip_pt()]);
+        let mut drawn = self.block_alone(part, body, painter)?;
+        let below = Rect::new(DVec2::new(room.min.x, body.max.y), room.max);
+        drawn.group.items.extend(self.strip(part, below, &drawn));
+        label_changes::change(&mut drawn.group.items, &part.scene.labels);
+        Ok(drawn.group)
+    }
+
+    /// Height of the strip below a block that holds its scale bar and its north arrow, points.
+    fn strip_pt(&self) -> f64 {
+        match (self.figure.north_arrow, self.figure.scale_bar) {
             (true, _) => north::SIDE_PT,
             (false, true) => scale::STRIP_PT,
             (false, false) => 0.0,
-        };
-        let body = room.inside([0.0, 0.0, 0.0, strip]);
-        let is_plain = strip == 0.0 && self.figure.annotate.is_empty();
+        }
+    }
+
+    /// Scale bar and north arrow of a block, as far as they are wanted.
+    fn strip(&self, part: &BlockPart, mut below: Rect, drawn: &DrawnBlock) -> Vec<Item> {
+        let mut items = Vec::new();
+        if self.figure.north_arrow {
+            // At the right end, so that bar and caption keep their place.
+            let left = (below.max.x - north::SIDE_PT).max(below.min.x);
+            items.push(north::drawn(Rect::new(DVec2::new(left, below.min.y), below.max), drawn.compass).into());
+            below.max.x = left;
+        }
+        if self.figure.scale_bar {
+            let caption = scale::block_caption(&part.scene, self.geometry);
+            let down = (drawn.points_down, self.geometry.vertical.unit.symbol());
+            items.push(scale::drawn(below, Some(drawn.points_per_m), Some(down), &caption).into());
+        }
+        items
+    }
+
+    /// A block with what is written on it.
+    fn block_alone(
+        &self,
+        part: &BlockPart,
+        body: Rect,
+        painter: &mut dyn BlockPainter,
+    ) -> Result<DrawnBlock, FigureError> {
+        let is_plain = self.strip_pt() == 0.0 && self.figure.annotate.is_empty();
         if body.size().min_element() < if is_plain { f64::MIN_POSITIVE } else { LEAST_BLOCK_PT } {
             return Err(self.no_room());
         }
@@ -322,21 +365,7 @@ impl<'a> Maker<'a> {
             }),
             names,
         };
-        let mut drawn = panel.drawn(body, painter)?;
-        let mut below = Rect::new(DVec2::new(room.min.x, body.max.y), room.max);
-        if self.figure.north_arrow {
-            // At the right end, so that bar and caption keep their place.
-            let left = (below.max.x - north::SIDE_PT).max(below.min.x);
-            drawn.group.push(north::drawn(Rect::new(DVec2::new(left, below.min.y), below.max), drawn.compass));
-            below.max.x = left;
-        }
-        if self.figure.scale_bar {
-            let caption = scale::block_caption(&part.scene, self.geometry);
-            let down = (drawn.points_down, self.geometry.vertical.unit.symbol());
-            drawn.group.push(scale::drawn(below, Some(drawn.points_per_m), Some(down), &caption));
-        }
-        label_changes::change(&mut drawn.group.items, &part.scene.labels);
-        Ok(drawn.group)
+        panel.drawn(body, painter)
     }
 
     fn map(&self, part: &MapPart, room: Rect) -> Result<Group, FigureError> {

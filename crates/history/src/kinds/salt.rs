@@ -93,6 +93,11 @@ impl Salt {
         if is_below { Ok(Self { rock, name, at, form, source: [base - bed_m, base] }) } else { Err(unfit()) }
     }
 
+    /// Whether it bulges below its roof and pierces nothing.
+    pub(crate) fn is_pillow(&self) -> bool {
+        matches!(self.form, Form::Pillow { .. })
+    }
+
     pub(crate) fn progressed(&self, share: f64) -> Self {
         let base = self.source[1];
         let form = match self.form {

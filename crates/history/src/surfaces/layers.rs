@@ -55,7 +55,7 @@ impl Stage<'_> {
         };
         match (above, below) {
             (Some(Surface::Top(unit)), _) => Some(unit),
-            (_, Some(Surface::Top(unit))) => Some(next(unit).unwrap_or(unit)),
+            (_, Some(Surface::Top(unit))) => Some(next(unit).or_else(|| self.laid_on(unit)).unwrap_or(unit)),
             (_, Some(Surface::CutBase(unit))) => Some(unit),
             (_, Some(Surface::Base(act))) => self.bed_unit(act, 0),
             // Below the last surface: what is oldest there.
@@ -69,6 +69,15 @@ impl Stage<'_> {
             }
             _ => self.bed_unit(0, 0),
         }
+    }
+
+    /// The lowest bed of the next later event of beds, if some of it is there although its top is not.
+    fn laid_on(&self, unit: usize) -> Option<usize> {
+        let made = self.history().units()[unit].act;
+        let mut later = self.acts().iter().enumerate().skip(made + 1);
+        let act = later.find_map(|(n, act)| matches!(act, Act::Beds(_)).then_some(n))?;
+        let lowest = self.bed_unit(act, 0)?;
+        self.units_seen()[lowest].then_some(lowest)
     }
 
     fn youngest_of(&self, act: usize) -> Option<usize> {

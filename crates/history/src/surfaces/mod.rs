@@ -284,6 +284,8 @@ impl Stage<'_> {
         }
         let is_flat = |surface: &Surface| matches!(surface, Surface::Ground | Surface::Base(_));
         order.retain(|surface| seen.contains(surface) && (!is_flat(surface) || own.contains(surface)));
+        // Where the ground is the top of a bed throughout, this comes before what lies below it.
+        let is_ground_a_top = seen.contains(&Surface::Ground) && !own.contains(&Surface::Ground);
         // What intrudes last is the youngest. A body whose outline is not cut by the ground stands below the erosion that cut
         // it, others last.
         let acts = self.acts().iter().enumerate().rev();
@@ -306,7 +308,8 @@ impl Stage<'_> {
                     }
                     Surface::Top(_) => false,
                 };
-                let at = order.iter().rposition(is_younger).map_or(0, |n| n + 1);
+                let under_air = usize::from(is_ground_a_top && matches!(order.first(), Some(Surface::Top(_))));
+                let at = order.iter().rposition(is_younger).map_or(under_air, |n| n + 1);
                 order.insert(at, Surface::Body(unit));
             } else if self.has_body(unit) {
                 order.push(Surface::Body(unit));

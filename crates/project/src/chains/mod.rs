@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | [`demo`] | nothing | a synthetic survey, a project and pictures |
 //! | [`illustrate`] | a SEG-Y file | a project and a block diagram that says that nobody interpreted it |
+//! | [`stages`] | the geological history of a project | projects of the block after each of its events |
 //!
 //! A chain changes a project through the same commands as a user would.
 //!
@@ -11,3 +12,4 @@
 
 pub mod demo;
 pub mod illustrate;
+pub mod stages;

@@ -10,18 +10,27 @@ use crate::document::{FaultEntry, HorizonEntry, Id, Origin};
 use crate::folder::Draft;
 use crate::styles;
 use glam::DVec3;
-use history::{FaultBlocks, History};
+use history::{FaultBlocks, History, Interpretation};
 use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use survey::Progress;
-use ttf::Colour;
+use ttf::{Colour, LayerStyle};
 
 /// Makes the block that a history tells of, in a project that has none.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct TellHistory {
     /// The text of the history (docs/history.md).
     pub text: String,
+    /// How many of its events have happened: 2.5 is after two of them and half of the third. Absent: all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<f64>,
+    /// How layers of these names are drawn, in place of what the history says of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub styles: Vec<LayerStyle>,
+    /// The colours of faults, by name.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fault_colours: Vec<(String, Colour)>,
 }
 
 /// What was made.
@@ -70,17 +79,18 @@ impl TellHistory {
             && draft.document.faults.is_empty()
             && draft.document.volumes.is_empty())
         {
-            return Err(ProjectError::HistoryOverBlock);
+            return Err(ProjectError::OverBlock { made: "the block of a history" });
         }
         let library = styles::pattern_library(draft.root(), &draft.document)?;
         let patterns: Vec<&str> = library.patterns().map(|pattern| pattern.name.as_str()).collect();
         let history = read(&self.text, &patterns)?;
         progress.begin("block", 3);
-        let stage = history.last_stage();
+        let stage = self.until.map_or_else(|| history.last_stage(), |until| history.stage(until));
         let geometry = stage.geometry();
         let mut notes: Vec<String> = history.notes().iter().map(ToString::to_string).collect();
         draft.document.geometry = Some(geometry.clone());
         draft.document.geological_history = Some(self.text.clone());
+        draft.document.history_until = self.until;
         let mut all = Vec::new();
         for fault in &stage.faults() {
             let Parts { faults, told } = fault_parts::of_surface(&draft.document, &geometry, fault)?;
@@ -90,6 +100,7 @@ impl TellHistory {
                 let hash = content::hash_fault(&fault);
                 let (file, new) = draft.generation("faults", &fault.name, "json")?;
                 store::write_fault(&new, &fault)?;
+                let colour = self.fault_colours.iter().find(|(name, _)| *name == fault.name).map(|(_, own)| *own);
                 draft.document.faults.push(FaultEntry {
                     id: Id::default(),
                     name: fault.name,
@@ -98,7 +109,7 @@ impl TellHistory {
                     file,
                     hash,
                     origin: Origin::History,
-                    colour: None,
+                    colour,
                 });
             }
         }
@@ -107,7 +118,7 @@ impl TellHistory {
         let at = |p: DVec3| network.block_at(geometry.voxel_from_world(p).as_vec3());
         progress.step(1)?;
         let made = stage.interpretation(&FaultBlocks { count: network.block_count(), at: &at });
-        notes.extend(made.notes);
+        notes.extend_from_slice(&made.notes);
         progress.step(1)?;
         for (position, (horizon, of)) in made.horizons.iter().zip(&made.stratigraphy.horizons).enumerate() {
             let hash = content::hash_horizon(horizon);
@@ -128,17 +139,7 @@ impl TellHistory {
             draft.document.insert_horizon(position, entry);
         }
         progress.step(1)?;
-        for (position, name) in made.stratigraphy.layer_names.iter().enumerate() {
-            draft.document.name_layer(position, name)?;
-        }
-        for (layer, rock) in made.stratigraphy.layer_names.iter().zip(&made.rocks) {
-            let mut style = SetLayer { layer: layer.clone(), rock: rock.clone(), ..SetLayer::default() };
-            if rock.is_none() {
-                style.pattern = Some("plain".to_owned());
-                style.colour = Some(Colour::WHITE);
-            }
-            style.execute(draft)?;
-        }
+        self.style_layers(draft, &made)?;
         let named = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect();
         Ok(Effect::HistoryTold(Box::new(HistoryTold {
             title: history.title().map(str::to_owned),
@@ -148,5 +149,25 @@ impl TellHistory {
             layers: made.stratigraphy.layer_names,
             notes,
         })))
+    }
+
+    /// Names the layers, and gives each its style.
+    fn style_layers(&self, draft: &mut Draft, made: &Interpretation) -> Result<(), ProjectError> {
+        for (position, name) in made.stratigraphy.layer_names.iter().enumerate() {
+            draft.document.name_layer(position, name)?;
+        }
+        for (layer, rock) in made.stratigraphy.layer_names.iter().zip(&made.rocks) {
+            let mut style = SetLayer { layer: layer.clone(), rock: rock.clone(), ..SetLayer::default() };
+            if rock.is_none() {
+                style.pattern = Some("plain".to_owned());
+                style.colour = Some(Colour::WHITE);
+            }
+            style.style = self.styles.iter().find(|style| style.layer == *layer).cloned();
+            if style.style.is_some() {
+                (style.rock, style.pattern, style.colour) = (None, None, None);
+            }
+            style.execute(draft)?;
+        }
+        Ok(())
     }
 }

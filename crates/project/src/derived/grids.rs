@@ -64,7 +64,7 @@ pub(crate) fn parameterization_key(document: &Document, model: &ModelSettings, s
         settings: &'a ParamSettings,
         taken: Option<&'a str>,
         #[serde(skip_serializing_if = "Option::is_none")]
-        told: Option<&'a str>,
+        told: Option<(&'a str, Option<f64>)>,
     }
     let ModelInputs { revision: of_model, geometry, horizons, faults, model } = ModelInputs::of(document, model);
     key_of(&Inputs {

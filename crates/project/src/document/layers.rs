@@ -25,10 +25,11 @@ impl Document {
         names.iter().zip(by_contact).map(|(name, usual)| self.k.get(name).copied().unwrap_or(usual)).collect()
     }
 
-    /// The text of the geological history that may say what i, j and k are: none where anyone has stated how the beds of a
-    /// layer lie.
-    pub(crate) fn history_of_coordinates(&self) -> Option<&str> {
-        self.geological_history.as_deref().filter(|_| self.k.is_empty())
+    /// The text of the geological history that may say what i, j and k are, and how many of its events have happened (absent:
+    /// all). None where anyone has stated how the beds of a layer lie.
+    pub(crate) fn history_of_coordinates(&self) -> Option<(&str, Option<f64>)> {
+        let text = self.geological_history.as_deref().filter(|_| self.k.is_empty())?;
+        Some((text, self.history_until))
     }
 
     /// Puts a horizon at `position` (0 = youngest). It gets a colour of its own unless it has one, and the others keep

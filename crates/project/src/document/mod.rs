@@ -64,6 +64,9 @@ pub struct Document {
     /// The text of the geological history that the block was made from, if it was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub geological_history: Option<String>,
+    /// How many events of it have happened, the last one perhaps in part; absent: all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub history_until: Option<f64>,
     /// Names of the layers, youngest first; if empty, they are named after the horizons.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layer_names: Vec<String>,
@@ -128,6 +131,7 @@ impl Document {
             last_id: 0,
             geometry,
             geological_history: None,
+            history_until: None,
             layer_names: Vec::new(),
             fonts: Vec::new(),
             volumes: Vec::new(),

@@ -123,6 +123,7 @@ impl Document {
             last_id: _,
             geometry: _,
             geological_history: _,
+            history_until: _,
             layer_names: _,
             fonts: _,
             volumes,

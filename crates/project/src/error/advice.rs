@@ -56,6 +56,7 @@ impl ProjectError {
             Self::BadNote(_) => {
                 "list the notes and their numbers with `petroglyph note list`, and the survey's lines with `petroglyph info`"
             }
+            Self::Stage(error) => return error.advice(),
             Self::BadGrowth { .. } => "state metres, 0 or more",
             // Contains its advice, or gets it from the program that shows it.
             _ => return None,

@@ -88,9 +88,11 @@ pub(crate) fn parameterization(
     settings: &ParamSettings,
     progress: &Progress,
 ) -> Result<Option<Parameterization>, ParamError> {
-    let (Some(text), Some(geometry)) = (document.history_of_coordinates(), &document.geometry) else { return Ok(None) };
+    let (Some((text, until)), Some(geometry)) = (document.history_of_coordinates(), &document.geometry) else {
+        return Ok(None);
+    };
     let Ok(history) = History::from_toml(text) else { return Ok(None) };
-    let stage = history.last_stage();
+    let stage = until.map_or_else(|| history.last_stage(), |until| history.stage(until));
     if stage.geometry() != *geometry {
         return Ok(None);
     }

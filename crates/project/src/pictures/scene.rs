@@ -6,8 +6,8 @@ use crate::styles;
 use figure::style::horizon_colour;
 use render::media::{Colouring, LayerOpacity, MediumColour, white_ramp};
 use render::{
-    Background, FaceData, Faces, Ground, Interleaved, Isosurface, IsosurfaceSource, Medium, Occlusion, Outlines, Phong,
-    PickedHorizon, Scene, Scope, Shading, Stroke,
+    Background, FaceData, Faces, Ground, Interleaved, Isosurface, IsosurfaceSource, Media, Medium, Occlusion, Outlines,
+    Phong, PickedHorizon, Scene, Scope, Shading, Stroke,
 };
 use survey::Progress;
 use ttf::{Colour, ColourMap, RgbaFunction, RgbaStop};
@@ -64,6 +64,17 @@ pub fn prepare(document: &Document, scene: &mut Scene, progress: &Progress) -> R
         scene.blend = 0.0;
     }
     Ok(scene.validate(document.frame()?)?)
+}
+
+/// A scene in another project than the one that it was made for, such as a stage of a block's history: what shows
+/// measured data is left out where there are none.
+#[must_use]
+pub fn of_what_is_there(document: &Document, scene: &Scene) -> Scene {
+    if !document.volumes.is_empty() {
+        return scene.clone();
+    }
+    let face_data = if scene.face_data.shows_candidates() { FaceData::Rock } else { scene.face_data };
+    Scene { blend: 0.0, raw: None, media: Media::default(), face_data, ..scene.clone() }
 }
 
 /// A technique of drawing.

@@ -360,6 +360,11 @@ impl NewProject {
         &mut self.project
     }
 
+    /// The same to look at.
+    pub(crate) fn as_project(&self) -> &Project {
+        &self.project
+    }
+
     /// Moves the project to its destination.
     ///
     /// # Errors

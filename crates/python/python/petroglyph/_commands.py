@@ -541,17 +541,21 @@ class Commands:
         """Removes a scene."""
         return self.apply({"remove": {"noun": "scene", "name": name}})
 
-    def tell_history(self, text: str, *, progress: Progress | None = None) -> Effect:
+    def tell_history(
+        self, text: str, *, until: float | None = None, progress: Progress | None = None
+    ) -> Effect:
         """Makes the block that a geological history tells of, in a project that has none.
 
         Parameters
         ----------
         text : str
             The events as TOML, oldest first (``docs/history.md``).
+        until : float, optional
+            How many of its events have happened: 2.5 is after two of them and half of the third. Default: all.
         progress : callable, optional
             Called as ``progress(stage, done, total)``.
         """
-        return self.apply({"tell-history": {"text": text}}, progress=progress)
+        return self.apply({"tell-history": _given(text=text, until=until)}, progress=progress)
 
     def add_note(self, text: str, at: Place, *, scene: str | None = None) -> Effect:
         """Writes a note on a place."""

@@ -144,6 +144,15 @@ impl Fault {
         }
     }
 
+    /// "planar", "listric" or "ramp", as the text says it.
+    pub(crate) fn shape_word(&self) -> &'static str {
+        match self.form {
+            Form::Planar { .. } => "planar",
+            Form::Listric { .. } => "listric",
+            Form::Ramp { .. } => "ramp",
+        }
+    }
+
     /// Its coordinates across and along strike.
     pub(crate) fn frame(&self) -> &Frame {
         &self.frame

@@ -121,6 +121,19 @@ impl Fold {
         Ok(Self { wavelength_m, amplitude_m: sign * amplitude_m, axis_deg, plunge_deg, frame, form })
     }
 
+    /// Its shape as the text says it; a basin is a dome of negative amplitude.
+    pub(crate) fn shape_word(&self) -> &'static str {
+        match &self.form {
+            Form::Dome { .. } => "dome",
+            Form::Similar { profile, .. } | Form::Parallel { profile, .. } => match profile {
+                Profile::Sine => "sine",
+                Profile::Chevron(_) => "chevron",
+                Profile::Box(_) => "box",
+                Profile::Monocline => "monocline",
+            },
+        }
+    }
+
     /// The same fold when a share of it has been folded.
     pub(crate) fn progressed(&self, share: f64) -> Self {
         let amplitude_m = self.amplitude_m * share;

@@ -2,7 +2,6 @@
 //! a page of a centimetre still shows its block.
 
 use figure::{Figure, FigureError};
-use page::DisplayList;
 use survey::Progress;
 
 /// What takes a part out of a figure.
@@ -22,11 +21,11 @@ const LEFT_OUT: [(&str, Omission); 3] = [
 ///
 /// # Errors
 /// What `make` says; where there is no room for the figure alone either, what it said first.
-pub(super) fn made(
+pub(super) fn made<T>(
     figure: &Figure,
     progress: &Progress,
-    mut make: impl FnMut(&Figure) -> Result<DisplayList, FigureError>,
-) -> Result<DisplayList, FigureError> {
+    mut make: impl FnMut(&Figure) -> Result<T, FigureError>,
+) -> Result<T, FigureError> {
     let first = match make(figure) {
         Err(error @ FigureError::NoRoom { .. }) => error,
         made => return made,
@@ -56,6 +55,7 @@ pub(super) fn made(
 mod tests {
     use super::*;
     use glam::DVec2;
+    use page::DisplayList;
 
     #[test]
     fn what_has_no_room_is_left_out_from_the_legend_on() {

@@ -10,6 +10,7 @@ mod fonts;
 mod interpreter;
 mod little_room;
 mod output;
+mod series;
 
 pub(crate) use batch::check_all;
 pub use batch::{WrittenFigure, make_all};
@@ -17,6 +18,7 @@ pub use confusion::{NamedConfusion, confusions};
 pub use fonts::{FontFile, faces, font_files};
 pub use interpreter::{InterpreterView, borrowed};
 pub use output::write;
+pub use series::{Series, SeriesPanel, SeriesSize, make_series};
 
 use crate::Project;
 use crate::content;
@@ -28,7 +30,7 @@ use crate::styles;
 use figure::cut::{SectionKind, SectionSource};
 use figure::draw::NamedColour;
 use figure::draw::block::BlockPainter;
-use figure::{Annotation, FencePart, Figure, FigureInputs, Part, SectionPart};
+use figure::{Annotation, FencePart, Figure, FigureError, FigureInputs, Part, SectionPart};
 use glam::{Vec2, Vec3};
 use image::RgbaImage;
 use interpreter::InterpreterPicks;
@@ -117,7 +119,16 @@ fn lettered(
         Extent::Whole
     };
     let request = Request::new(&scene).of(extent).within(settings.volume_bytes);
-    let page = |loaded: &Loaded| page_of(project, figure, (&scene, loaded), view, settings, &mut painter, progress);
+    let page = |loaded: &Loaded| {
+        let asked = Asked { project, figure, scene: &scene, view, settings };
+        let make = |inputs: &FigureInputs, painter: &mut FigurePainter| {
+            little_room::made(figure, progress, |figure| figure::make(figure, inputs, painter))
+        };
+        let (page, stages) = with_inputs(&asked, loaded, &mut painter, progress, make)?;
+        warn_of_boxes(&page, progress);
+        let device = painter.as_ref().map(|painter| painter.device().to_owned());
+        Ok(MadeFigure { page, device, stages, confusions: look_alikes(&asked, loaded)? })
+    };
     load::drawn(project.facts(), &request, progress, page)
 }
 
@@ -126,16 +137,33 @@ fn is_painted(figure: &Figure, settings: &FigureSettings) -> bool {
     figure.is_block_alone() && settings.format.has_pixels()
 }
 
-/// The page of what was loaded for a scene that needs the same as the figure.
-fn page_of(
-    project: &Project,
-    figure: &Figure,
-    (scene, loaded): (&Scene, &Loaded),
-    view: &InterpreterView,
-    settings: &FigureSettings,
+/// A figure of a project, and what it is drawn by.
+struct Asked<'a> {
+    project: &'a Project,
+    figure: &'a Figure,
+    /// Needs the same as the figure.
+    scene: &'a Scene,
+    view: &'a InterpreterView,
+    settings: &'a FigureSettings,
+}
+
+/// The neighbouring layers of a figure that cannot be told apart.
+fn look_alikes(asked: &Asked<'_>, loaded: &Loaded) -> Result<Vec<NamedConfusion>, ProjectError> {
+    let document = asked.project.document();
+    let library = &styles::pattern_library(asked.project.root(), document)?;
+    confusions(loaded.rock.as_deref(), &styles::layer_styles(document, library), library, asked.scene)
+}
+
+/// Does something with what a figure takes of what was loaded, and with the painter of its blocks; also the duration of
+/// the stages until then.
+fn with_inputs<T>(
+    asked: &Asked<'_>,
+    loaded: &Loaded,
     painter: &mut Option<Painter>,
     progress: &Progress,
-) -> Result<MadeFigure, ProjectError> {
+    mut make: impl FnMut(&FigureInputs, &mut FigurePainter) -> Result<T, FigureError>,
+) -> Result<(T, Vec<Stage>), ProjectError> {
+    let &Asked { project, figure, view, settings, .. } = asked;
     let document = project.document();
     let horizons = horizons(document);
     let has_wells = figure.parts.iter().any(|part| matches!(part, Part::Correlation(_)));
@@ -186,12 +214,8 @@ fn page_of(
     let share = settings.picture_dpi.map_or(1.0, |dpi| (dpi / figure.dpi).min(1.0));
     let is_painted = is_painted(figure, settings);
     let mut painter = FigurePainter { is_painted, painter, settings, loaded, library, preset, share, stages, progress };
-    let page = little_room::made(figure, progress, |figure| figure::make(figure, &inputs, &mut painter))?;
-    warn_of_boxes(&page, progress);
-    let device = painter.painter.as_ref().map(|painter| painter.device().to_owned());
-    let stages = painter.stages;
-    let confusions = confusions(loaded.rock.as_deref(), &styles, library, scene)?;
-    Ok(MadeFigure { page, device, stages, confusions })
+    let made = make(&inputs, &mut painter)?;
+    Ok((made, painter.stages))
 }
 
 /// The figure with what its sections show: measured data where there are some, and the rock otherwise.
