@@ -286,11 +286,15 @@ pub enum ProjectError {
         /// What is wrong, and its line.
         source: history::HistoryError,
     },
-    /// The project has something already, which a history would replace.
-    #[error(
-        "a history makes a whole block, and this project has horizons or faults already; create a new project for it"
-    )]
-    HistoryOverBlock,
+    /// The project has something already, which a whole block would replace.
+    #[error("{made} is a whole block, and this project has horizons, faults or volumes already; create a new project for it")]
+    OverBlock {
+        /// What was to be made.
+        made: &'static str,
+    },
+    /// The interpretation cannot be restored to a horizon.
+    #[error(transparent)]
+    Restore(restore::RestoreError),
     /// The layers could not be parameterized.
     #[error(transparent)]
     Param(#[from] param::ParamError),

@@ -71,7 +71,7 @@ impl TellHistory {
             && draft.document.faults.is_empty()
             && draft.document.volumes.is_empty())
         {
-            return Err(ProjectError::HistoryOverBlock);
+            return Err(ProjectError::OverBlock { made: "the block of a history" });
         }
         let library = styles::pattern_library(draft.root(), &draft.document)?;
         let patterns: Vec<&str> = library.patterns().map(|pattern| pattern.name.as_str()).collect();

@@ -13,6 +13,7 @@ mod migration;
 mod origin;
 mod picks;
 mod references;
+mod restored;
 
 use crate::error::{Noun, ProjectError};
 pub(crate) use entries::is_zero;
@@ -24,6 +25,7 @@ pub use ids::{Id, Renamed};
 pub use origin::{AttributeKind, Chooser, HorizonQuery, Origin, QueryBorder, Uninterpreted};
 use param::KDefinition;
 pub use picks::{Assembly, Drawn, DrawnEntry, FaultSticks, PickEntry};
+pub use restored::RestoredEntry;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -64,6 +66,9 @@ pub struct Document {
     /// The text of the geological history that the block was made from, if it was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub geological_history: Option<String>,
+    /// What the interpretation was restored from, if it was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub restored: Option<RestoredEntry>,
     /// Names of the layers, youngest first; if empty, they are named after the horizons.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layer_names: Vec<String>,
@@ -128,6 +133,7 @@ impl Document {
             last_id: 0,
             geometry,
             geological_history: None,
+            restored: None,
             layer_names: Vec::new(),
             fonts: Vec::new(),
             volumes: Vec::new(),
