@@ -61,6 +61,9 @@ fn project(project: &Project) -> anyhow::Result<Report> {
             .say("made from a geological history (geological_history in project.toml)")
             .field("geological_history", text);
     }
+    if let (Some(restored), Some(geometry)) = (&document.restored, &document.geometry) {
+        report.say(restored.words(geometry.vertical.unit)).field("restored", restored);
+    }
     for noun in [Noun::Volume, Noun::Horizon, Noun::Fault, Noun::Well, Noun::Layer] {
         let names = document.names(noun);
         if !names.is_empty() {

@@ -2,8 +2,8 @@
 
 use super::animate::AnimateRequest;
 use super::args::{
-    Action, DrawingArgs, IllustrateArgs, LayerAction, LayerSetArgs, NoteAction, RawArgs, RenderArgs, ScalarAction,
-    SceneAction, SynthArgs, VolumeAction,
+    Action, DrawingArgs, IllustrateArgs, LayerAction, LayerSetArgs, NoteAction, RawArgs, RenderArgs, RestoreArgs,
+    ScalarAction, SceneAction, SynthArgs, VolumeAction,
 };
 use super::frame::frame;
 use super::page::PageRequest;
@@ -20,8 +20,8 @@ use page::FileFormat;
 use param::KDefinition;
 use project::chains::illustrate::IllustrateSettings;
 use project::command::{
-    AddNote, AddTexture, Command, Extract, LinkVolume, Remove, RemoveScalar, Rename, ResetLayer, SetColour, SetLayer,
-    SetParameterization, SetScalar, SetVelocity,
+    AddNote, AddTexture, Command, Extract, LinkVolume, Remove, RemoveScalar, Rename, ResetLayer, Restore, SetColour,
+    SetLayer, SetParameterization, SetScalar, SetVelocity,
 };
 use project::document::{NoteEntry, Polarity};
 use project::error::Noun;
@@ -29,6 +29,7 @@ use project::memory_budget;
 use project::pictures::Device;
 use project::pictures::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use render::{IsosurfaceSource, Scope};
+use restore::{Datum, RestoreSettings};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use survey::SurveyGeometry;
@@ -52,6 +53,8 @@ pub(super) enum Request {
     Import { project: PathBuf, command: Command },
     /// Create a project.
     Create { project: PathBuf, geometry: Option<SurveyGeometry>, history: Option<PathBuf> },
+    /// Restore a project to one of its horizons, into a new one.
+    Restore { out: PathBuf, restore: Restore },
     /// Change a project.
     Change { project: PathBuf, command: Command },
     /// Measure an extraction against a truth.
@@ -224,6 +227,7 @@ impl TryFrom<Action> for Request {
             Action::Create(typed) => {
                 Self::Create { geometry: frame(&typed)?, project: typed.project, history: typed.history }
             }
+            Action::Restore(typed) => restored(typed)?,
             Action::Velocity { project, velocity_m_s } => {
                 change(project, Command::SetVelocity(SetVelocity { velocity_m_s }))
             }
@@ -260,6 +264,21 @@ impl TryFrom<Action> for Request {
             Action::Prune { project } => Self::Prune(project),
         })
     }
+}
+
+/// Restores an interpretation.
+fn restored(typed: RestoreArgs) -> Result<Request, Usage> {
+    let dipping = typed.dip.as_deref().map(|text| numbers::<2>("--dip", text, ',')).transpose()?;
+    let datum = match dipping {
+        Some([dip, direction]) => Datum::Dipping { dip, direction },
+        None if typed.regional => Datum::Regional,
+        None => Datum::Flat,
+    };
+    if let Some(depth) = typed.depth.filter(|depth| !depth.is_finite()) {
+        return Err(format!("--depth {depth}: expected a depth in the survey's vertical unit"));
+    }
+    let settings = RestoreSettings { datum, depth: typed.depth };
+    Ok(Request::Restore { out: typed.out, restore: Restore { source: typed.project, to: typed.to, settings } })
 }
 
 /// Gives something another name.

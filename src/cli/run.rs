@@ -11,7 +11,7 @@ use project::Project;
 use project::ProjectError;
 use project::chains::demo::{self, survey_files};
 use project::chains::illustrate;
-use project::command::{AddScene, Command, Effect, ProposeFaults, SetParameterization, SetRaw, TellHistory};
+use project::command::{AddScene, Command, Effect, ProposeFaults, Restore, SetParameterization, SetRaw, TellHistory};
 use project::folder::refuse_inside_project;
 use project::pictures::load::Stage;
 use project::pictures::{load, scene};
@@ -131,6 +131,7 @@ pub(super) fn carry_out(request: Request, wait: Duration, progress: &Progress) -
         Request::BenchSegy { side, folder } => told(bench::segy::run(side, &folder, progress)?),
         Request::Bench { sizes, dump } => told(bench::run(sizes, dump.as_deref(), progress)?),
         Request::Create { project, geometry, history } => create(project, geometry, history.as_deref(), progress)?,
+        Request::Restore { out, restore } => restored(&out, restore, progress)?,
         Request::Change { project, command } => change(open(&project)?, &command, progress)?,
         Request::Evaluate { project, truth } => assembly::evaluate(&project, &truth, progress)?,
         Request::ProposeFaults { project, settings } => {
@@ -212,6 +213,16 @@ fn create(
         report.fields(&effect);
     }
     report.field("project", path);
+    Ok(report)
+}
+
+/// Restores a project into a new one, which appears only when that has succeeded.
+fn restored(out: &Path, restore: Restore, progress: &Progress) -> anyhow::Result<Report> {
+    let mut new = Project::create(out, None)?;
+    let effect = new.project().apply(&Command::Restore(restore), progress)?;
+    new.publish()?;
+    let mut report = Report::line(format!("created {}", out.display()));
+    report.say_text(effect.to_string().trim_end()).fields(&effect).field("project", out);
     Ok(report)
 }
 

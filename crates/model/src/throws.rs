@@ -43,6 +43,8 @@ const MISFIT_NODES: i32 = 8;
 pub struct CutOff {
     /// The place, voxels.
     pub place: DVec3,
+    /// The block whose horizon ends there.
+    pub block: u16,
     /// Whether the horizon was only continued there.
     pub is_inferred: bool,
     /// The standard deviation of the sheet's nodes beside it, samples.
@@ -127,6 +129,16 @@ pub struct FaultThrows<'a> {
     surface: &'a FaultSurface,
     fault: usize,
     voxel_from_frame: DMat3,
+    clipping: Clipping,
+}
+
+/// Which cut-offs count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Clipping {
+    /// Those of horizons as they are drawn.
+    ByContacts,
+    /// Also those that something younger has cut off, or that lie up to half a volume above or below it.
+    Unclipped,
 }
 
 /// A place on a line down the dip: the two blocks beside it, if the fault parts them there.
@@ -143,7 +155,13 @@ impl<'a> FaultThrows<'a> {
     /// Of a fault, by its number.
     pub fn new(model: &'a StructuralModel, fault: usize) -> Self {
         let surface = &model.faults().surfaces()[fault];
-        Self { model, surface, fault, voxel_from_frame: surface.frame_from_voxel.inverse() }
+        let voxel_from_frame = surface.frame_from_voxel.inverse();
+        Self { model, surface, fault, voxel_from_frame, clipping: Clipping::ByContacts }
+    }
+
+    /// The same, of sheets as if nothing younger had cut them off: throws that a horizon had before it was eroded, or pierced.
+    pub fn unclipped(model: &'a StructuralModel, fault: usize) -> Self {
+        Self { clipping: Clipping::Unclipped, ..Self::new(model, fault) }
     }
 
     /// Where along the strike of the fault's plane a voxel position lies, m.
@@ -170,7 +188,11 @@ impl<'a> FaultThrows<'a> {
     /// Whether a place lies in the volume, or no more than `beyond` voxels beside its sides.
     fn is_in_volume(&self, p: DVec3, beyond: f64) -> bool {
         let size = self.model.size();
-        let by = [beyond, beyond, 0.0].map(|by| by + 1e-6);
+        let by = match self.clipping {
+            Clipping::ByContacts => [beyond, beyond, 0.0],
+            Clipping::Unclipped => [beyond, beyond, 0.5 * size[2] as f64],
+        };
+        let by = by.map(|by| by + 1e-6);
         (0..3).all(|axis| p[axis] >= -by[axis] && p[axis] <= size[axis] as f64 - 1.0 + by[axis])
     }
 
@@ -262,7 +284,7 @@ impl<'a> FaultThrows<'a> {
         let model = self.model;
         let below = model.below_at(place.as_vec3(), block);
         let [without, with] = [false, true].map(|is_below| model.rules().layer(&below.with(horizon, is_below)));
-        if without == with {
+        if self.clipping == Clipping::ByContacts && without == with {
             return None;
         }
         let off = |p: DVec3| f64::from(model.offset(horizon, block, p.as_vec3()));
@@ -276,7 +298,7 @@ impl<'a> FaultThrows<'a> {
         let quality = model.quality_at(horizon, block, known.x as f32, known.y as f32);
         let is_inferred = !is_level && matches!(quality, Quality::Extrapolated | Quality::Hole);
         let misfit = if is_level { 0.0 } else { self.misfit(place, horizon, block) };
-        Some(CutOff { place, is_inferred, misfit, is_upright, crossing })
+        Some(CutOff { place, block, is_inferred, misfit, is_upright, crossing })
     }
 
     /// The standard deviation of white noise on the nodes of a sheet near a place, on its own side of the fault.

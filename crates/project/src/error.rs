@@ -299,6 +299,9 @@ pub enum ProjectError {
     /// There is no block at a stage of a geological history.
     #[error(transparent)]
     Stage(#[from] StageError),
+    /// The interpretation cannot be restored to a horizon.
+    #[error(transparent)]
+    Restore(restore::RestoreError),
     /// The layers could not be parameterized.
     #[error(transparent)]
     Param(#[from] param::ParamError),

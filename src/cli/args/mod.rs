@@ -9,6 +9,7 @@ mod history;
 mod interpretation;
 mod layer;
 mod output;
+mod restore;
 mod review;
 mod scene;
 mod segy;
@@ -31,6 +32,7 @@ pub(super) use layer::{LayerAction, LayerSetArgs, RawArgs, ScalarAction, Texture
 pub(super) use output::{
     BenchArgs, DemoArgs, DrawingArgs, FiguresArgs, IllustrateArgs, ParameterizeArgs, RenderArgs, SynthArgs,
 };
+pub(super) use restore::RestoreArgs;
 pub(super) use review::{NoteAction, ReviewArgs};
 pub(super) use scene::{SceneAction, ViewArgs};
 pub(super) use segy::SegyArgs;
@@ -90,6 +92,14 @@ pub(super) enum Action {
         after_help = "Example:\n  petroglyph create sketch.petro --bounds 0,5000,0,4000,0,2000 --size 201x161x101 --z-unit m\n  petroglyph create lines.petro --bounds 0,5000,0,4000,0,2000 --inlines 1001,1201 --crosslines 2000,2320,2\n  petroglyph create horst.petro --history horst.toml"
     )]
     Create(CreateArgs),
+    /// Take an interpretation back in time: a new project without what is younger than a horizon, its throws and folds undone
+    #[command(after_help = "Examples:\n  petroglyph restore north.petro chalk.petro --to \"Top Chalk\"\
+                      \n  petroglyph restore north.petro chalk.petro --to \"Top Chalk\" --regional\
+                      \n  petroglyph restore north.petro chalk.petro --to \"Top Chalk\" --dip 2,270 --depth 1500\n\n\
+                      Blocks move on the map so that the heaves of the horizon close, then vertical shear lays it flat. It is\n\
+                      kinematic and not balanced, which figures of the new project say; how lengths and areas change is printed\n\
+                      (docs/restore.md).")]
+    Restore(RestoreArgs),
     /// Read a SEG-Y volume into a project
     #[command(after_help = "Examples:\n  petroglyph import survey.sgy north.petro\
                       \n  petroglyph import large.sgy north.petro --memory 4G\

@@ -24,6 +24,7 @@ mod parameterization;
 pub(crate) mod pick;
 mod pick_by_time;
 mod refine;
+mod restore;
 mod scalar;
 mod scene;
 mod stack;
@@ -56,6 +57,7 @@ pub use pick::{
 };
 pub use pick_by_time::{PickByTime, PickedByTime, TimeLevel};
 pub use refine::{FillHorizon, HorizonRefined, SmoothHorizon};
+pub use restore::{ProjectRestored, Restore};
 pub use scalar::{RemoveScalar, SetRaw, SetScalar};
 pub use scene::AddScene;
 pub use stack::{Spacing, StackHorizons, Stacked};
@@ -174,6 +176,8 @@ pub enum Command {
     AddNote(AddNote),
     /// Make a block from its geological history.
     TellHistory(TellHistory),
+    /// Restore the interpretation of another project to one of its horizons.
+    Restore(Restore),
 }
 
 /// What a command did: the facts to report to the user.
@@ -212,6 +216,8 @@ pub enum Effect {
     WellAdded(Box<WellAdded>),
     /// A block was made from its geological history.
     HistoryTold(Box<HistoryTold>),
+    /// The interpretation of another project was restored.
+    Restored(Box<ProjectRestored>),
     /// A small change.
     Changed {
         /// The change, in a few words.
@@ -282,6 +288,7 @@ impl Command {
             Self::AddScene(change) => change.execute(draft),
             Self::AddNote(change) => change.execute(draft),
             Self::TellHistory(change) => change.execute(draft, progress),
+            Self::Restore(change) => change.execute(draft, progress),
         }
     }
 }
@@ -317,6 +324,7 @@ impl Effect {
             | Self::Replayed(_)
             | Self::HorizonRefined(_)
             | Self::HistoryTold(_)
+            | Self::Restored(_)
             | Self::Changed { .. } => Vec::new(),
         }
     }
@@ -352,6 +360,7 @@ impl Effect {
             Self::FaultAdded(done) => format!("fault {}", done.report.name),
             Self::WellAdded(done) => format!("well {}", done.name),
             Self::HistoryTold(done) => format!("a block of {} events", done.events),
+            Self::Restored(done) => format!("restored to {}", done.horizons.first().map_or("", String::as_str)),
             Self::Changed { summary } => summary.clone(),
         }
     }
@@ -392,6 +401,7 @@ impl std::fmt::Display for Effect {
             Self::FaultAdded(done) => write!(f, "{}", done.report),
             Self::WellAdded(done) => write!(f, "{done}"),
             Self::HistoryTold(done) => write!(f, "{done}"),
+            Self::Restored(done) => write!(f, "{done}"),
             Self::Created | Self::Changed { .. } => f.write_str(&self.summary()),
         }
     }

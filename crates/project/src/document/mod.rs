@@ -13,6 +13,7 @@ mod migration;
 mod origin;
 mod picks;
 mod references;
+mod restored;
 
 use crate::error::{Noun, ProjectError};
 pub(crate) use entries::is_zero;
@@ -24,6 +25,7 @@ pub use ids::{Id, Renamed};
 pub use origin::{AttributeKind, Chooser, HorizonQuery, Origin, QueryBorder, Uninterpreted};
 use param::KDefinition;
 pub use picks::{Assembly, Drawn, DrawnEntry, FaultSticks, PickEntry};
+pub use restored::RestoredEntry;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -67,6 +69,9 @@ pub struct Document {
     /// How many events of it have happened, the last one perhaps in part; absent: all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub history_until: Option<f64>,
+    /// What the interpretation was restored from, if it was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub restored: Option<RestoredEntry>,
     /// Names of the layers, youngest first; if empty, they are named after the horizons.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layer_names: Vec<String>,
@@ -132,6 +137,7 @@ impl Document {
             geometry,
             geological_history: None,
             history_until: None,
+            restored: None,
             layer_names: Vec::new(),
             fonts: Vec::new(),
             volumes: Vec::new(),

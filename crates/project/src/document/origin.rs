@@ -49,6 +49,11 @@ pub enum Origin {
     Picked,
     /// The surface of a block that was told as events.
     History,
+    /// Moved back in time with the rock, from another project's.
+    Restored {
+        /// Who chose the horizons of that project.
+        chosen_by: Chooser,
+    },
     /// Drawn by a person, or tracked from a place: a horizon by its log, a fault by its sticks.
     Drawn,
     /// The level of geologic time through places at which a person pointed.
@@ -222,6 +227,7 @@ impl fmt::Display for Origin {
             Self::TimeFraction { of } => write!(f, "k by geologic time of the volume {of}"),
             Self::Picked => f.write_str("assembled from picks"),
             Self::History => f.write_str("told by the geological history"),
+            Self::Restored { .. } => f.write_str("moved back in time with the rock"),
             Self::Drawn => f.write_str("drawn"),
             Self::Outlined => f.write_str("outline of an isolated body, which the program found"),
             Self::ByTime { seeds, .. } => {
@@ -265,8 +271,14 @@ impl fmt::Display for Uninterpreted {
 impl Document {
     /// Why it is no interpretation; `None`: a person chose one of its horizons at least.
     pub fn uninterpreted(&self) -> Option<Uninterpreted> {
-        let is_chosen =
-            |origin: &Origin| !matches!(origin, Origin::Level { chosen_by: Chooser::Program, .. } | Origin::Outlined);
+        let is_chosen = |origin: &Origin| {
+            !matches!(
+                origin,
+                Origin::Level { chosen_by: Chooser::Program, .. }
+                    | Origin::Restored { chosen_by: Chooser::Program }
+                    | Origin::Outlined
+            )
+        };
         match self.horizons.is_empty() {
             true => Some(Uninterpreted::RawData),
             false => {

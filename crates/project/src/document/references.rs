@@ -3,7 +3,7 @@
 //! Every struct on the way is taken apart field by field: a new field does not compile until it is decided whether it
 //! refers to anything.
 
-use super::{Document, ExtractionEntry, FigureEntry, Origin, Style};
+use super::{Document, ExtractionEntry, FigureEntry, Origin, RestoredEntry, Style};
 use crate::error::Noun;
 use figure::{BlockPart, CorrelationPart, Figure, MapPart, Part, ThrowPart};
 use render::{IsosurfaceSource, LabelChange, Media, Scene};
@@ -124,6 +124,7 @@ impl Document {
             geometry: _,
             geological_history: _,
             history_until: _,
+            restored,
             layer_names: _,
             fonts: _,
             volumes,
@@ -147,6 +148,9 @@ impl Document {
                 Reference { nouns: VOLUME, kind: ReferenceKind::Record, holder: ReferenceHolder::Extraction },
                 volume,
             );
+        }
+        if let Some(RestoredEntry { from: _, to, datum: _, depth: _ }) = restored {
+            visit(Reference { nouns: HORIZON, kind: ReferenceKind::Record, holder: ReferenceHolder::Origin }, to);
         }
         let origins = volumes.iter_mut().map(|entry| &mut entry.origin);
         let origins = origins.chain(horizons.iter_mut().map(|entry| &mut entry.origin));

@@ -14,6 +14,16 @@ impl From<::time::TimeError> for ProjectError {
     }
 }
 
+impl From<restore::RestoreError> for ProjectError {
+    fn from(error: restore::RestoreError) -> Self {
+        match error {
+            restore::RestoreError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            restore::RestoreError::Model(error) => Self::Model(error),
+            other => Self::Restore(other),
+        }
+    }
+}
+
 impl From<interp::InterpError> for ProjectError {
     fn from(error: interp::InterpError) -> Self {
         use interp::InterpError::{Arrays, Cancelled, Sink, Source};

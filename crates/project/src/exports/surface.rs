@@ -11,7 +11,8 @@ use survey::{Horizon, Progress, Quality};
 
 /// A horizon without what only continues it past faults and the sides of a block told by its history.
 fn stated(mut horizon: Horizon, entry: &HorizonEntry) -> Horizon {
-    let continued = horizon.sheets.iter_mut().filter(|_| matches!(entry.origin, Origin::History));
+    let continued =
+        horizon.sheets.iter_mut().filter(|_| matches!(entry.origin, Origin::History | Origin::Restored { .. }));
     for sheet in continued {
         for (depth, quality) in sheet.depth.iter_mut().zip(&mut sheet.quality) {
             if *quality == Quality::Extrapolated {

@@ -8,6 +8,7 @@ mod handle;
 pub(crate) mod history;
 mod lock;
 mod output;
+pub(crate) mod state;
 pub(crate) mod storage;
 
 pub(crate) use draft::Draft;

@@ -44,7 +44,8 @@ pub fn default_view(document: &Document) -> Result<Scene, ProjectError> {
         scene.blend = 1.0;
     } else {
         // With a single horizon the layer above it is half of what there is to see.
-        scene.ground = (document.horizons.len() > 1).then(Ground::default);
+        let has_ground = document.horizons.len() > 1 || document.restored.is_some();
+        scene.ground = has_ground.then(Ground::default);
         let block = scene.box_in(geometry);
         let corner = scene.view(geometry).nearest_corner(&block);
         scene.cut_outs = vec![block.corner_cut(corner, CUT_SHARE)];

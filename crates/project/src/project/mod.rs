@@ -26,7 +26,9 @@ use crate::derived;
 use crate::document::{Document, data_file};
 use crate::error::ProjectError;
 use crate::facts::Facts;
-use crate::folder::{self, CREATING, Draft, IMPORTING, Lock, Step, acquaintance, forget_creation, history, storage};
+use crate::folder::{
+    self, CREATING, Draft, IMPORTING, Lock, Step, acquaintance, forget_creation, history, state, storage,
+};
 use crate::interpretation::drawable::refuse_undrawable;
 use crate::interpretation::{extraction, proposals};
 use std::fs;
@@ -81,20 +83,7 @@ impl Project {
     /// # Errors
     /// The project is missing, is not a project, contains a link, was written by a newer version, or cannot be read.
     pub fn open(root: &Path) -> Result<Self, ProjectError> {
-        let not_a_project = |fact| Err(ProjectError::NotAProject { path: root.to_owned(), fact });
-        if !root.exists() {
-            return Err(ProjectError::NotFound { path: root.to_owned() });
-        }
-        if !root.is_dir() {
-            return not_a_project("it is a file, a project is a folder");
-        }
-        let path = root.join(storage::STATE);
-        if !path.exists() {
-            return not_a_project("it has no project.toml");
-        }
-        storage::refuse_links(root)?;
-        let text = storage::read_text(&path)?;
-        let document = Document::from_text(&text, &path)?;
+        let (text, document) = state::read(root)?;
         Ok(Self { root: root.to_owned(), text, document, wait: Duration::ZERO })
     }
 

@@ -218,7 +218,8 @@ fn with_inputs<T>(
     Ok((made, painter.stages))
 }
 
-/// The figure with what its sections show: measured data where there are some, and the rock otherwise.
+/// The figure with what its sections show: measured data where there are some, and the rock otherwise. One of a restored
+/// interpretation says so.
 fn settled(figure: &Figure, document: &Document) -> Figure {
     let mut figure = figure.clone();
     let raw = styles::transfer_functions(document).raw;
@@ -227,6 +228,10 @@ fn settled(figure: &Figure, document: &Document) -> Figure {
         if let Part::Section(SectionPart { blend, .. }) | Part::Fence(FencePart { blend, .. }) = part {
             blend.get_or_insert(if has_data { 1.0 } else { 0.0 });
         }
+    }
+    if let (Some(restored), Some(geometry)) = (&document.restored, &document.geometry) {
+        let words = restored.words(geometry.vertical.unit);
+        figure.caption = Some(figure.caption.map_or_else(|| words.clone(), |caption| format!("{caption} {words}")));
     }
     figure
 }
