@@ -34,6 +34,7 @@ mod program;
 mod proposed_faults;
 #[cfg(feature = "remote")]
 mod remote;
+mod restore;
 mod review;
 mod safety;
 mod shapes;

@@ -533,37 +533,15 @@ pub enum ProjectError {
         /// Which one, from 1.
         stick: usize,
     },
-    /// Sticks that span no surface.
-    #[error("the sticks of fault \"{fault}\" span no surface")]
-    FlatSticks {
-        /// The fault.
-        fault: String,
-    },
-    /// A fault that lies beside the survey.
-    #[error("no part of fault \"{fault}\" lies in the survey")]
-    FaultElsewhere {
-        /// The fault.
-        fault: String,
-    },
     /// A fault that was not drawn as sticks.
     #[error("fault \"{fault}\" was not drawn as sticks")]
     NotDrawn {
         /// Its name.
         fault: String,
     },
-    /// A fault that cannot be changed as a whole.
+    /// A fault that cannot be made of its sticks, or changed as a whole.
     #[error(transparent)]
     FaultEdit(#[from] FaultEditError),
-    /// A fault was not drawn with so many sticks, or points on one.
-    #[error("fault {fault} has no point {} on a stick {}", point + 1, stick + 1)]
-    NoStickPoint {
-        /// Its name.
-        fault: String,
-        /// The stick, counted from 0.
-        stick: usize,
-        /// The point, counted from 0.
-        point: usize,
-    },
     /// There are no horizons, so there are no layers.
     #[error("the project has no horizons, so there are no layers to parameterize")]
     NoLayers,

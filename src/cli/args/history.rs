@@ -11,7 +11,7 @@ fn out() -> String {
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct HistoryArgs {
-    /// Project folder, made by `create --history`
+    /// Project folder, made by `create --history`; any other with --restore
     pub(in crate::cli) project: PathBuf,
     #[arg(help = out())]
     pub(in crate::cli) out: PathBuf,
@@ -19,6 +19,12 @@ pub(in crate::cli) struct HistoryArgs {
     /// every event that changes something visible]
     #[arg(long, value_name = "N", value_delimiter = ',')]
     pub(in crate::cli) stages: Vec<f64>,
+    /// Show the block restored to these horizons, as `petroglyph restore` does, oldest first, and then as it is today
+    #[arg(long, value_name = "HORIZON", num_args = 1.., conflicts_with = "stages")]
+    pub(in crate::cli) restore: Vec<String>,
+    /// With --restore: lay horizons on their regional slopes instead of level
+    #[arg(long, requires = "restore")]
+    pub(in crate::cli) regional: bool,
     /// Named scene of the project, or a TOML file, for all panels [default: the project's first, else a three-quarter view]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(in crate::cli) scene: Option<String>,

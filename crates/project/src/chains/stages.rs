@@ -2,15 +2,17 @@
 //! project in a temporary folder, so that whatever draws a project draws a stage.
 //!
 //! Layers, their rocks and the colours of faults are those of the project itself, by name; what is gone in the end has the
-//! history's own style. The last stage is the project itself.
+//! history's own style. The last stage is the project itself. Of an interpretation without a history, restorations are stages.
 
-use crate::command::{AddTexture, Command, TellHistory};
+use crate::command::{AddTexture, Command, Restore, TellHistory};
 use crate::error::{ProjectError, StageError};
 use crate::{NewProject, Project};
 use glam::DVec3;
 use history::{History, Place, Stage};
 use rayon::prelude::*;
 use render::Scene;
+use restore::RestoreSettings;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use survey::block::VoxelBox;
 use survey::{Progress, SurveyGeometry};
@@ -93,7 +95,6 @@ impl<'a> Stages<'a> {
     /// # Errors
     /// [`StageError`], or the user cancelled.
     pub fn at(&self, stage: f64, progress: &Progress) -> Result<StageProject<'a>, ProjectError> {
-        static COUNT: AtomicU64 = AtomicU64::new(0);
         self.check(stage)?;
         if stage == self.events() as f64 {
             return Ok(StageProject::Finished(self.finished));
@@ -110,8 +111,7 @@ impl<'a> Stages<'a> {
             }
             .into(),
         };
-        let name = format!("petroglyph-{}-{}.petro", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
-        let mut new = Project::create(&std::env::temp_dir().join(name), None)?;
+        let mut new = Project::create(&folder_for_a_stage(), None)?;
         self.tell(&mut new, stage, progress).map_err(failed)?;
         Ok(StageProject::Made(Box::new(new)))
     }
@@ -170,6 +170,28 @@ impl<'a> Stages<'a> {
         }
         Ok(found)
     }
+}
+
+/// The project restored to one of its horizons: a stage of an interpretation without a history.
+///
+/// # Errors
+/// The horizon is unknown, or cannot be restored.
+pub fn restored(
+    present: &Project,
+    to: &str,
+    settings: RestoreSettings,
+    progress: &Progress,
+) -> Result<StageProject<'static>, ProjectError> {
+    let mut new = Project::create(&folder_for_a_stage(), None)?;
+    let restore = Restore { source: present.root().to_path_buf(), to: to.to_owned(), settings };
+    new.project().apply(&Command::Restore(restore), progress)?;
+    Ok(StageProject::Made(Box::new(new)))
+}
+
+fn folder_for_a_stage() -> PathBuf {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    let name = format!("petroglyph-{}-{}.petro", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+    std::env::temp_dir().join(name)
 }
 
 /// Where a stage is looked at.

@@ -342,7 +342,7 @@ impl GiveSticks {
         let sticks: Vec<Vec<[f64; 3]>> =
             cut.iter().filter(|stick| stick.len() > 1).map(|stick| places(&geometry, stick)).collect();
         if sticks.len() < 2 {
-            return Err(ProjectError::FlatSticks { fault: name.clone() });
+            return Err(FaultEditError::FlatSticks { fault: name.clone() }.into());
         }
         let count = sticks.len();
         draft.document.sticks.push(FaultSticks { fault: name.clone(), sticks });

@@ -1,7 +1,7 @@
 //! The faults as which a surface is taken in: itself, or the parts of one that turns too far for a single surface.
 
 use crate::document::Document;
-use crate::error::{Noun, ProjectError};
+use crate::error::{FaultEditError, Noun, ProjectError};
 use crate::placement;
 use files::{fault_of_sticks, sticks_along_strike};
 use glam::DVec3;
@@ -32,14 +32,14 @@ pub(super) fn of_surface(document: &Document, geometry: &SurveyGeometry, fault: 
 /// Takes sticks as one fault, or as parts that share a stick with their neighbour; also which sticks each part has.
 ///
 /// # Errors
-/// [`ProjectError::FlatSticks`] without area, [`ModelError`] where no surface fits them, nor a few parts of them.
+/// [`FaultEditError::FlatSticks`] without area, [`ModelError`] where no surface fits them, nor a few parts of them.
 pub(super) fn of_sticks(
     document: &Document,
     geometry: &SurveyGeometry,
     name: &str,
     lines: &[Vec<DVec3>],
 ) -> Result<(Parts, Vec<Vec<usize>>), ProjectError> {
-    let flat = || ProjectError::FlatSticks { fault: name.to_owned() };
+    let flat = || FaultEditError::FlatSticks { fault: name.to_owned() };
     let whole = fault_of_sticks(name, lines, geometry).ok_or_else(flat)?;
     let folded = match model::fit_of(geometry, &whole) {
         Ok(_) => {
@@ -88,7 +88,7 @@ pub(super) fn of_sticks(
 /// Which parts of a fault lie in the survey.
 fn inside(geometry: &SurveyGeometry, whole: &Fault, parts: &[Fault]) -> Result<Vec<usize>, ProjectError> {
     let kept: Vec<usize> = (0..parts.len()).filter(|&n| placement::reaches(geometry, &parts[n].mesh)).collect();
-    if kept.is_empty() { Err(ProjectError::FaultElsewhere { fault: whole.name.clone() }) } else { Ok(kept) }
+    if kept.is_empty() { Err(FaultEditError::FaultElsewhere { fault: whole.name.clone() }.into()) } else { Ok(kept) }
 }
 
 /// Those parts of `whole` that are kept, with names of their own; the first has its name and ends where it ends.

@@ -4,6 +4,7 @@ use super::fault_parts::{self, Parts};
 use super::{Effect, Noun, ProjectError};
 use crate::content;
 use crate::document::{FaultEntry, FaultSticks, Id, Origin};
+use crate::error::FaultEditError;
 use crate::folder::Draft;
 use crate::interpretation::assembly::rebuild_all;
 use crate::interpretation::proposals;
@@ -72,7 +73,8 @@ impl MoveStickPoint {
         let drawn = drawn.ok_or_else(|| ProjectError::NotDrawn { fault: self.fault.clone() })?;
         let stick = draft.document.sticks[drawn].sticks.get_mut(self.stick);
         let place = stick.and_then(|stick| stick.get_mut(self.point));
-        let missing = || ProjectError::NoStickPoint { fault: self.fault.clone(), stick: self.stick, point: self.point };
+        let missing =
+            || FaultEditError::NoStickPoint { fault: self.fault.clone(), stick: self.stick, point: self.point };
         *place.ok_or_else(missing)? = self.to;
         surface(draft, drawn, progress)
     }

@@ -28,8 +28,7 @@ impl RestoredEntry {
             Datum::Dipping { dip, direction } => format!("dipping {dip}° towards {direction}°"),
         };
         format!(
-            "{} restored to {}, {lies} at {:.0} {}: younger rock is taken away, heaves are closed block by block, throws and folds \
-             undone by vertical shear. Kinematic, not balanced, nothing is decompacted.",
+            "{} restored to {}, {lies} at {:.0} {}. Kinematic: not balanced, not decompacted.",
             self.from,
             self.to,
             self.depth,

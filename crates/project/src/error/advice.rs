@@ -1,6 +1,6 @@
 //! What to do next about an error, where that does not depend on who shows it.
 
-use super::ProjectError;
+use super::{FaultEditError, ProjectError};
 use files::FormatError;
 use files::segy::SegyError;
 use files::well::WellFileError;
@@ -29,8 +29,12 @@ impl ProjectError {
             }
             Self::ReadOnly { .. } => "copy the project to a folder you may write to; nothing was changed",
             Self::SeveralHorizons { .. } => "make the picks of each horizon in a separate step",
-            Self::FlatSticks { .. } => "draw sticks next to one another, each along the dip of the fault",
-            Self::FaultElsewhere { .. } => "give at least some of it over the survey: check its coordinates",
+            Self::FaultEdit(FaultEditError::FlatSticks { .. }) => {
+                "draw sticks next to one another, each along the dip of the fault"
+            }
+            Self::FaultEdit(FaultEditError::FaultElsewhere { .. }) => {
+                "give at least some of it over the survey: check its coordinates"
+            }
             Self::NoEvidence => "import a volume, or assemble or import horizons first",
             Self::BadName { .. } => "use letters, digits, blanks, - and _",
             Self::Cancelled(_) => "nothing was changed",

@@ -1,6 +1,6 @@
-//! Why a fault cannot be cut, merged or given sticks.
+//! Why a fault cannot be made of sticks, cut, merged or given sticks.
 
-/// Why a fault cannot be changed as a whole.
+/// Why a fault cannot be made of its sticks, or changed as a whole.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FaultEditError {
     /// A fault that was to be given sticks and has them.
@@ -32,5 +32,27 @@ pub enum FaultEditError {
         at: [f64; 2],
         /// Their distance there, m.
         apart_m: f64,
+    },
+    /// Sticks that span no surface.
+    #[error("the sticks of fault \"{fault}\" span no surface")]
+    FlatSticks {
+        /// The fault.
+        fault: String,
+    },
+    /// A fault that lies beside the survey.
+    #[error("no part of fault \"{fault}\" lies in the survey")]
+    FaultElsewhere {
+        /// The fault.
+        fault: String,
+    },
+    /// A fault was not drawn with so many sticks, or points on one.
+    #[error("fault {fault} has no point {} on a stick {}", point + 1, stick + 1)]
+    NoStickPoint {
+        /// Its name.
+        fault: String,
+        /// The stick, counted from 0.
+        stick: usize,
+        /// The point, counted from 0.
+        point: usize,
     },
 }

@@ -102,3 +102,110 @@ pub(crate) fn parameterization(
     }
     Parameterization::of_known(model, &told, settings, progress).map(Some)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Project;
+    use crate::command::{Command, SetLayer, TellHistory};
+    use crate::interpretation::solid::{self, SolidModel};
+    use std::path::Path;
+
+    /// Beds of 400, 300 and 200 m, similar folds with their crest over the centre, and a normal fault that dips east.
+    const TEXT: &str = "size = [4000, 3000, 1500]
+        [[events]]
+        kind = \"beds\"
+        beds = [ { rock = \"granite\", thickness = 600, name = \"Basement\" },
+                 { rock = \"sandstone\", thickness = 400, name = \"Sand\" },
+                 { rock = \"limestone\", thickness = 300, name = \"Lime\" },
+                 { rock = \"shale\", thickness = 200, name = \"Shale\" } ]
+        [[events]]
+        kind = \"fold\"
+        wavelength = 2500
+        amplitude = 60
+        [[events]]
+        kind = \"fault\"
+        at = [2000, 1500, 0]
+        strike = 0
+        dip = 60
+        slip = 150
+        [[events]]
+        kind = \"erosion\"
+        depth = 150";
+
+    fn project(folder: &Path, until: Option<f64>) -> Project {
+        let mut new = Project::create(&folder.join("p.petro"), None).unwrap();
+        let tell = TellHistory { text: TEXT.to_owned(), until, styles: Vec::new(), fault_colours: Vec::new() };
+        new.project().apply(&Command::TellHistory(tell), &Progress::silent()).unwrap();
+        new.publish().unwrap()
+    }
+
+    /// Where rock was laid down (metres east, depth), by ways back that share no line with the history's.
+    fn back(east: f64, depth: f64, slip: f64) -> [f64; 2] {
+        let (sin, cos) = 60f64.to_radians().sin_cos();
+        let is_hanging = (east - 2000.0) * sin > depth * cos;
+        let [east, depth] = if is_hanging { [east - slip * cos, depth - slip * sin] } else { [east, depth] };
+        [east, depth + 60.0 * (std::f64::consts::TAU * (east - 2000.0) / 2500.0).cos()]
+    }
+
+    /// The largest misfits of i (m) and k of a project at places away from boundaries.
+    fn misfits(project: &Project, slip: f64) -> [f64; 2] {
+        let (document, geometry) = (project.document(), project.document().geometry.clone().unwrap());
+        let model = project.facts().get(&SolidModel, &Progress::silent()).unwrap();
+        let settings = solid::param_settings(document);
+        let told = parameterization(document, &model, &settings, &Progress::silent()).unwrap().expect("told");
+        let beds = [("Shale", 0.0, 200.0), ("Lime", 200.0, 500.0), ("Sand", 500.0, 900.0)];
+        let names = document.layers();
+        let size = geometry.size();
+        let (mut worst, mut seen) = ([0.0f64; 2], 0);
+        for n in 0..20_000usize {
+            let share = |prime: f64| (n as f64 * prime).fract();
+            let p =
+                DVec3::from_array([0.754_877, 0.569_840, 0.430_159].map(share)) * DVec3::new(4000.0, 3000.0, 1500.0);
+            let [east, depth] = back(p.x, p.z, slip);
+            let Some((name, top, base)) = beds.iter().find(|bed| (bed.1 + 20.0..bed.2 - 20.0).contains(&depth)) else {
+                continue;
+            };
+            let sin = 60f64.to_radians().sin();
+            if p.z < 180.0 || ((p.x - 2000.0) * sin - p.z * 0.5).abs() < 50.0 {
+                continue;
+            }
+            let at = geometry.voxel_from_world(p).as_vec3();
+            let found = told.lookup(&*model, at);
+            let layer = names.len() - 1 - usize::from(found.region.layer);
+            assert_eq!(names[layer], *name, "{p}");
+            let laid = geometry.voxel_from_world(DVec3::new(east, p.y, 0.0));
+            let i_m = (f64::from(found.i) - laid.x / (size[0] - 1) as f64).abs() * 4000.0;
+            worst = [worst[0].max(i_m), worst[1].max((f64::from(found.k) - (base - depth) / (base - top)).abs())];
+            seen += 1;
+        }
+        assert!(seen > 5000, "{seen}");
+        worst
+    }
+
+    #[test]
+    fn coordinates_are_those_of_the_rock_before_its_events() {
+        let folder = tempfile::tempdir().unwrap();
+        let [i_m, k] = misfits(&project(folder.path(), None), 150.0);
+        assert!(i_m < 0.5 && k < 2e-3, "{i_m} m, {k}");
+    }
+
+    #[test]
+    fn a_stage_has_its_own_coordinates() {
+        let folder = tempfile::tempdir().unwrap();
+        let [i_m, k] = misfits(&project(folder.path(), Some(2.5)), 75.0);
+        assert!(i_m < 0.5 && k < 2e-3, "{i_m} m, {k}");
+    }
+
+    #[test]
+    fn whoever_states_how_beds_lie_is_obeyed() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut project = project(folder.path(), None);
+        let layer =
+            SetLayer { layer: "Lime".to_owned(), k: Some(param::KDefinition::ParallelToTop), ..SetLayer::default() };
+        project.apply(&Command::SetLayer(layer), &Progress::silent()).unwrap();
+        let model = project.facts().get(&SolidModel, &Progress::silent()).unwrap();
+        let settings = solid::param_settings(project.document());
+        assert!(parameterization(project.document(), &model, &settings, &Progress::silent()).unwrap().is_none());
+    }
+}

@@ -557,6 +557,42 @@ class Commands:
         """
         return self.apply({"tell-history": _given(text=text, until=until)}, progress=progress)
 
+    def restore(
+        self,
+        source: Path,
+        to: str,
+        *,
+        regional: bool = False,
+        dip: tuple[float, float] | None = None,
+        depth: float | None = None,
+        progress: Progress | None = None,
+    ) -> Effect:
+        """Makes the interpretation of another project as it was when one of its horizons was laid down, in a project that has none.
+
+        Parameters
+        ----------
+        source : path
+            The folder of the other project, which is not changed.
+        to : str
+            The horizon that is laid flat; what is younger is taken away.
+        regional : bool
+            Lay it on the plane that fits it best instead of level.
+        dip : (float, float), optional
+            Lay it on a plane with this dip and direction, both in degrees.
+        depth : float, optional
+            Its depth in the middle of the survey. Default: the mean of its nodes stays where it is.
+        progress : callable, optional
+            Called as ``progress(stage, done, total)``.
+        """
+        if regional and dip is not None:
+            raise ValueError("state regional or dip, not both")
+        datum: Any = "regional" if regional else "flat"
+        if dip is not None:
+            datum = {"dipping": {"dip": dip[0], "direction": dip[1]}}
+        settings = _given(datum=datum, depth=depth)
+        command = {"source": os.fspath(source), "to": to, "settings": settings}
+        return self.apply({"restore": command}, progress=progress)
+
     def add_note(self, text: str, at: Place, *, scene: str | None = None) -> Effect:
         """Writes a note on a place."""
         return self.apply({"add-note": {"note": _given(text=text, at=list(at), scene=scene)}})
