@@ -93,6 +93,7 @@ impl TryFrom<HistoryArgs> for SeriesRequest {
 pub(super) fn draw(request: &SeriesRequest, progress: &Progress) -> anyhow::Result<Report> {
     refuse_inside_project(&request.out)?;
     let project = Project::open(&request.project)?;
+    let stages = request.restore.is_empty().then(|| Stages::of(&project)).transpose()?;
     let mut shown = choose(&project, request.scene.as_deref())?;
     let mut view = request.view.with_wells(&project)?;
     if request.scene.is_none() && project.document().scenes.is_empty() {
@@ -100,10 +101,9 @@ pub(super) fn draw(request: &SeriesRequest, progress: &Progress) -> anyhow::Resu
     }
     view.change(&mut shown, project.document().frame()?)?;
     scene::prepare(project.document(), &mut shown, progress)?;
-    let Panels { wanted, made, title } = if request.restore.is_empty() {
-        told(request, &project, &shown, progress)?
-    } else {
-        restored(request, &project, progress)?
+    let Panels { wanted, made, title } = match &stages {
+        Some(stages) => told(request, stages, &shown, progress)?,
+        None => restored(request, &project, progress)?,
     };
     let panels: Vec<SeriesPanel<'_>> =
         made.iter().map(|(stage, caption)| SeriesPanel { project: stage.project(), caption }).collect();
@@ -160,11 +160,10 @@ struct Panels<'a> {
 /// The block after its events.
 fn told<'a>(
     request: &SeriesRequest,
-    project: &'a Project,
+    stages: &Stages<'a>,
     shown: &Scene,
     progress: &Progress,
 ) -> anyhow::Result<Panels<'a>> {
-    let stages = Stages::of(project)?;
     let wanted = match &request.stages[..] {
         [] => stages.seen_to_change(shown, progress)?,
         asked => asked.to_vec(),

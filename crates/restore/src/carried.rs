@@ -226,6 +226,9 @@ fn sheet(moves: &Moves<'_>, geometry: &SurveyGeometry, horizon: usize, sources: 
         count: lattice.size,
         ..NodeGrid::of_survey(geometry)
     };
+    let [nx, ny, _] = model.size();
+    let far = DVec2::new(nx as f64 - 1.0, ny as f64 - 1.0);
+    let is_inside = |at: DVec2| at.cmpge(DVec2::ZERO).all() && at.cmple(far).all();
     let node = |n: usize| {
         let to = DVec2::new(
             f64::from(lattice.origin[0]) + (n / lattice.size[1]) as f64,
@@ -239,7 +242,7 @@ fn sheet(moves: &Moves<'_>, geometry: &SurveyGeometry, horizon: usize, sources: 
         let own = sources.iter().map(|&block| from(block)).find(|(.., is_own)| *is_own);
         let (block, z, at, is_own) = own.unwrap_or_else(|| from(sources[0]));
         let quality = match model.quality_at(horizon, block, at.x as f32, at.y as f32) {
-            quality if is_own && is_known(model, horizon, block, at) => quality,
+            quality if is_own && is_inside(at) && is_inside(to) && is_known(model, horizon, block, at) => quality,
             _ => Quality::Extrapolated,
         };
         (geometry.vertical.value_at(z) as f32, quality)
