@@ -145,9 +145,9 @@ fn fill<M: LayerModel + ?Sized>(
                 return;
             }
             let (first, last) = level_range(levels, bottom, thickness, touched.depths[column]);
-            for level in first..=last {
+            for (level, of_level) in offsets.iter_mut().enumerate().take(last + 1).skip(first) {
                 let v = level as f32 / (levels - 1) as f32;
-                offsets[level] = offset(bottom - thickness * v, Some(v));
+                *of_level = offset(bottom - thickness * v, Some(v));
             }
             let (low, high) = (offsets[first], offsets[last]);
             offsets[..first].fill(low);

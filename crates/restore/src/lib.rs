@@ -9,7 +9,7 @@
 //!
 //! So the vertical thickness of every layer is kept, and with it (∇u = 0 where heaves are constant) area in section and volume.
 //! A similar fold is undone exactly, a parallel one is not: beds become shorter than they were. In the layer coordinates of flat
-//! space, i and j go along with the rock and k is unchanged. [`Shift`](shift) is how blocks move, [`target`] how the horizon goes
+//! space, i and j go along with the rock and k is unchanged. `shift` is how blocks move, `target` how the horizon goes
 //! on below faults. A fault goes with its foot wall; the rock of the hanging wall is continued to it, so that nothing gapes and
 //! nothing overlaps, and what that took is measured.
 //!

@@ -57,8 +57,8 @@ fn target_sheet(model: &StructuralModel, horizon: usize, block: u16) -> TargetSh
     let mut offset: Vec<f64> = known.iter().map(|known| if *known { 0.0 } else { f64::NAN }).collect();
     let contacts = model.rules().contacts();
     let mut is_moved = false;
-    for older in horizon + 1..contacts.len() {
-        if contacts[older].is_intrusive() || model.level(older, block).is_some() {
+    for (older, contact) in contacts.iter().enumerate().skip(horizon + 1) {
+        if contact.is_intrusive() || model.level(older, block).is_some() {
             continue;
         }
         let theirs = known_of(older);

@@ -249,7 +249,8 @@ impl SeriesPage {
         let no_room = || FigureError::NoRoom { what: "the series", size_cm };
         let [above, strip] = room.split_down(1.0 - strip_pt(figure) / room.height());
         room = above;
-        if !(room.size().min_element() >= LEAST_BLOCK_PT) {
+        let least = room.size().min_element();
+        if least.is_nan() || least < LEAST_BLOCK_PT {
             return Err(no_room());
         }
         let shape = Shape::of(Some(part), geometry);
