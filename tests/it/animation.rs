@@ -76,7 +76,7 @@ fn what_cannot_be_made_is_said_and_leaves_nothing() {
     usage("a.gif --frames 9999", "2 to 2000");
     usage("a.gif --rate 0", "frames a second");
     usage("a.gif --turn 0", "--turn");
-    usage("a.gif --motion spin", "turntable, blend, section or scenes");
+    usage("a.gif --motion spin", "turntable, blend, section, history or scenes");
     usage("a.gif --motion scenes", "--to");
     usage("a.gif --motion blend --to x", "--to");
     usage("a.gif --motion section --along depth", "inline, crossline or slice");

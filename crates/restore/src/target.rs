@@ -2,8 +2,8 @@
 //!
 //! Under a fault lies rock of the foot wall whose part of the restored horizon is elsewhere: the sheet goes on there only because
 //! the model continues it. Rock is moved by the depth of the restored horizon above it, so a fold of the foot wall must not get
-//! lost there: where the horizon is not known and an older one, k, is, it is put where k says by the thickness between
-//! them, z = z_k − t, with t continued from where both are known as smoothly as a membrane.
+//! lost there: where the block does not hold the horizon and holds an older one, k, it is put where k says by the thickness
+//! between them, z = z_k − t, with t continued from where the block holds both, as smoothly as a membrane.
 
 use crate::fill::fill;
 use glam::{DVec2, Vec3};
@@ -49,11 +49,16 @@ fn target_sheet(model: &StructuralModel, horizon: usize, block: u16) -> TargetSh
         DVec2::new(f64::from(sheet.origin[0]) + u as f64, f64::from(sheet.origin[1]) + v as f64)
     };
     let count = sheet.z.len();
-    let known_of = |h: usize| (0..count).map(|n| is_known(model, h, block, voxel(n))).collect::<Vec<bool>>();
-    let mut known = known_of(horizon);
+    // Where the model has it, interpreted or continued, that is what is drawn today.
+    let is_held = |h: usize, n: usize| {
+        let p = voxel(n).extend(f64::from(model.sheet(h, block).z[n]));
+        model.faults().holds(block, p.as_vec3())
+    };
+    let held_of = |h: usize| (0..count).map(|n| is_held(h, n)).collect::<Vec<bool>>();
+    let mut known = held_of(horizon);
     let [nx, ny, _] = model.size().map(|count| count as f64 - 1.0);
     let is_inside = |at: DVec2| at.x >= 0.0 && at.y >= 0.0 && at.x <= nx && at.y <= ny;
-    let own = (0..count).filter(|&n| known[n] && is_inside(voxel(n))).count();
+    let own = (0..count).filter(|&n| is_inside(voxel(n)) && is_known(model, horizon, block, voxel(n))).count();
     let mut offset: Vec<f64> = known.iter().map(|known| if *known { 0.0 } else { f64::NAN }).collect();
     let contacts = model.rules().contacts();
     let mut is_moved = false;
@@ -61,7 +66,7 @@ fn target_sheet(model: &StructuralModel, horizon: usize, block: u16) -> TargetSh
         if contact.is_intrusive() || model.level(older, block).is_some() {
             continue;
         }
-        let theirs = known_of(older);
+        let theirs = held_of(older);
         let both = (0..count).filter(|&n| known[n] && theirs[n]).count();
         let shadow: Vec<usize> = (0..count).filter(|&n| !known[n] && theirs[n]).collect();
         if both < FEWEST || shadow.is_empty() {

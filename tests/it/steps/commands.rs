@@ -124,12 +124,13 @@ const fn after(start: Start, prepare: fn(&Path), line: &'static str) -> Scenario
 use Start::{Extracted, Files, Imported};
 
 /// What makes files and projects.
-pub(super) const MAKING: [Scenario; 5] = [
+pub(super) const MAKING: [Scenario; 6] = [
     of(Files, "synth s --size 24x24x48 --seed 3"),
     of(Files, "create p.petro --bounds 0,1000,0,1000,0,1000 --size 9x9x9"),
     of(Files, "import a.sgy p.petro"),
     of(Imported, "import a.sgy p.petro --name second"),
     of(Imported, "volume remove p.petro seismic"),
+    Scenario { project: "r.petro", ..of(Imported, "restore p.petro r.petro --to Top") },
 ];
 
 /// What changes horizons, faults and wells.
@@ -292,10 +293,14 @@ const READING: [&str; 16] = [
 ];
 
 /// What is not disturbed itself, and why.
-const ELSEWHERE: [(&str, &str); 7] = [
+const ELSEWHERE: [(&str, &str); 8] = [
     (
         "demo",
         "carries out `synth`, `import`, `extract`, `pick`, `climb`, `horizon fill`, `layer set`, `scene add` and `render`",
+    ),
+    (
+        "history",
+        "writes its page by what `render` writes pages by; its stages are projects in the folder for temporary files",
     ),
     (
         "illustrate",
